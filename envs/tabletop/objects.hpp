@@ -1,0 +1,44 @@
+// The object types of the tabletop: procedural shapes, one convex decomposition for physics, one mesh for pictures.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/physics_world.hpp>
+
+namespace lgabench::tabletop {
+
+using Polygon = std::vector<Vec2>;  // counter-clockwise, metres, not closed
+
+/// Triangles for the renderer; flat shading takes each triangle's own normal.
+struct Mesh {
+  std::vector<Vec3> vertices_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Body frame: origin at the type's centre in xy, z = 0 on its underside. In the picture, local -x is up, +y is right;
+/// the long axis is along y at yaw 0.
+struct ObjectModel {
+  std::string type;
+  BodyModel body;                  // convex pieces and mass
+  Mesh mesh;
+  std::vector<Polygon> outline;    // convex polygons whose union covers the shape seen from above
+  double height_m = 0;
+  double radius_m = 0;             // of the disc about the centre that covers the outline
+  Vec2 grasp_m;                    // where suction takes hold: on material, at least .01 from an edge where the type allows
+};
+
+/// The model of an object type; lives as long as the program. @throws InputError for an unknown type.
+const ObjectModel& object_model(const std::string& type);
+
+/// All object types that can be made, in the order of the feature space.
+const std::vector<std::string>& object_types();
+
+/// Outlines moved to a pose on the table.
+std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);
+
+/// The smallest distance between two outlines; 0 where they overlap.
+double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,27 @@
+// From a scenario to scenes.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench::tabletop {
+
+/// All that a scene depends on (PROTOCOL, section 3): not engine, method, thread or host.
+struct SceneRequest {
+  Selection distribution;  // of target and obstacle features: a Selection, or the truth; only target and avoid count
+  std::string layout;      // cells, continuous or released
+  std::string split;       // train, dev or test
+  std::string arm = "test";  // of the scenario's tests; "train" for training scenes
+  std::uint64_t seed = 0;
+};
+
+/// Scene number `index`. Layout, target features and distractors come from separate random streams.
+/// @throws InputError where the layout is unknown, or the distribution holds nothing that the layout can show.
+Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);
+
+/// The layouts in which this task can be sampled.
+std::vector<std::string> layouts(Task task);
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,26 @@
+// The 83 textures as procedural pictures.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lgabench::tabletop {
+
+using Rgb = std::array<std::uint8_t, 3>;
+
+/// A square, tileable picture; `scale_m` is the length on an object that one tile covers.
+struct Texture {
+  static constexpr int size = 128;
+  std::string name;
+  double scale_m = 0.1;
+  std::vector<Rgb> pixels;  // size x size, row-major
+
+  /// Colour at a point of the object's surface, given in metres on the plane that faces the surface (nearest pixel).
+  Rgb at(double u_m, double v_m) const;
+};
+
+/// The texture of that name; made at the first call, lives as long as the program. @throws InputError for an unknown name.
+const Texture& texture(const std::string& name);
+
+}  // namespace lgabench::tabletop

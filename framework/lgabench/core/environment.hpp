@@ -1,0 +1,58 @@
+// The environment interface, in Gymnasium's words.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/action.hpp>
+#include <lgabench/core/observation.hpp>
+#include <lgabench/core/scene.hpp>
+
+namespace lgabench {
+
+/// Why an episode did not succeed (PROTOCOL, section 2).
+enum class Failure {
+  none,
+  missed_object,
+  wrong_object,
+  bad_placement,
+  bad_angle,
+  missed_zone,
+  touched_obstacle,
+  left_workspace,
+  truncated,
+  abstraction_empty,
+  method_error
+};
+std::string to_string(Failure failure);
+
+struct StepResult {
+  Observation observation;  // after the motion, at rest
+  bool terminated = false;  // the task's one action is done
+  bool truncated = false;   // the limit in simulation steps was reached: never a success
+  bool is_success = false;
+  Failure failure = Failure::none;  // none exactly if is_success
+};
+
+/// One thread at a time. Every call but reset needs a reset before it.
+class Environment {
+ public:
+  virtual ~Environment() = default;
+
+  /// Builds the scene anew. Pure: the same scene gives the same bytes, whatever was played before.
+  /// @throws EngineError if the engine fails, InputError for an object type or texture that is not known.
+  virtual Observation reset(const Scene& scene) = 0;
+
+  /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
+  /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
+  /// @throws MethodError for an action that is not finite, EngineError if the engine fails.
+  virtual StepResult step(const Action& action) = 0;
+
+  /// The oracle's action in the present state, for the scene's target.
+  virtual Action expert_action() const = 0;
+
+  /// The oracle's rule applied to another object: what it would do were `instance_id` the target.
+  virtual Action expert_action_for(std::uint8_t instance_id) const = 0;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,53 @@
+#include <lgabench/core/feature_space.hpp>
+
+#include <algorithm>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench {
+namespace {
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> read_names(const JsonReader& reader, const std::vector<std::string>& space) {
+  if (reader.json() == "ALL") return space;
+  std::vector<std::string> named;
+  for (const JsonReader& element : reader.elements()) {
+    const std::string name = element.string();
+    if (!has(space, name)) element.fail("a name of the feature space");
+    if (has(named, name)) element.fail("each name once");
+    named.push_back(name);
+  }
+  std::vector<std::string> ordered;
+  for (const std::string& name : space)
+    if (has(named, name)) ordered.push_back(name);
+  return ordered;
+}
+
+}  // namespace
+
+FeatureSpace load_feature_space(const std::string& id) {
+  const fs::path file = data_directory() / "spaces" / (id + ".json");
+  const Json document = read_json(file);
+  const JsonReader reader(document, file.string());
+  return {id, reader.at("object_types").strings(), reader.at("textures").strings()};
+}
+
+bool FeatureSet::contains(const std::string& object_type, const std::string& texture) const {
+  return has(object_types, object_type) && has(textures, texture);
+}
+
+bool operator==(const FeatureSet& a, const FeatureSet& b) {
+  return a.object_types == b.object_types && a.textures == b.textures;
+}
+
+Json to_json(const FeatureSet& set) { return {{"object_types", set.object_types}, {"textures", set.textures}}; }
+
+FeatureSet read_feature_set(const JsonReader& reader, const FeatureSpace& space) {
+  reader.only({"object_types", "textures"});
+  return {read_names(reader.at("object_types"), space.object_types), read_names(reader.at("textures"), space.textures)};
+}
+
+}  // namespace lgabench

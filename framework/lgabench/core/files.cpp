@@ -1,0 +1,93 @@
+#include <lgabench/core/files.hpp>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+[[noreturn]] void fail(const fs::path& file, const char* wanted) {
+  throw InputError(fmt::format("{}: {}: {}", file.string(), wanted, std::strerror(errno)));
+}
+
+// Owns a file descriptor; closes it on every way out.
+struct Descriptor {
+  int fd;
+  ~Descriptor() {
+    if (fd >= 0) ::close(fd);
+  }
+};
+
+}  // namespace
+
+std::string read_file(const fs::path& file) {
+  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (in.fd < 0) fail(file, "cannot be read");
+  std::string bytes;
+  char block[1 << 16];
+  for (;;) {
+    const ssize_t n = ::read(in.fd, block, sizeof block);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(file, "cannot be read");
+    if (n == 0) return bytes;
+    bytes.append(block, static_cast<std::size_t>(n));
+  }
+}
+
+void write_file(const fs::path& file, std::string_view bytes) {
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+
+  const fs::path temporary = fmt::format("{}.{}.tmp", file.string(), ::getpid());
+  {
+    const Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
+    if (out.fd < 0) fail(file, "cannot be written");
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+      const ssize_t n = ::write(out.fd, bytes.data() + done, bytes.size() - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) {
+        const int reason = errno;
+        ::unlink(temporary.c_str());
+        errno = reason;
+        fail(file, "cannot be written");
+      }
+      done += static_cast<std::size_t>(n);
+    }
+    if (::fsync(out.fd) != 0) fail(file, "cannot be written to disk");
+  }
+  if (::rename(temporary.c_str(), file.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(temporary.c_str());
+    errno = reason;
+    fail(file, "cannot be written");
+  }
+}
+
+void sync_directory(const fs::path& directory) {
+  const Descriptor d{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  if (d.fd < 0 || ::fsync(d.fd) != 0) fail(directory, "cannot be synced");
+}
+
+fs::path program_directory() {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw InputError("/proc/self/exe: cannot be read: " + error.message());
+  return self.parent_path();
+}
+
+fs::path data_directory() {
+  if (const char* named = std::getenv("LGABENCH_DATA")) return named;
+  return program_directory().parent_path() / "share" / "lgabench";
+}
+
+fs::path shipped_plugin_directory() { return program_directory().parent_path() / "lib" / "lgabench" / "plugins"; }
+
+}  // namespace lgabench

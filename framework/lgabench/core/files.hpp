@@ -1,0 +1,30 @@
+// Reading and writing whole files, and where the installation keeps its own. The only place that writes results.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace lgabench {
+
+namespace fs = std::filesystem;
+
+/// @throws InputError naming the file and the system's reason.
+std::string read_file(const fs::path& file);
+
+/// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, never a part.
+/// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
+void write_file(const fs::path& file, std::string_view bytes);
+
+/// fsync of a directory, so that a rename in it survives a power cut.
+void sync_directory(const fs::path& directory);
+
+/// Installed data (scenarios/, suites/, spaces/, answers/, embeddings/, paper/): $LGABENCH_DATA, or ../share/lgabench from the program.
+fs::path data_directory();
+
+/// Plugins shipped with the program: ../lib/lgabench/plugins from it.
+fs::path shipped_plugin_directory();
+
+/// Directory of the running program.
+fs::path program_directory();
+
+}  // namespace lgabench

@@ -1,0 +1,50 @@
+// JSON with errors that name the file and the place.
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+
+using Json = nlohmann::json;  // keys sorted, so a dump is canonical
+
+/// Parses the file. @throws InputError naming the file and the byte where parsing stopped, or why it could not be read.
+Json read_json(const std::filesystem::path& file);
+
+/// One line, sorted keys, shortest round-trip numbers: the text that hashes and files use. @throws InputError on invalid UTF-8.
+std::string canonical(const Json& value);
+
+/// A value with its place, for strict reading: every complaint reads "FILE: PLACE: expected ...".
+/// Holds a reference: the document must outlive it.
+class JsonReader {
+ public:
+  JsonReader(const Json& value, std::string file, std::string place = "")
+      : value_(value), file_(std::move(file)), place_(std::move(place)) {}
+
+  const Json& json() const { return value_; }
+  bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
+  /// Member of an object. @throws InputError where missing.
+  JsonReader at(const std::string& key) const;
+  /// Elements of an array. @throws InputError where it is none.
+  std::vector<JsonReader> elements() const;
+
+  std::string string() const;
+  std::vector<std::string> strings() const;
+  double number() const;
+  bool boolean() const;
+  /// Whole number within [lowest, highest].
+  long long integer(long long lowest, long long highest) const;
+
+  /// @throws InputError for the first member whose name is not among `known`.
+  void only(const std::vector<std::string>& known) const;
+  [[noreturn]] void fail(const std::string& expectation) const;
+
+ private:
+  const Json& value_;
+  std::string file_, place_;
+};
+
+}  // namespace lgabench

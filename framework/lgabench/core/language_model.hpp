@@ -1,0 +1,46 @@
+// Who can be asked which features matter.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// One yes/no question: could the target (or the object to be avoided) have this object type or texture?
+struct Question {
+  enum class About { target, avoid } about = About::target;
+  enum class Group { object_type, texture } group = Group::object_type;
+  std::string candidate;
+};
+
+/// A language model that answers for one command. One thread.
+class LanguageModel {
+ public:
+  virtual ~LanguageModel() = default;
+
+  /// Answers in the order of the questions: true for yes. Asked together so that a live model may work on several.
+  /// @throws MethodError if an answer is missing or cut off: no answer is never a no.
+  virtual std::vector<bool> answer(const Command& command, const FeatureSpace& space,
+                                   const std::vector<Question>& questions) = 0;
+
+  virtual std::string model() const = 0;
+  /// The wording that was answered, where it differs from the command's (recorded answers).
+  virtual std::string asked_as(const Command& command) const { return command.utterance; }
+  virtual Provenance provenance() const = 0;
+  /// Cost of all answers so far.
+  virtual SelectionCost cost() const = 0;
+};
+
+/// A person's Selection: proposed to, or edited by them. Stands on the true distribution unless real answers are given.
+class HumanAnswers {
+ public:
+  virtual ~HumanAnswers() = default;
+
+  /// Specified from scratch (the paper's Human condition).
+  virtual Selection specify(const Command& command) = 0;
+  /// The proposal as the person leaves it (the paper's LGA-HILL condition).
+  virtual Selection edit(const Command& command, const Selection& proposal) = 0;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,78 @@
+// The interface of a method: what a plugin implements. No LibTorch, no OpenCV here.
+// The host calls it from one thread; references are valid during the call; what it returns is owned by the caller.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <lgabench/core/action.hpp>
+#include <lgabench/core/language_model.hpp>
+#include <lgabench/core/observation.hpp>
+
+namespace lgabench {
+
+/// What a policy is conditioned on: the command's words and the Selection made for them.
+struct Instruction {
+  std::string utterance;
+  Selection selection;
+};
+
+/// One observation with the oracle's action for it. The label is noiseless, also where noise led to the observation.
+struct Step {
+  Observation observation;
+  Action label;
+};
+
+/// The oracle's episode for one instruction: with `Needs::noisy_per_clean` the recovery steps follow the first.
+struct Demonstration {
+  Instruction instruction;
+  std::vector<Step> steps;
+};
+
+/// What a method asks of the data it learns from.
+struct Needs {
+  /// Training targets are drawn from the method's own Selection, or from the true distribution.
+  enum class Targets { selected, truth } targets = Targets::selected;
+  /// DART (Laskey et al. 2017): noisy rollouts for each clean demonstration; the state each leads to is labelled by
+  /// the oracle and added. Rollout k of n executes the action with sigma = noise_max * k / n.
+  int noisy_per_clean = 0;
+  double noise_max = 0;
+};
+
+/// Where a method reports its training. Owned by the host.
+class TrainingLog {
+ public:
+  virtual ~TrainingLog() = default;
+  /// After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass.
+  virtual void epoch(int epochs, long long steps, double loss) = 0;
+};
+
+/// What the host lends to a method for the length of a call.
+struct Services {
+  LanguageModel& lm;
+  HumanAnswers& human;
+  const Json& options;  // an object with every option of the descriptor, defaults filled in
+  std::uint64_t seed;   // governs initial weights and batch order
+  TrainingLog& log;
+};
+
+class Policy {
+ public:
+  virtual ~Policy() = default;
+  /// Called before each episode.
+  virtual void reset() {}
+  virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
+};
+
+class Method {
+ public:
+  virtual ~Method() = default;
+  /// `options` as in Services. Called first.
+  virtual Needs needs(const Json& options) const = 0;
+  /// Feature abstraction. A method that selects nothing returns a Selection of provenance none.
+  virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
+  /// Learns from the demonstrations. The policy must not refer to them afterwards.
+  virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,71 @@
+// What an engine plugin provides: rigid bodies on a table. Tasks, success, pictures and the oracle are the framework's.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/core/geometry.hpp>
+
+namespace lgabench {
+
+/// A convex polytope given by its corners, in the body's frame (origin at the object type's centre, on its underside).
+struct ConvexPiece {
+  std::vector<Vec3> corners_m;
+};
+
+/// A rigid body that may be placed: pieces may touch or overlap; mass is spread evenly over their volume.
+struct BodyModel {
+  std::string name;
+  std::vector<ConvexPiece> pieces;
+  double mass_kg = 0.1;
+};
+
+struct BodyPlacement {
+  int model = 0;  // index into the models given to load()
+  Pose pose;      // of the body's frame
+  bool fixed = false;
+};
+
+/// Two bodies that touch now. -1 is the table, -2 the spatula; others index the placements of reset().
+struct Contact {
+  int a = 0, b = 0;
+};
+constexpr int table_body = -1, spatula_body = -2, no_body = -3;
+
+/// Bodies under gravity 9.81 m/s^2 on a table whose top is z = 0 and reaches well beyond the workspace. One thread.
+/// Deterministic: the same calls give the same bits on one machine class. Owned by the host.
+/// Every call @throws EngineError if the engine reports a warning, an instability or a value that is not finite.
+class PhysicsWorld {
+ public:
+  virtual ~PhysicsWorld() = default;
+
+  /// Compiles what may be placed: at most `copies` of each model at once. Called once, before reset.
+  /// @pre reset's outcome depends on this pool only through the models it places.
+  virtual void load(const std::vector<BodyModel>& models, int copies) = 0;
+
+  /// Places the bodies at rest, drops all else (grip, spatula, velocities, solver state). Pure: same placements, same future.
+  virtual void reset(const std::vector<BodyPlacement>& placements) = 0;
+
+  virtual double time_step_s() const = 0;
+  virtual void step() = 0;
+
+  virtual Pose pose(int body) const = 0;
+  /// Neither moves nor turns noticeably (the engine's own criterion, below .5 mm/s and .5 degree/s, or asleep).
+  virtual bool at_rest(int body) const = 0;
+  virtual std::vector<Contact> contacts() const = 0;
+
+  /// First body hit by the vertical ray from above at `point`: no_body if only the table. `height_m` gets z of the hit.
+  virtual int cast_down(Vec2 point, double& height_m) const = 0;
+
+  /// Suction: holds `body` rigidly to a gripper that stands at `gripper`, until release().
+  virtual void grip(int body, const Pose& gripper) = 0;
+  /// Where the gripper shall be after the next step.
+  virtual void move_gripper(const Pose& gripper) = 0;
+  virtual void release() = 0;
+
+  /// A kinematic box (size along its own x, y, z) that pushes bodies; appears at `pose`.
+  virtual void place_spatula(Vec3 size_m, const Pose& pose) = 0;
+  virtual void move_spatula(const Pose& pose) = 0;
+  virtual void remove_spatula() = 0;
+};
+
+}  // namespace lgabench
