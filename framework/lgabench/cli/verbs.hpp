@@ -1,0 +1,25 @@
+// The command line: one function a verb, each in its own file, each adding a CLI11 subcommand with its callback.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace lgabench::cli {
+
+/// What the process returns (DESIGN: command line).
+enum Exit { ok = 0, regression = 1, usage = 2, cells_failed = 3, plugin_refused = 4, interrupted = 130 };
+
+// In `lgabench`: start in milliseconds, load no engine, no LibTorch.
+void add_list(CLI::App& app, int& exit);
+void add_info(CLI::App& app, int& exit);
+void add_run(CLI::App& app, int& exit);
+void add_report(CLI::App& app, int& exit);
+
+// In `lgabench-worker`, which `lgabench` starts for them.
+void add_cell(CLI::App& app, int& exit);
+void add_select(CLI::App& app, int& exit);
+void add_demos(CLI::App& app, int& exit);
+void add_render(CLI::App& app, int& exit);
+
+/// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.
+int dispatch(CLI::App& app, int argc, char** argv, const int& exit);
+
+}  // namespace lgabench::cli

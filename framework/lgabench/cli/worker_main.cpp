@@ -1,0 +1,18 @@
+// lgabench-worker: the process that loads plugins and engines. `lgabench` starts it; a person rarely does.
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/core/version.hpp>
+
+int main(int argc, char** argv) {
+  using namespace lgabench;
+  flush_denormals();
+  int exit = cli::ok;
+  CLI::App app("Runs one cell, or a verb that needs an engine", "lgabench-worker");
+  app.set_version_flag("--version", LGABENCH_VERSION);
+  app.require_subcommand(1);
+  cli::add_cell(app, exit);
+  cli::add_select(app, exit);
+  cli::add_demos(app, exit);
+  cli::add_render(app, exit);
+  return cli::dispatch(app, argc, argv, exit);
+}
