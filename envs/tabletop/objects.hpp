@@ -6,12 +6,12 @@
 #include <vector>
 
 #include <lgabench/core/physics_world.hpp>
+#include <tabletop/outline.hpp>
 
 namespace lgabench::tabletop {
 
-using Polygon = std::vector<Vec2>;  // counter-clockwise, metres, not closed
-
-/// Triangles for the renderer; flat shading takes each triangle's own normal.
+/// Triangles for the renderer, counter-clockwise seen from outside; flat shading takes each triangle's own normal.
+/// Every convex piece is closed in itself; pieces may overlap, so some faces lie inside the object.
 struct Mesh {
   std::vector<Vec3> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -37,8 +37,5 @@ const std::vector<std::string>& object_types();
 
 /// Outlines moved to a pose on the table.
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);
-
-/// The smallest distance between two outlines; 0 where they overlap.
-double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
 
 }  // namespace lgabench::tabletop

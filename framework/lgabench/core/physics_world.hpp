@@ -17,15 +17,15 @@ struct BodyModel {
   std::string name;
   std::vector<ConvexPiece> pieces;
   double mass_kg = 0.1;
+  bool fixed = false;  // stays where reset() puts it, whatever touches it; cannot be gripped
 };
 
 struct BodyPlacement {
   int model = 0;  // index into the models given to load()
   Pose pose;      // of the body's frame
-  bool fixed = false;
 };
 
-/// Two bodies that touch now. -1 is the table, -2 the spatula; others index the placements of reset().
+/// Two bodies that touched during the last step. Bodies are named by their index into reset()'s placements.
 struct Contact {
   int a = 0, b = 0;
 };
@@ -33,7 +33,8 @@ constexpr int table_body = -1, spatula_body = -2, no_body = -3;
 
 /// Bodies under gravity 9.81 m/s^2 on a table whose top is z = 0 and reaches well beyond the workspace. One thread.
 /// Deterministic: the same calls give the same bits on one machine class. Owned by the host.
-/// Every call @throws EngineError if the engine reports a warning, an instability or a value that is not finite.
+/// Every call @throws EngineError if the engine reports a warning, an instability or a value that is not finite, or
+/// if it is called out of order (a body that is not placed, a move without a grip).
 class PhysicsWorld {
  public:
   virtual ~PhysicsWorld() = default;
@@ -49,14 +50,17 @@ class PhysicsWorld {
   virtual void step() = 0;
 
   virtual Pose pose(int body) const = 0;
-  /// Neither moves nor turns noticeably (the engine's own criterion, below .5 mm/s and .5 degree/s, or asleep).
+  /// Neither moves nor turns noticeably: asleep, or its velocity is below .5 mm/s and .5 degree/s at this moment (as it
+  /// also is at the top of a throw: ask over several steps).
   virtual bool at_rest(int body) const = 0;
+  /// Pairs in which both bodies are at rest may be left out.
   virtual std::vector<Contact> contacts() const = 0;
 
   /// First body hit by the vertical ray from above at `point`: no_body if only the table. `height_m` gets z of the hit.
+  /// The spatula is not seen.
   virtual int cast_down(Vec2 point, double& height_m) const = 0;
 
-  /// Suction: holds `body` rigidly to a gripper that stands at `gripper`, until release().
+  /// Suction: holds `body` rigidly to a gripper that stands at `gripper`, until release(). @pre not a fixed body.
   virtual void grip(int body, const Pose& gripper) = 0;
   /// Where the gripper shall be after the next step.
   virtual void move_gripper(const Pose& gripper) = 0;

@@ -1,0 +1,329 @@
+#include "mujoco/mujoco_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr double time_step = 0.005;
+constexpr double rest_speed = 5e-4;                   // m/s; also the tolerance below which MuJoCo lets a body sleep
+constexpr double rest_turn = 0.5 * 3.14159265 / 180;  // rad/s
+constexpr int awake_now = -(1 + mjMINAWAKE);
+
+/// Far beside the table, each body in its own place: parked bodies have no contacts, but must not stack for a picture.
+constexpr double parking_distance = 10, parking_gap = 1;
+
+void put(const Pose& pose, double* position, double* quaternion) {
+  const double p[3] = {pose.position_m.x, pose.position_m.y, pose.position_m.z};
+  const double q[4] = {pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z};
+  std::copy(p, p + 3, position);
+  std::copy(q, q + 4, quaternion);
+}
+
+Pose get(const double* position, const double* quaternion) {
+  return {{position[0], position[1], position[2]}, {quaternion[1], quaternion[2], quaternion[3], quaternion[0]}};
+}
+
+[[noreturn]] void raise(const char* message) { throw EngineError(fmt::format("MuJoCo: {}", message)); }
+
+}  // namespace
+
+MujocoWorld::MujocoWorld() : model_(nullptr, mj_deleteModel), data_(nullptr, mj_deleteData) {
+  // MuJoCo's own handlers end the process and write a log file into the working directory.
+  mju_user_error = raise;
+  mju_user_warning = [](const char*) {};  // check() reads the warnings from the data
+}
+
+void MujocoWorld::load(const std::vector<BodyModel>& models, int copies) {
+  if (model_) throw EngineError("MuJoCo: load() is called once");
+  compile(models, copies);
+  data_.reset(mj_makeData(model_.get()));
+  if (!data_) throw EngineError("MuJoCo: no memory for the simulation state");
+  mj_setConst(model_.get(), data_.get());  // inertial constants follow the masses set after compiling
+}
+
+void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
+  mjModel* m = model_.get();
+  mjData* d = data_.get();
+  if (!d) throw EngineError("MuJoCo: reset() before load()");
+  for (const Slot& s : placed_) {
+    set_collidable(s, false);
+    if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_INIT;
+    std::fill_n(owner_.begin() + s.first_geom, s.geoms, no_body);
+  }
+  placed_.clear();
+  held_ = no_body;
+  m->geom_contype[spatula_geom_] = m->geom_conaffinity[spatula_geom_] = 0;
+
+  std::vector<std::size_t> used(pool_.size(), 0);
+  for (const BodyPlacement& p : placements) {
+    const auto model = static_cast<std::size_t>(p.model);
+    if (model >= pool_.size() || used[model] >= pool_[model].size())
+      throw EngineError(fmt::format("MuJoCo: no free body of model {} in the pool", p.model));
+    const Slot& s = pool_[model][used[model]++];
+    set_collidable(s, true);
+    if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_ALLOWED;
+    std::fill_n(owner_.begin() + s.first_geom, s.geoms, static_cast<int>(placed_.size()));
+    placed_.push_back(s);
+  }
+  mj_resetData(m, d);  // mocap, weld, warm start and sleep included
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const Slot& s = placed_[i];
+    if (s.mocap >= 0)
+      set_mocap(s.mocap, placements[i].pose);
+    else
+      put(placements[i].pose, d->qpos + s.qpos, d->qpos + s.qpos + 3);
+  }
+  mj_forward(m, d);
+  stale_ = false;
+  check();
+}
+
+double MujocoWorld::time_step_s() const { return time_step; }
+
+void MujocoWorld::step() {
+  mj_step(model_.get(), data_.get());
+  stale_ = true;
+  check();
+}
+
+Pose MujocoWorld::pose(int body) const {
+  const Slot& s = slot(body);
+  const mjData* d = data_.get();
+  if (s.mocap >= 0) return get(d->mocap_pos + 3 * s.mocap, d->mocap_quat + 4 * s.mocap);
+  return get(d->qpos + s.qpos, d->qpos + s.qpos + 3);
+}
+
+bool MujocoWorld::at_rest(int body) const {
+  const Slot& s = slot(body);
+  if (s.mocap >= 0 || data_->tree_asleep[s.tree] >= 0) return true;
+  const double* v = data_->qvel + s.dof;
+  return mju_norm3(v) < rest_speed && mju_norm3(v + 3) < rest_turn;
+}
+
+std::vector<Contact> MujocoWorld::contacts() const {
+  std::vector<Contact> found;
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& c = data_->contact[i];
+    const Contact pair{owner_[static_cast<std::size_t>(c.geom[0])], owner_[static_cast<std::size_t>(c.geom[1])]};
+    const auto same = [&](const Contact& o) { return o.a == pair.a && o.b == pair.b; };
+    if (std::none_of(found.begin(), found.end(), same)) found.push_back(pair);
+  }
+  return found;
+}
+
+int MujocoWorld::cast_down(Vec2 point, double& height_m) const {
+  refresh();
+  const mjModel* m = model_.get();
+  const double from[3] = {point.x, point.y, 1}, down[3] = {0, 0, -1};
+  int hit = no_body;
+  height_m = 0;
+  for (std::size_t i = 0; i < placed_.size(); ++i)
+    for (int g = placed_[i].first_geom; g < placed_[i].first_geom + placed_[i].geoms; ++g) {
+      const double* centre = data_->geom_xpos + 3 * g;
+      if (std::hypot(centre[0] - point.x, centre[1] - point.y) > m->geom_rbound[g]) continue;
+      const double distance = mj_rayMesh(m, data_.get(), g, from, down, nullptr);
+      if (distance < 0 || 1 - distance <= height_m) continue;
+      height_m = 1 - distance;
+      hit = static_cast<int>(i);
+    }
+  return hit;
+}
+
+void MujocoWorld::grip(int body, const Pose& gripper) {
+  const Slot& s = slot(body);
+  if (s.mocap >= 0) throw EngineError("MuJoCo: a fixed body cannot be gripped");
+  mjModel* m = model_.get();
+  mjData* d = data_.get();
+  set_mocap(gripper_, gripper);
+  // Weld: anchor in the held body's frame, in the gripper's frame, then the held body's turn relative to the gripper.
+  const Pose held = pose(body);
+  const Quat unturn{-held.rotation.x, -held.rotation.y, -held.rotation.z, held.rotation.w};
+  const Quat ungrip{-gripper.rotation.x, -gripper.rotation.y, -gripper.rotation.z, gripper.rotation.w};
+  mjtNum* weld = m->eq_data;
+  put({rotated(gripper.position_m - held.position_m, unturn), ungrip * held.rotation}, weld, weld + 6);
+  std::fill_n(weld + 3, 3, 0.0);
+  m->eq_obj2id[0] = s.body;
+  d->eq_active[0] = 1;
+  m->tree_sleep_policy[s.tree] = mjSLEEP_NEVER;  // a weld to a mocap body does not wake what it holds
+  wake(s);
+  held_ = body;
+}
+
+void MujocoWorld::move_gripper(const Pose& gripper) {
+  if (held_ == no_body) throw EngineError("MuJoCo: the gripper moves only while it holds a body");
+  set_mocap(gripper_, gripper);
+}
+
+void MujocoWorld::release() {
+  if (held_ == no_body) return;
+  data_->eq_active[0] = 0;
+  model_->tree_sleep_policy[slot(held_).tree] = mjSLEEP_ALLOWED;
+  held_ = no_body;
+}
+
+void MujocoWorld::place_spatula(Vec3 size_m, const Pose& pose) {
+  mjModel* m = model_.get();
+  const double half[3] = {size_m.x / 2, size_m.y / 2, size_m.z / 2};
+  std::copy(half, half + 3, m->geom_size + 3 * spatula_geom_);
+  std::copy(half, half + 3, m->geom_aabb + 6 * spatula_geom_ + 3);
+  m->geom_rbound[spatula_geom_] = mju_norm3(half);
+  m->geom_contype[spatula_geom_] = m->geom_conaffinity[spatula_geom_] = 1;
+  set_mocap(spatula_, pose);
+  keep_awake(true);  // a mocap body does not wake what it pushes
+}
+
+void MujocoWorld::move_spatula(const Pose& pose) { set_mocap(spatula_, pose); }
+
+void MujocoWorld::remove_spatula() {
+  model_->geom_contype[spatula_geom_] = model_->geom_conaffinity[spatula_geom_] = 0;
+  keep_awake(false);
+}
+
+const MujocoWorld::Slot& MujocoWorld::slot(int body) const {
+  if (body < 0 || static_cast<std::size_t>(body) >= placed_.size())
+    throw EngineError(fmt::format("MuJoCo: no body {} among the {} placed", body, placed_.size()));
+  return placed_[static_cast<std::size_t>(body)];
+}
+
+void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
+  const std::unique_ptr<mjSpec, void (*)(mjSpec*)> spec(mj_makeSpec(), mj_deleteSpec);
+  mjOption& option = spec->option;
+  option.timestep = time_step;
+  option.integrator = mjINT_IMPLICITFAST;
+  option.cone = mjCONE_ELLIPTIC;
+  option.impratio = 10;  // stiffer friction than normal force: resting bodies do not creep
+  option.sleep_tolerance = rest_speed;
+  option.enableflags |= mjENBL_SLEEP;
+  option.disableflags |= mjDSBL_AUTORESET;  // an instability is an error, not a new start
+
+  mjsBody* world = mjs_findBody(spec.get(), "world");
+  mjsGeom* table = mjs_addGeom(world, nullptr);
+  table->type = mjGEOM_PLANE;
+  table->size[0] = table->size[1] = 5, table->size[2] = 1;
+  mjsBody* gripper = mjs_addBody(world, nullptr);
+  mjs_setName(gripper->element, "gripper");
+  gripper->mocap = true;
+  mjsBody* spatula = mjs_addBody(world, nullptr);
+  mjs_setName(spatula->element, "spatula");
+  spatula->mocap = true;
+  mjsGeom* blade = mjs_addGeom(spatula, nullptr);
+  blade->type = mjGEOM_BOX;
+  std::fill_n(blade->size, 3, 0.01);
+  blade->contype = blade->conaffinity = 0;
+
+  int parked = 0;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    for (std::size_t p = 0; p < models[i].pieces.size(); ++p) {
+      mjsMesh* mesh = mjs_addMesh(spec.get(), nullptr);
+      mjs_setName(mesh->element, fmt::format("{}/{}", i, p).c_str());
+      mesh->inertia = mjMESH_INERTIA_CONVEX;
+      std::vector<float> corners;
+      for (const Vec3& c : models[i].pieces[p].corners_m)
+        for (const double v : {c.x, c.y, c.z}) corners.push_back(static_cast<float>(v));
+      mjs_setFloat(mesh->uservert, corners.data(), static_cast<int>(corners.size()));
+    }
+    for (int copy = 0; copy < copies; ++copy, ++parked) {
+      mjsBody* body = mjs_addBody(world, nullptr);
+      mjs_setName(body->element, fmt::format("{}#{}", i, copy).c_str());
+      body->pos[0] = parking_distance;
+      body->pos[1] = parking_gap * parked;
+      body->mocap = models[i].fixed;
+      if (!models[i].fixed) {
+        mjs_addFreeJoint(body);
+        body->sleep = mjSLEEP_INIT;
+      }
+      for (std::size_t p = 0; p < models[i].pieces.size(); ++p) {
+        mjsGeom* geom = mjs_addGeom(body, nullptr);
+        geom->type = mjGEOM_MESH;
+        mjs_setString(geom->meshname, fmt::format("{}/{}", i, p).c_str());
+        geom->contype = geom->conaffinity = 0;
+      }
+    }
+  }
+  // One weld serves every body: grip() points it at the one that is held.
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    if (models[i].fixed) continue;
+    mjsEquality* weld = mjs_addEquality(spec.get(), nullptr);
+    weld->type = mjEQ_WELD;
+    weld->objtype = mjOBJ_BODY;
+    weld->active = false;
+    mjs_setString(weld->name1, "gripper");
+    mjs_setString(weld->name2, fmt::format("{}#0", i).c_str());
+    weld->solref[0] = 2 * time_step;  // as stiff as the time step bears
+    weld->data[10] = 1;               // torque scale
+    break;
+  }
+
+  model_.reset(mj_compile(spec.get(), nullptr));
+  if (!model_) throw EngineError(fmt::format("MuJoCo: the models do not compile: {}", mjs_getError(spec.get())));
+  mjModel* m = model_.get();
+  const auto body_id = [&](const std::string& name) { return mj_name2id(m, mjOBJ_BODY, name.c_str()); };
+  gripper_ = m->body_mocapid[body_id("gripper")];
+  spatula_ = m->body_mocapid[body_id("spatula")];
+  spatula_geom_ = m->body_geomadr[body_id("spatula")];
+  owner_.assign(static_cast<std::size_t>(m->ngeom), no_body);
+  owner_[0] = table_body;
+  owner_[static_cast<std::size_t>(spatula_geom_)] = spatula_body;
+
+  pool_.assign(models.size(), {});
+  for (std::size_t i = 0; i < models.size(); ++i)
+    for (int copy = 0; copy < copies; ++copy) {
+      Slot s;
+      s.body = body_id(fmt::format("{}#{}", i, copy));
+      s.first_geom = m->body_geomadr[s.body];
+      s.geoms = m->body_geomnum[s.body];
+      s.mocap = m->body_mocapid[s.body];
+      if (!models[i].fixed) {
+        s.qpos = m->jnt_qposadr[m->body_jntadr[s.body]];
+        s.dof = m->body_dofadr[s.body];
+        s.tree = m->body_treeid[s.body];
+        // Compiled with a density of 1000: scaled to the mass that was asked for.
+        const double scale = models[i].mass_kg / m->body_mass[s.body];
+        m->body_mass[s.body] *= scale;
+        for (int k = 0; k < 3; ++k) m->body_inertia[3 * s.body + k] *= scale;
+      }
+      pool_[i].push_back(s);
+    }
+}
+
+void MujocoWorld::set_collidable(const Slot& s, bool collidable) {
+  for (int g = s.first_geom; g < s.first_geom + s.geoms; ++g)
+    model_->geom_contype[g] = model_->geom_conaffinity[g] = collidable ? 1 : 0;
+}
+
+void MujocoWorld::set_mocap(int mocap, const Pose& pose) {
+  put(pose, data_->mocap_pos + 3 * mocap, data_->mocap_quat + 4 * mocap);
+}
+
+void MujocoWorld::wake(const Slot& s) {
+  // An asleep tree that is marked awake is what MuJoCo takes for a change by the user: it wakes it with its neighbours.
+  if (data_->tree_asleep[s.tree] >= 0) data_->tree_awake[s.tree] = 1;
+}
+
+void MujocoWorld::keep_awake(bool awake) {
+  for (const Slot& s : placed_) {
+    if (s.tree < 0) continue;
+    model_->tree_sleep_policy[s.tree] = awake ? mjSLEEP_NEVER : mjSLEEP_ALLOWED;
+    if (awake) wake(s);
+  }
+}
+
+void MujocoWorld::refresh() const {
+  if (!stale_) return;
+  mj_kinematics(model_.get(), data_.get());
+  stale_ = false;
+}
+
+void MujocoWorld::check() const {
+  for (int w = 0; w < mjNWARNING; ++w)
+    if (data_->warning[w].number > 0)
+      throw EngineError(fmt::format("MuJoCo: {}", mju_warningText(w, static_cast<std::size_t>(data_->warning[w].lastinfo))));
+}
+
+}  // namespace lgabench

@@ -1,0 +1,61 @@
+// Rigid bodies on MuJoCo: one compiled pool of every model, most of it parked and asleep.
+#pragma once
+#include <memory>
+#include <mujoco/mujoco.h>
+#include <vector>
+
+#include <lgabench/core/physics_world.hpp>
+
+namespace lgabench {
+
+/// The pool holds `copies` bodies of each model. Parked ones lie beside the table without contacts and asleep, so they
+/// cost a step next to nothing; reset() always starts from the same pristine state, so no scene sees an earlier one.
+/// Suction is a weld to a mocap body, the spatula a mocap box.
+class MujocoWorld final : public PhysicsWorld {
+ public:
+  MujocoWorld();
+
+  void load(const std::vector<BodyModel>& models, int copies) override;
+  void reset(const std::vector<BodyPlacement>& placements) override;
+  double time_step_s() const override;
+  void step() override;
+  Pose pose(int body) const override;
+  bool at_rest(int body) const override;
+  std::vector<Contact> contacts() const override;
+  int cast_down(Vec2 point, double& height_m) const override;
+  void grip(int body, const Pose& gripper) override;
+  void move_gripper(const Pose& gripper) override;
+  void release() override;
+  void place_spatula(Vec3 size_m, const Pose& pose) override;
+  void move_spatula(const Pose& pose) override;
+  void remove_spatula() override;
+
+ private:
+  /// A body of the pool: its addresses in the compiled model.
+  struct Slot {
+    int body = 0, first_geom = 0, geoms = 0;
+    int mocap = -1;                      // fixed bodies
+    int qpos = -1, dof = -1, tree = -1;  // free bodies
+  };
+
+  const Slot& slot(int body) const;
+  void compile(const std::vector<BodyModel>& models, int copies);
+  void set_collidable(const Slot& slot, bool collidable);
+  void set_mocap(int mocap, const Pose& pose);
+  void wake(const Slot& slot);
+  void keep_awake(bool awake);
+  void refresh() const;
+  void check() const;
+
+  std::unique_ptr<mjModel, void (*)(mjModel*)> model_;
+  std::unique_ptr<mjData, void (*)(mjData*)> data_;
+  std::vector<std::vector<Slot>> pool_;  // by model, then copy
+  std::vector<Slot> placed_;             // by placement
+  std::vector<int> owner_;               // by geom: placement, table_body, spatula_body or no_body
+  int gripper_ = -1, spatula_ = -1;      // mocap ids
+  int spatula_geom_ = -1;
+  int held_ = no_body;
+  mutable bool stale_ = false;           // positions of geoms are one step behind the state
+};
+
+}  // namespace lgabench

@@ -1,0 +1,106 @@
+#include <tabletop/objects.hpp>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <map>
+
+#include <lgabench/core/error.hpp>
+#include <tabletop/shapes.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr double density_kg_m3 = 400;  // light wood
+constexpr double least_mass_kg = 0.02, greatest_mass_kg = 0.3;  // thin and large types stay easy for the solvers
+
+std::vector<Polygon> outline_of(const Drawing& drawing) {
+  if (!drawing.outline.empty()) return drawing.outline;
+  std::vector<Polygon> outline;
+  for (const auto& part : drawing.parts) outline.push_back(part.bottom);
+  return outline;
+}
+
+Vec2 bounding_box_centre(const std::vector<Polygon>& polygons) {
+  Vec2 low = polygons[0][0], high = low;
+  for (const Polygon& polygon : polygons)
+    for (const Vec2 p : polygon) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+  return 0.5 * (low + high);
+}
+
+void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size()), n = static_cast<std::uint32_t>(bottom.size());
+  for (const Vec2 p : bottom) mesh.vertices_m.push_back({p.x, p.y, z_low});
+  for (const Vec2 p : top) mesh.vertices_m.push_back({p.x, p.y, z_high});
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    mesh.triangles.push_back({first, first + i + 1, first + i});
+    mesh.triangles.push_back({first + n, first + n + i, first + n + i + 1});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    mesh.triangles.push_back({first + i, first + j, first + n + j});
+    mesh.triangles.push_back({first + i, first + n + j, first + n + i});
+  }
+}
+
+ObjectModel make(const Shape& shape) {
+  const Drawing drawing = shape.draw();
+  const Vec2 centre = bounding_box_centre(outline_of(drawing));
+  // The drawing's up is the body's -x, its right the body's +y: a quarter turn.
+  const auto to_body = [centre](Vec2 p) { return Vec2{centre.y - p.y, p.x - centre.x}; };
+  const auto all_to_body = [&](Polygon polygon) {
+    std::transform(polygon.begin(), polygon.end(), polygon.begin(), to_body);
+    return polygon;
+  };
+
+  ObjectModel model;
+  model.type = model.body.name = shape.type;
+  model.grasp_m = to_body(drawing.grasp);
+  double volume_m3 = 0;
+  for (const auto& part : drawing.parts) {
+    const Polygon bottom = all_to_body(part.bottom), top = all_to_body(part.top);
+    ConvexPiece piece;
+    for (const Vec2 p : bottom) piece.corners_m.push_back({p.x, p.y, part.z_low});
+    for (const Vec2 p : top) piece.corners_m.push_back({p.x, p.y, part.z_high});
+    model.body.pieces.push_back(std::move(piece));
+    append(model.mesh, bottom, top, part.z_low, part.z_high);
+    model.height_m = std::max(model.height_m, part.z_high);
+    volume_m3 += (area(bottom) + area(top)) / 2 * (part.z_high - part.z_low);
+  }
+  model.body.mass_kg = std::clamp(density_kg_m3 * volume_m3, least_mass_kg, greatest_mass_kg);
+  for (const Polygon& polygon : outline_of(drawing)) model.outline.push_back(all_to_body(polygon));
+  for (const Polygon& polygon : model.outline)
+    for (const Vec2 p : polygon) model.radius_m = std::max(model.radius_m, norm(p));
+  return model;
+}
+
+}  // namespace
+
+const ObjectModel& object_model(const std::string& type) {
+  static const std::map<std::string, ObjectModel> models = [] {
+    std::map<std::string, ObjectModel> all;
+    for (const Shape& shape : shapes()) all.emplace(shape.type, make(shape));
+    return all;
+  }();
+  const auto found = models.find(type);
+  if (found == models.end())
+    throw InputError(fmt::format("object type \"{}\": expected one of: {}", type, fmt::join(object_types(), ", ")));
+  return found->second;
+}
+
+const std::vector<std::string>& object_types() {
+  static const std::vector<std::string> types = [] {
+    std::vector<std::string> all;
+    for (const Shape& shape : shapes()) all.push_back(shape.type);
+    return all;
+  }();
+  return types;
+}
+
+std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad) {
+  return placed(model.outline, position_m, yaw_rad);
+}
+
+}  // namespace lgabench::tabletop

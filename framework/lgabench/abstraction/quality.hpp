@@ -1,0 +1,12 @@
+// How well a Selection matches the true distribution.
+#pragma once
+#include <lgabench/core/selection.hpp>
+
+namespace lgabench {
+
+/// {"target": {"object_types": Q, "textures": Q}, "avoid": likewise, null where neither side avoids anything} with
+/// Q = {"precision", "recall", "size", "true_size"}; a precision or recall over an empty set is null.
+/// Null for a Selection of provenance none.
+Json quality(const Selection& selection, const Selection& truth);
+
+}  // namespace lgabench

@@ -1,0 +1,46 @@
+#include <lgabench/abstraction/select_features.hpp>
+
+#include <fmt/format.h>
+
+namespace lgabench {
+namespace {
+
+using About = Question::About;
+using Group = Question::Group;
+
+SelectionCost difference(const SelectionCost& a, const SelectionCost& b) {
+  return {a.lm_queries - b.lm_queries, a.lm_tokens - b.lm_tokens, a.lm_seconds - b.lm_seconds,
+          a.human_seconds - b.human_seconds};
+}
+
+}  // namespace
+
+Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model) {
+  std::vector<Question> questions;
+  for (const About about : {About::target, About::avoid}) {
+    if (about == About::avoid && command.task != Task::sweep) continue;
+    for (const std::string& type : space.object_types) questions.push_back({about, Group::object_type, type});
+    for (const std::string& texture : space.textures) questions.push_back({about, Group::texture, texture});
+  }
+
+  const SelectionCost before = model.cost();
+  const std::vector<bool> answers = model.answer(command, space, questions);
+  if (answers.size() != questions.size())
+    throw MethodError(fmt::format("{}: expected {} answers, got {}", model.model(), questions.size(), answers.size()));
+
+  Selection selection;
+  if (command.task == Task::sweep) selection.avoid.emplace();
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!answers[i]) continue;
+    const Question& q = questions[i];
+    FeatureSet& set = q.about == About::target ? selection.target : *selection.avoid;
+    (q.group == Group::object_type ? set.object_types : set.textures).push_back(q.candidate);
+  }
+  selection.provenance = model.provenance();
+  selection.source = model.model();
+  selection.asked_as = model.asked_as(command);
+  selection.cost = difference(model.cost(), before);
+  return selection;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,61 @@
+// A cell: the unit of work, failure and resuming. It trains one policy and plays every arm of its scenario.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/harness/suite.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+
+/// A method, or a row of the table that a method is measured against.
+struct Competitor {
+  std::string kind = "method";  // or "reference": constant_action, random_object, oracle
+  std::string id, version;
+  Json options = Json::object();  // every option, defaults included
+
+  bool is_reference() const { return kind == "reference"; }
+};
+
+/// All that a cell's results depend on, besides the programs themselves.
+struct Cell {
+  std::string suite, environment, layout, engine;
+  Json scenario;  // the scenario file, whole
+  Competitor method;
+  int demonstrations = 0;
+  std::uint64_t training_seed = 0, scene_seed = 0;
+  int episodes = 0;
+  std::string answers;  // recorded, gpt4 or claude
+  Json data;            // sha256 of the shipped data that the cell reads
+  bool smoke = false;
+
+  std::string scenario_id() const { return scenario.at("id"); }
+  /// For people: "lga heart cells n=20 seed=0".
+  std::string title() const;
+};
+
+Json to_json(const Cell& cell);
+/// @throws InputError with `file` and place.
+Cell read_cell(const Json& json, const std::string& file);
+
+/// First 16 digits of the SHA-256 of the canonical JSON: names the cell's directory.
+std::string key(const Cell& cell);
+
+/// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings.
+Json data_hashes(const Scenario& scenario);
+
+/// What is not on the grid.
+struct Variation {
+  std::string answers = "recorded";
+  Json options = Json::object();  // method id -> option -> value, over the plugin's defaults
+  bool references = true;         // add the reference rows
+};
+
+/// Every cell of the grid: scenario by scenario, reference rows after the methods.
+/// @throws PluginError for an unknown method or engine, InputError for an unknown option.
+std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
+
+}  // namespace lgabench

@@ -1,0 +1,117 @@
+#include <lgabench/harness/suite.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int most = 1'000'000;
+constexpr long long largest_seed = std::numeric_limits<std::int64_t>::max();
+
+// A list that names nothing twice, with each element read and checked by `read`.
+template <class T, class Read>
+std::vector<T> distinct(const JsonReader& list, Read read) {
+  std::vector<T> all;
+  for (const JsonReader& element : list.elements()) {
+    const T value = read(element);
+    if (std::find(all.begin(), all.end(), value) != all.end()) element.fail("each value once");
+    all.push_back(value);
+  }
+  if (all.empty()) list.fail("at least one value");
+  return all;
+}
+
+std::vector<std::string> names(const JsonReader& list, const std::vector<std::string>& known) {
+  return distinct<std::string>(list, [&](const JsonReader& element) {
+    const std::string name = element.string();
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      element.fail(fmt::format("one of {}", fmt::join(known, ", ")));
+    return name;
+  });
+}
+
+const std::vector<std::string> grid_members{"scenarios", "layouts",  "engines",    "methods", "demonstrations",
+                                            "seeds",     "episodes", "scene_seed", "smoke"};
+
+std::vector<std::string> suite_ids() {
+  std::vector<std::string> ids;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(data_directory() / "suites", error))
+    if (entry.path().extension() == ".json") ids.push_back(entry.path().stem().string());
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+}  // namespace
+
+Json to_json(const Grid& grid) {
+  return {{"scenarios", grid.scenarios}, {"layouts", grid.layouts},       {"engines", grid.engines},
+          {"methods", grid.methods},     {"seeds", grid.seeds},           {"demonstrations", grid.demonstrations},
+          {"episodes", grid.episodes},   {"scene_seed", grid.scene_seed}, {"smoke", grid.smoke}};
+}
+
+Grid apply(const JsonReader& overrides, Grid grid) {
+  overrides.only(grid_members);
+  if (overrides.has("scenarios")) grid.scenarios = names(overrides.at("scenarios"), scenario_ids());
+  if (overrides.has("layouts")) grid.layouts = names(overrides.at("layouts"), {"cells", "continuous", "released"});
+  if (overrides.has("engines")) grid.engines = names(overrides.at("engines"), {});
+  if (overrides.has("methods")) grid.methods = names(overrides.at("methods"), {});
+  if (overrides.has("demonstrations"))
+    grid.demonstrations = distinct<int>(overrides.at("demonstrations"),
+                                        [](const JsonReader& n) { return static_cast<int>(n.integer(1, most)); });
+  if (overrides.has("seeds"))
+    grid.seeds = distinct<std::uint64_t>(overrides.at("seeds"), [](const JsonReader& n) {
+      return static_cast<std::uint64_t>(n.integer(0, largest_seed));
+    });
+  if (overrides.has("episodes")) grid.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
+  if (overrides.has("scene_seed"))
+    grid.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
+  if (overrides.has("smoke")) grid.smoke = overrides.at("smoke").boolean();
+  return grid;
+}
+
+Suite load_suite(const std::string& id) {
+  const bool is_file = fs::path(id).extension() == ".json";
+  const auto known = suite_ids();
+  if (!is_file && std::find(known.begin(), known.end(), id) == known.end())
+    throw InputError(fmt::format("suite \"{}\": expected one of: {}, or a .json file", id, fmt::join(known, ", ")));
+  const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
+  const Json json = read_json(file);
+  const JsonReader reader(json, file.string());
+  std::vector<std::string> members = grid_members;
+  members.insert(members.end(), {"id", "note", "environment", "presets"});
+  reader.only(members);
+
+  Suite suite;
+  suite.file = file.string();
+  suite.id = reader.at("id").string();
+  if (suite.id != file.stem().string())
+    reader.at("id").fail(fmt::format("\"{}\", as the file is named", file.stem().string()));
+  suite.environment = reader.at("environment").string();
+  Json own = Json::object();  // the suite's own grid: all of it must be there
+  for (const std::string& member : grid_members)
+    if (member == "smoke" ? reader.has(member) : true) own[member] = reader.at(member).json();
+  suite.grid = apply(JsonReader(own, suite.file), Grid{});
+  suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
+  if (!suite.presets.is_object()) reader.at("presets").fail("an object");
+  for (const auto& preset : suite.presets.items()) preset_grid(suite, preset.key());
+  return suite;
+}
+
+Grid preset_grid(const Suite& suite, const std::string& preset) {
+  if (preset.empty()) return suite.grid;
+  if (!suite.presets.contains(preset)) {
+    std::vector<std::string> known;
+    for (const auto& item : suite.presets.items()) known.push_back(item.key());
+    throw InputError(fmt::format("preset \"{}\": {} has: {}", preset, suite.file, fmt::join(known, ", ")));
+  }
+  return apply(JsonReader(suite.presets[preset], suite.file, "/presets/" + preset), suite.grid);
+}
+
+}  // namespace lgabench

@@ -1,0 +1,43 @@
+// A suite: the scenarios, methods and seeds that make one table. Read without an engine or a plugin.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+/// What is crossed to make the cells of a run. As JSON the members have these names; a preset or the command line
+/// gives some of them and keeps the rest.
+struct Grid {
+  std::vector<std::string> scenarios, layouts, engines, methods;
+  std::vector<int> demonstrations;   // clean demonstrations a policy learns from
+  std::vector<std::uint64_t> seeds;  // training seeds
+  int episodes = 0;                  // test scenes of each arm
+  std::uint64_t scene_seed = 0;      // of the test scenes
+  bool smoke = false;                // stamped as not for the leaderboard
+};
+
+Json to_json(const Grid& grid);
+
+/// `base` with the members that `overrides` gives, each checked.
+/// @throws InputError for an unknown member, scenario or layout, a list that is empty or names something twice, a
+/// number out of range.
+Grid apply(const JsonReader& overrides, Grid base);
+
+struct Suite {
+  std::string id, environment;
+  Grid grid;
+  Json presets;      // name -> members of Grid
+  std::string file;  // for messages
+};
+
+/// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json. Every preset is
+/// checked. @throws InputError with file and place; for an unknown id it lists the known ones.
+Suite load_suite(const std::string& id);
+
+/// The grid of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
+Grid preset_grid(const Suite& suite, const std::string& preset);
+
+}  // namespace lgabench

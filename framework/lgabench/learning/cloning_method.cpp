@@ -1,0 +1,100 @@
+#include <lgabench/learning/cloning_method.hpp>
+
+#include <algorithm>
+#include <optional>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
+#include <lgabench/learning/training.hpp>
+
+namespace lgabench {
+namespace {
+
+using Picture = PolicyInputs::Picture;
+
+// Turns observations and instructions into the network's rows.
+class Featurizer {
+ public:
+  explicit Featurizer(PolicyInputs inputs) : inputs_(std::move(inputs)) {
+    if (inputs_.utterance) embeddings_.emplace();
+  }
+
+  NetworkShape shape(bool batch_norm) const {
+    NetworkShape shape;
+    for (const Picture picture : inputs_.pictures) shape.channels.push_back(picture == Picture::rgb ? 3 : 1);
+    shape.text = inputs_.utterance;
+    shape.batch_norm = batch_norm;
+    return shape;
+  }
+
+  void write(const Observation& observation, const Instruction& instruction, Samples& samples, int row) const {
+    for (std::size_t i = 0; i < inputs_.pictures.size(); ++i) {
+      const Picture picture = inputs_.pictures[i];
+      float* const out = samples.pictures[i].data() + row * (picture == Picture::rgb ? 3 : 1) * input_pixels;
+      if (picture == Picture::rgb)
+        shrink_rgb(observation.rgb, out);
+      else
+        shrink_mask(picture == Picture::mask ? goal_mask(observation, instruction.selection) : object_mask(observation),
+                    out);
+    }
+    if (inputs_.utterance) {
+      const std::vector<float>& embedding = embeddings_->of(instruction.utterance);
+      std::copy(embedding.begin(), embedding.end(), samples.text.begin() + row * text_size);
+    }
+  }
+
+ private:
+  PolicyInputs inputs_;
+  std::optional<SentenceEmbeddings> embeddings_;
+};
+
+class CloningPolicy : public Policy {
+ public:
+  CloningPolicy(Featurizer featurizer, const NetworkShape& shape, std::uint64_t seed)
+      : network(shape, seed), featurizer_(std::move(featurizer)), input_(shape, 1) {}
+
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    featurizer_.write(observation, instruction, input_, 0);
+    const std::vector<float> output = network.predict(input_);
+    ActionVector action;
+    std::copy_n(output.begin(), action.size(), action.begin());
+    return from_vector(action);
+  }
+
+  Network network;
+
+ private:
+  Featurizer featurizer_;
+  Samples input_;
+};
+
+}  // namespace
+
+std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
+  const JsonReader options(services.options, "options");
+  TrainingOptions training;
+  training.epochs = static_cast<int>(options.at("epochs").integer(1, 1'000'000));
+  training.batch_size = static_cast<int>(options.at("batch_size").integer(1, 1'000'000));
+  training.learning_rate = options.at("learning_rate").number();
+  training.loss = options.at("loss").string() == "squared" ? Loss::squared : Loss::norm;
+
+  const Featurizer featurizer(inputs(services.options));
+  const NetworkShape shape = featurizer.shape(options.at("batch_norm").boolean());
+  int rows = 0;
+  for (const Demonstration& demonstration : demonstrations) rows += static_cast<int>(demonstration.steps.size());
+  Samples samples(shape, rows);
+  int row = 0;
+  for (const Demonstration& demonstration : demonstrations)
+    for (const Step& step : demonstration.steps) {
+      featurizer.write(step.observation, demonstration.instruction, samples, row);
+      const ActionVector label = to_vector(step.label);
+      std::copy(label.begin(), label.end(), samples.labels.begin() + row * action_size);
+      ++row;
+    }
+
+  auto policy = std::make_unique<CloningPolicy>(featurizer, shape, services.seed);
+  train(policy->network, shape, samples, training, services.seed, services.log);
+  return policy;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,48 @@
+#include <lgabench/learning/inputs.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int rows = Observation::rows, columns = Observation::columns;
+
+void expect_size(const char* what, std::size_t size, std::size_t expected) {
+  if (size != expected) throw InputError(fmt::format("observation: {}: expected {} values, got {}", what, expected, size));
+}
+
+}  // namespace
+
+void shrink_rgb(const std::vector<std::uint8_t>& rgb, float* out) {
+  expect_size("rgb", rgb.size(), std::size_t{rows} * columns * 3);
+  // In floating point: OpenCV would round the means of bytes to bytes.
+  cv::Mat native, small;
+  cv::Mat(rows, columns, CV_8UC3, const_cast<std::uint8_t*>(rgb.data())).convertTo(native, CV_32FC3, 1 / 255.0);
+  cv::resize(native, small, cv::Size(input_columns, input_rows), 0, 0, cv::INTER_AREA);
+  cv::Mat channels[3];
+  for (int c = 0; c < 3; ++c) channels[c] = cv::Mat(input_rows, input_columns, CV_32FC1, out + c * input_pixels);
+  cv::split(small, channels);
+}
+
+void shrink_mask(const std::vector<std::uint8_t>& mask, float* out) {
+  expect_size("mask", mask.size(), std::size_t{rows} * columns);
+  const auto first = [](int small, int native, int count) { return native * small / count; };
+  const auto last = [](int small, int native, int count) { return (native * (small + 1) + count - 1) / count; };
+  for (int r = 0; r < input_rows; ++r)
+    for (int c = 0; c < input_columns; ++c) {
+      const int left = first(c, columns, input_columns), right = last(c, columns, input_columns);
+      bool any = false;
+      for (int y = first(r, rows, input_rows); y < last(r, rows, input_rows); ++y) {
+        const auto row = mask.begin() + y * columns;
+        any = any || std::any_of(row + left, row + right, [](std::uint8_t value) { return value != 0; });
+      }
+      *out++ = any ? 1.0f : 0.0f;
+    }
+}
+
+}  // namespace lgabench

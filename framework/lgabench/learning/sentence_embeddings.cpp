@@ -1,0 +1,45 @@
+#include <lgabench/learning/sentence_embeddings.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/learning/network.hpp>
+
+namespace lgabench {
+
+SentenceEmbeddings::SentenceEmbeddings() {
+  const fs::path directory = data_directory() / "embeddings";
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  if (error) throw InputError(fmt::format("{}: cannot be read: {}", directory.string(), error.message()));
+  std::sort(files.begin(), files.end());
+
+  for (const fs::path& file : files) {
+    const Json document = read_json(file);
+    const JsonReader embeddings = JsonReader(document, file.string()).at("embeddings");
+    for (const auto& item : embeddings.json().items()) {
+      std::vector<float> vector;
+      for (const JsonReader& number : embeddings.at(item.key()).elements())
+        vector.push_back(static_cast<float>(number.number()));
+      if (vector.size() != text_size)
+        embeddings.at(item.key()).fail(fmt::format("{} numbers ({} were read)", text_size, vector.size()));
+      embeddings_.emplace(item.key(), std::move(vector));
+    }
+  }
+}
+
+const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) const {
+  const auto found = embeddings_.find(sentence);
+  if (found == embeddings_.end())
+    throw InputError(fmt::format("\"{}\": expected a sentence with a committed embedding; add it with "
+                                 "framework/lgabench/learning/embeddings/make_embeddings.py",
+                                 sentence));
+  return found->second;
+}
+
+}  // namespace lgabench

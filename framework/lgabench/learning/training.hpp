@@ -1,0 +1,27 @@
+// Training of a policy network (PROTOCOL, section 5).
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/core/method.hpp>
+#include <lgabench/learning/network.hpp>
+
+namespace lgabench {
+
+struct TrainingOptions {
+  int epochs = 750;
+  int batch_size = 10;
+  double learning_rate = 1e-3;
+  Loss loss = Loss::norm;
+};
+
+/// The order in which pass number `epoch` visits the samples: a function of the seed alone.
+std::vector<int> batch_order(std::uint64_t seed, int epoch, int samples);
+
+/// `epochs` passes of floor(rows / batch_size) shuffled batches, or of one batch of all rows where there are fewer;
+/// Adam; no early stopping: the network keeps its last weights. Logs every tenth pass and the last.
+/// @throws MethodError if there are no samples or the loss is not finite.
+void train(Network& network, const NetworkShape& shape, const Samples& samples, const TrainingOptions& options,
+           std::uint64_t seed, TrainingLog& log);
+
+}  // namespace lgabench

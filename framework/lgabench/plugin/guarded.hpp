@@ -1,0 +1,41 @@
+// Every call into a plugin goes through guarded().
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/flush_denormals.hpp>
+
+namespace lgabench {
+
+/// The exception being handled, as one line: the first of what(), or the name of its type if it has none.
+std::string current_exception_text();
+
+/// Sets flush-to-zero again on the way out if a plugin's code cleared it: training would be 20 times slower unnoticed.
+struct FlushDenormalsAgain {
+  FlushDenormalsAgain() = default;
+  FlushDenormalsAgain(const FlushDenormalsAgain&) = delete;
+  FlushDenormalsAgain& operator=(const FlushDenormalsAgain&) = delete;
+  ~FlushDenormalsAgain() {
+    if (!denormals_flushed()) flush_denormals();
+  }
+};
+
+/// Returns call(). Whatever it throws becomes a Fault that reads "plugin ID: ..."; only an InputError stays one, since
+/// then an option or a file is to be corrected, not the plugin. Use the default for methods and their policies (so a
+/// method cannot pass its failure off as the engine's), guarded<EngineError> for engines.
+template <class Fault = MethodError, class Call>
+decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
+  const FlushDenormalsAgain on_every_way_out;
+  const auto named = [plugin_id] { return "plugin " + std::string(plugin_id) + ": " + current_exception_text(); };
+  try {
+    return std::forward<Call>(call)();
+  } catch (const InputError&) {
+    throw InputError(named());
+  } catch (...) {
+    throw Fault(named());
+  }
+}
+
+}  // namespace lgabench

@@ -1,0 +1,61 @@
+// Finding plugins by their bytes, and loading those that fit. One thread.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/method.hpp>
+#include <lgabench/core/physics_world.hpp>
+
+namespace lgabench {
+
+namespace fs = std::filesystem;
+
+/// What a plugin's descriptor says, checked: it fits this program as far as bytes can tell.
+struct PluginInfo {
+  fs::path file;
+  std::string kind, id, version, summary, fingerprint;
+  Json options;        // {name: {"default", "help", "source", "values"?}}
+  std::string sha256;  // of the file
+};
+
+/// Reads the file's bytes and runs nothing of it. @throws PluginError naming the file, the cause and, for a mismatch,
+/// both sides.
+PluginInfo read_plugin(const fs::path& file);
+
+/// A file that is no plugin for this program, and why.
+struct Refusal {
+  fs::path file;
+  std::string reason;
+};
+
+struct Catalogue {
+  std::vector<PluginInfo> plugins;
+  std::vector<Refusal> refused;
+
+  /// `kind` is "method" or "engine". @throws PluginError that lists the known ids and repeats the refusal of a file
+  /// of that name.
+  const PluginInfo& find(const std::string& kind, const std::string& id) const;
+};
+
+/// Shipped plugins, $LGABENCH_PLUGIN_PATH (colon-separated), then `extra` (from the command line).
+std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra = {});
+
+/// Reads each *.so of the directories, in their order and by name within each. What is refused does not stop the rest;
+/// of two with the same kind and id the later is refused.
+Catalogue scan_plugins(const std::vector<fs::path>& directories);
+
+/// Opens the plugin (for good: it is never closed) and makes one object of it.
+/// @throws PluginError if the file changed since it was read, cannot be opened (names the undefined symbol), or its
+/// factory throws or returns nothing.
+std::unique_ptr<Method> load_method(const PluginInfo& plugin);
+std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
+
+/// Every option of the plugin: those of `overrides` (an object), defaults for the rest. A whole number given for an
+/// option with a fractional default becomes fractional.
+/// @throws InputError for an unknown option, a value of another type than the default's or not among its values.
+Json resolve_options(const PluginInfo& plugin, const Json& overrides);
+
+}  // namespace lgabench

@@ -1,0 +1,36 @@
+// All that a plugin's author includes. Write a class, name it in one macro at file scope, outside any namespace:
+//
+//   #include <lgabench/plugin/plugin.hpp>
+//   class Mine : public lgabench::Method { ... };
+//   LGABENCH_METHOD("mine", "0.1", "what it does, in a line", Mine, R"({
+//     "epochs": {"default": 750, "help": "passes over the demonstrations", "source": "paper, appendix"}})")
+//
+// An option's default fixes its type (text, number, whole number, boolean); "values", if given, lists all it may be.
+#pragma once
+#include <type_traits>
+
+#include <lgabench/core/method.hpp>
+#include <lgabench/core/physics_world.hpp>
+#include <lgabench/plugin/descriptor.hpp>
+#include <lgabench/plugin/fingerprint.hpp>
+
+/// A method: `Class` derives from lgabench::Method and has a default constructor. Once in a library.
+#define LGABENCH_METHOD(id, version, summary, Class, options_json) \
+  LGABENCH_PLUGIN_("method", id, version, summary, ::lgabench::Method, Class, options_json)
+
+/// An engine: `Class` derives from lgabench::PhysicsWorld and has a default constructor. Once in a library.
+#define LGABENCH_ENGINE(id, version, summary, Class) \
+  LGABENCH_PLUGIN_("engine", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
+
+// The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
+#define LGABENCH_PLUGIN_(kind, id, version, summary, Interface, Class, options_json)                                 \
+  static_assert(std::is_base_of<Interface, Class>::value, #Class " must derive from " #Interface);                  \
+  namespace {                                                                                                        \
+  [[gnu::section(".lgabench"), gnu::used]] constexpr ::lgabench::PluginDescriptor lgabench_plugin_descriptor =       \
+      ::lgabench::describe_plugin(kind, id, version, summary, LGABENCH_FINGERPRINT, options_json);                   \
+  void* lgabench_plugin_create() { return static_cast<Interface*>(new Class); }                                      \
+  }                                                                                                                  \
+  extern "C" {                                                                                                       \
+  [[gnu::visibility("default"), gnu::used]] extern const ::lgabench::PluginEntry lga_plugin_v1;                      \
+  const ::lgabench::PluginEntry lga_plugin_v1{&lgabench_plugin_descriptor, &lgabench_plugin_create};                 \
+  }

@@ -1,0 +1,83 @@
+"""Checks the architecture on the sources' includes and on the built files' DT_NEEDED entries.
+
+Usage: structure_test.py SOURCE_DIR BUILD_DIR
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+SOURCE, BUILD = (pathlib.Path(p) for p in sys.argv[1:3])
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
+
+
+def includes(folder):
+    """(file, included path) for every include line below the folder."""
+    for file in sorted((SOURCE / folder).rglob("*.[ch]pp")):
+        for path in INCLUDE.findall(file.read_text()):
+            yield file.relative_to(SOURCE), path
+
+
+def needed(file):
+    out = subprocess.run(["readelf", "-d", file], check=True, capture_output=True, text=True).stdout
+    return re.findall(r"\(NEEDED\).*\[(.*)\]", out)
+
+
+class IncludeGraph(unittest.TestCase):
+    def forbid(self, folder, pattern, but=()):
+        found = [(str(f), p) for f, p in includes(folder) if re.match(pattern, p) and f.name not in but]
+        self.assertEqual(found, [], f"{folder} must not include {pattern}")
+
+    def test_folders_were_found(self):
+        for folder in ("core", "plugin", "abstraction", "learning", "harness", "report", "cli"):
+            self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
+
+    def test_core_knows_nothing_above_it(self):
+        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|tabletop/|torch|ATen|opencv|boost|mujoco")
+
+    def test_abstraction_knows_only_core(self):
+        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|tabletop/|torch|ATen|opencv|mujoco")
+
+    def test_learning_knows_core_and_abstraction(self):
+        self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|tabletop/|mujoco")
+
+    def test_torch_only_in_learning_sources(self):
+        for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
+                       "framework/lgabench/harness", "framework/lgabench/report", "framework/lgabench/cli", "envs"):
+            self.forbid(folder, r"torch|ATen|c10")
+        headers = [(str(f), p) for f, p in includes("framework/lgabench/learning")
+                   if f.suffix == ".hpp" and re.match(r"torch/torch\.h", p)]
+        self.assertEqual(headers, [], "torch.h takes 13 s a file: sources only")
+
+    def test_engines_stay_in_their_plugins(self):
+        for folder in ("framework", "envs/tabletop", "plugins", "baselines"):
+            self.forbid(folder, r"mujoco/|bullet/|btBullet")
+
+    def test_harness_reaches_the_tabletop_in_one_place(self):
+        self.forbid("framework/lgabench/harness", r"tabletop/", but=("environments.cpp",))
+
+
+class Needed(unittest.TestCase):
+    def forbid(self, file, pattern):
+        self.assertEqual([n for n in needed(BUILD / file) if re.search(pattern, n)], [], f"{file} must not need {pattern}")
+
+    def test_programs_do_not_link_torch(self):
+        for program in ("bin/lgabench", "bin/lgabench-worker"):
+            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|liblgabench_learning")
+
+    def test_command_line_loads_no_engine_and_no_pictures(self):
+        self.forbid("bin/lgabench", r"tabletop|embree|opencv|hdf5")
+
+    def test_core_is_light(self):
+        self.forbid("lib/liblgabench_core.so", r"torch|c10|opencv|embree|hdf5")
+
+    def test_plugins_take_the_framework_as_a_shared_library(self):
+        plugins = sorted((BUILD / "lib/lgabench/plugins").glob("*.so"))
+        self.assertGreaterEqual(len(plugins), 3)
+        for plugin in plugins:
+            self.assertIn("liblgabench_core.so", needed(plugin), plugin.name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
