@@ -1,7 +1,7 @@
 #include <tabletop/objects.hpp>
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 #include <map>
 
 #include <lgabench/core/error.hpp>
@@ -10,7 +10,7 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double density_kg_m3 = 400;  // light wood
+constexpr double density_kg_m3 = 400;                           // light wood
 constexpr double least_mass_kg = 0.02, greatest_mass_kg = 0.3;  // thin and large types stay easy for the solvers
 
 std::vector<Polygon> outline_of(const Drawing& drawing) {
@@ -20,16 +20,20 @@ std::vector<Polygon> outline_of(const Drawing& drawing) {
   return outline;
 }
 
-Vec2 bounding_box_centre(const std::vector<Polygon>& polygons) {
-  Vec2 low = polygons[0][0], high = low;
+struct Box {
+  Vec2 low, high;
+};
+Box bounding_box(const std::vector<Polygon>& polygons) {
+  Box box{polygons[0][0], polygons[0][0]};
   for (const Polygon& polygon : polygons)
     for (const Vec2 p : polygon) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+      box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y)};
+      box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
     }
-  return 0.5 * (low + high);
+  return box;
 }
 
+// A convex piece: bottom and top, then one side an edge.
 void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size()), n = static_cast<std::uint32_t>(bottom.size());
   for (const Vec2 p : bottom) mesh.vertices_m.push_back({p.x, p.y, z_low});
@@ -47,7 +51,8 @@ void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low,
 
 ObjectModel make(const Shape& shape) {
   const Drawing drawing = shape.draw();
-  const Vec2 centre = bounding_box_centre(outline_of(drawing));
+  const Box box = bounding_box(outline_of(drawing));
+  const Vec2 centre = 0.5 * (box.low + box.high), size = box.high - box.low;
   // The drawing's up is the body's -x, its right the body's +y: a quarter turn.
   const auto to_body = [centre](Vec2 p) { return Vec2{centre.y - p.y, p.x - centre.x}; };
   const auto all_to_body = [&](Polygon polygon) {
@@ -57,6 +62,7 @@ ObjectModel make(const Shape& shape) {
 
   ObjectModel model;
   model.type = model.body.name = shape.type;
+  model.size_m = {size.y, size.x};
   model.grasp_m = to_body(drawing.grasp);
   double volume_m3 = 0;
   for (const auto& part : drawing.parts) {

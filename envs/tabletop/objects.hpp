@@ -21,12 +21,13 @@ struct Mesh {
 /// the long axis is along y at yaw 0.
 struct ObjectModel {
   std::string type;
-  BodyModel body;                  // convex pieces and mass
+  BodyModel body;  // convex pieces and mass
   Mesh mesh;
-  std::vector<Polygon> outline;    // convex polygons whose union covers the shape seen from above
+  std::vector<Polygon> outline;  // convex polygons whose union covers the shape seen from above
+  Vec2 size_m;                   // of the bounding box at yaw 0, which is centred
   double height_m = 0;
-  double radius_m = 0;             // of the disc about the centre that covers the outline
-  Vec2 grasp_m;                    // where suction takes hold: on material, at least .01 from an edge where the type allows
+  double radius_m = 0;  // of the disc about the centre that covers the outline
+  Vec2 grasp_m;         // where suction takes hold: on material, at least .01 from an edge where the type allows
 };
 
 /// The model of an object type; lives as long as the program. @throws InputError for an unknown type.

@@ -109,9 +109,9 @@ Drawing pallet() {
 }
 
 Drawing cross() {
-  return extruded({rectangle(-.064, -.022, .064, .022), rectangle(-.022, .022, .022, .064),
-                   rectangle(-.022, -.064, .022, -.022)},
-                  thick);
+  return extruded(
+      {rectangle(-.064, -.022, .064, .022), rectangle(-.022, .022, .022, .064), rectangle(-.022, -.064, .022, -.022)},
+      thick);
 }
 
 Drawing diamond() { return extruded({{{.048, 0}, {0, .064}, {-.048, 0}, {0, -.064}}}, thick); }
@@ -198,7 +198,10 @@ const std::vector<Shape>& shapes() {
       {"cross", cross},
       {"diamond", diamond},
       {"flower", flower},
-      {"frame", [] { return extruded(square_band(.225, stroke), .03, {0, -.0975}); }},
+      {"frame",
+       [] {
+         return extruded(square_band(.225, stroke), .03, {0, -.0975});
+       }},
       {"heart", heart},
       {"hexagon", [] { return extruded({regular(6, .072, 0)}, thick); }},
       {"letter A", letter_a},
@@ -217,7 +220,10 @@ const std::vector<Shape>& shapes() {
       {"shorter block", [] { return block(.07, .03); }},
       {"small block", [] { return block(.03, .03); }},
       // A painted zone's outline: side .2, border .04, as thin as the line.
-      {"square", [] { return extruded(square_band(.2, .04), .001, {0, -.08}); }},
+      {"square",
+       [] {
+         return extruded(square_band(.2, .04), .001, {0, -.08});
+       }},
       {"star", star},
       {"three-sided rectangle", three_sided_rectangle},
       {"triangle", [] { return extruded({regular(3, .128 / std::sqrt(3.0), 90)}, thick); }},

@@ -1,0 +1,230 @@
+// Random numbers, JSON, scenarios, actions: values that everything else stands on.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+
+#include <lgabench/core/action.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+namespace {
+
+std::string complaint(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "said: " << (text)
+
+// Known answers of Random123's philox4x32_R 10.
+TEST(Random, PhiloxKnownAnswers) {
+  using Block = std::array<std::uint32_t, 4>;
+  constexpr std::uint32_t ones = 0xffffffff;
+  EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}), (Block{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  EXPECT_EQ(philox4x32({ones, ones, ones, ones}, {ones, ones}),
+            (Block{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(Random, StreamsAreNamed) {
+  RandomStream a("a"), again("a"), b("b");
+  std::vector<std::uint32_t> first, second, other;
+  for (int i = 0; i < 9; ++i) {
+    first.push_back(a.next());
+    second.push_back(again.next());
+    other.push_back(b.next());
+  }
+  EXPECT_EQ(first, second);
+  EXPECT_NE(first, other);
+  EXPECT_EQ(std::set<std::uint32_t>(first.begin(), first.end()).size(), 9u);  // blocks advance
+}
+
+TEST(Random, BelowIsUniform) {
+  RandomStream random("below");
+  std::array<int, 7> count{};
+  constexpr int n = 70000;
+  for (int i = 0; i < n; ++i) ++count.at(random.below(7));
+  double chi2 = 0;
+  for (const int c : count) chi2 += (c - n / 7.0) * (c - n / 7.0) / (n / 7.0);
+  EXPECT_LT(chi2, 22.5);  // 6 degrees of freedom, p = .001
+}
+
+TEST(Random, UniformAndGaussianMoments) {
+  RandomStream random("moments");
+  double u = 0, g = 0, g2 = 0, g4 = 0;
+  constexpr int n = 200000;
+  for (int i = 0; i < n; ++i) {
+    const double x = random.uniform(), z = random.gaussian();
+    ASSERT_TRUE(x >= 0 && x < 1);
+    u += x / n, g += z / n, g2 += z * z / n, g4 += z * z * z * z / n;
+  }
+  EXPECT_NEAR(u, .5, .003);
+  EXPECT_NEAR(g, 0, .01);
+  EXPECT_NEAR(g2, 1, .015);
+  EXPECT_NEAR(g4, 3, .1);
+}
+
+TEST(Random, PermutationsAreAllAndEvenlyFrequent) {
+  RandomStream random("permutation");
+  std::map<std::vector<int>, int> count;
+  for (int i = 0; i < 24000; ++i) ++count[random.permutation(4)];
+  ASSERT_EQ(count.size(), 24u);
+  for (const auto& [order, c] : count) EXPECT_NEAR(c, 1000, 150);
+}
+
+TEST(Hash, NeverChanges) {
+  EXPECT_EQ(hex(hash64("")), "f52a15e9a9b5e89b");
+  EXPECT_EQ(hex(hash64("heart")), "5a9382ed8c3c0810");
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(JsonReader, NamesFileAndPlace) {
+  const Json json = Json::parse(R"({"a": {"b": [1, "two", 3.5]}})");
+  const JsonReader reader(json, "suite.json");
+  const auto elements = reader.at("a").at("b").elements();
+  EXPECT_EQ(elements[0].integer(0, 5), 1);
+  const std::string wrong = complaint([&] { elements[1].integer(0, 5); });
+  EXPECT_SAYS(wrong, "suite.json: /a/b/1: expected a whole number from 0 to 5, got \"two\"");
+  EXPECT_SAYS(complaint([&] { elements[0].integer(2, 5); }), "from 2 to 5, got 1");
+  EXPECT_SAYS(complaint([&] { elements[2].integer(0, 5); }), "got 3.5");
+  EXPECT_SAYS(complaint([&] { reader.at("z"); }), "suite.json: /: expected a member \"z\"");
+  EXPECT_SAYS(complaint([&] { reader.at("a").only({"c"}); }), "suite.json: /a: unknown member \"b\"");
+  EXPECT_SAYS(complaint([&] { reader.at("a").string(); }), "expected a string");
+  EXPECT_SAYS(complaint([&] { reader.elements(); }), "expected an array");
+}
+
+TEST(JsonReader, MalformedFileIsNamedWithItsLine) {
+  const fs::path file = fs::path(testing::TempDir()) / "lgabench_malformed.json";
+  write_file(file, "{\n \"a\": 1,\n oops\n}\n");
+  const std::string said = complaint([&] { read_json(file); });
+  EXPECT_SAYS(said, file.string() + ": line 3");
+  fs::remove(file);
+  EXPECT_SAYS(complaint([&] { read_json(file); }), file.string() + ": cannot be read");
+}
+
+Json heart() { return load_scenario("heart").json; }
+
+std::string refusal(const Json& json) {
+  return complaint([&] { read_scenario(json, "mine.json"); });
+}
+
+TEST(Scenario, NineOfPickAndPlace) {
+  int pick_and_place = 0;
+  for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).command.task == Task::pick_and_place;
+  EXPECT_EQ(pick_and_place, 9);
+  const Scenario s = load_scenario("heart");
+  EXPECT_EQ(s.truth.target.object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(s.truth.target.textures.size(), 83u);  // ALL
+  EXPECT_EQ(s.truth.provenance, Provenance::truth);
+}
+
+TEST(Scenario, WarmColoursAreNeverDistractors) {
+  const Scenario s = load_scenario("consonant_with_a_warm_color");
+  ASSERT_TRUE(s.never_distractor);
+  EXPECT_EQ(s.never_distractor->object_types, s.space.object_types);
+  for (const std::string& texture : s.space.textures) {
+    bool warm = false;
+    for (const char* word : {"red", "yellow", "orange", "pink"}) warm = warm || texture.find(word) != std::string::npos;
+    EXPECT_EQ(s.never_distractor->contains("bowl", texture), warm) << texture;
+  }
+}
+
+TEST(Scenario, RefusesBadInput) {
+  Json json = heart();
+  json["colour"] = "red";
+  EXPECT_SAYS(refusal(json), "mine.json: /: unknown member \"colour\"");
+  json = heart();
+  json["truth"]["target"]["textures"] = {"red", "reddish"};
+  EXPECT_SAYS(refusal(json),
+              "mine.json: /truth/target/textures/1: expected a name of the feature space, got \"reddish\"");
+  json["truth"]["target"]["textures"] = {"red", "red"};
+  EXPECT_SAYS(refusal(json), "expected each name once");
+  json = heart();
+  json["task"] = "juggle";
+  EXPECT_SAYS(refusal(json), "mine.json: /task: expected pick_and_place, rotate or sweep, got \"juggle\"");
+  json = heart();
+  json["tests"] = Json::array();
+  EXPECT_SAYS(refusal(json), "mine.json: /tests: expected at least one arm");
+  json = heart();
+  json.erase("utterance");
+  EXPECT_SAYS(refusal(json), "expected a member \"utterance\"");
+  json = heart();
+  json["truth"]["avoid"] = json["truth"]["target"];
+  EXPECT_SAYS(refusal(json), "mine.json: /truth: expected \"avoid\" for sweep");
+  EXPECT_SAYS(complaint([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
+}
+
+TEST(Action, VectorHasOneSignOfEachQuaternion) {
+  const Action action{{{.3, -.2}, {0, 0, .6, -.8}}, {{.5, .3}, {0, 0, 0, 1}}};
+  const ActionVector v = to_vector(action);
+  EXPECT_EQ(v, (ActionVector{.3f, -.2f, 0, 0, -.6f, .8f, .5f, .3f, 0, 0, 0, 1}));
+  EXPECT_EQ(to_vector(from_vector(v)), v);
+}
+
+TEST(Action, ExecutableClipsAndNormalises) {
+  const Action done = executable({{{9, -9}, {0, 0, 3, 4}}, {{.5, .1}, {0, 0, 0, -2}}});
+  EXPECT_EQ(done.pose0.position_m.x, .75);
+  EXPECT_EQ(done.pose0.position_m.y, -.5);
+  EXPECT_DOUBLE_EQ(done.pose0.rotation.z, .6);
+  EXPECT_DOUBLE_EQ(done.pose0.rotation.w, .8);
+  EXPECT_EQ(done.pose1.position_m.x, .5);
+  EXPECT_DOUBLE_EQ(done.pose1.rotation.w, -1);
+}
+
+TEST(Action, RefusesWhatCannotBeCarriedOut) {
+  const Action good{{{.5, 0}, {0, 0, 0, 1}}, {{.5, .3}, {0, 0, 0, 1}}};
+  EXPECT_NO_THROW(executable(good));
+  Action bad = good;
+  bad.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(executable(bad), MethodError);
+  EXPECT_SAYS(complaint([&] { executable(bad); }), "pose1: expected finite numbers");
+  bad = good;
+  bad.pose0.rotation = {0, 0, 0, 1e-7};
+  EXPECT_THROW(executable(bad), MethodError);
+  bad.pose0.rotation.x = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(executable(bad), MethodError);
+}
+
+TEST(Scene, HashCoversEveryField) {
+  Scene scene{
+      "heart", "test", "cells", "test", Task::pick_and_place, 0, 1, 2, {{"heart", "red", Role::target, {.4, 0}, 0, 1}}};
+  std::set<std::uint64_t> hashes{scene.hash()};
+  const auto expect_new = [&](const std::function<void(Scene&)>& change) {
+    Scene changed = scene;
+    change(changed);
+    EXPECT_TRUE(hashes.insert(changed.hash()).second) << canonical(to_json(changed));
+  };
+  expect_new([](Scene& s) { s.scenario = "letter"; });
+  expect_new([](Scene& s) { s.arm = "hard"; });
+  expect_new([](Scene& s) { s.layout = "continuous"; });
+  expect_new([](Scene& s) { s.split = "dev"; });
+  expect_new([](Scene& s) { s.task = Task::rotate; });
+  expect_new([](Scene& s) { s.angle_rad = 1; });
+  expect_new([](Scene& s) { s.seed = 7; });
+  expect_new([](Scene& s) { s.index = 3; });
+  expect_new([](Scene& s) { s.objects[0].object_type = "star"; });
+  expect_new([](Scene& s) { s.objects[0].texture = "blue"; });
+  expect_new([](Scene& s) { s.objects[0].role = Role::goal; });
+  expect_new([](Scene& s) { s.objects[0].position_m.x += 1e-15; });
+  expect_new([](Scene& s) { s.objects[0].position_m.y += 1e-15; });
+  expect_new([](Scene& s) { s.objects[0].yaw_rad = 1e-15; });
+  expect_new([](Scene& s) { s.objects[0].instance_id = 2; });
+  expect_new([](Scene& s) { s.objects.push_back(s.objects[0]); });
+}
+
+}  // namespace
+}  // namespace lgabench

@@ -1,0 +1,1 @@
+lgabench_unit_test(objects_test SOURCES objects_test.cpp LINK lgabench_tabletop)

@@ -1,0 +1,1 @@
+lgabench_unit_test(sampler_test SOURCES sampler_test.cpp LINK lgabench_tabletop)

@@ -1,0 +1,294 @@
+// Scenes in their thousands: what PROTOCOL section 3 promises of every one, and of their frequencies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <lgabench/core/hash.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/sampler.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr int many = 10000;
+
+SceneRequest test_request(const std::string& layout, std::uint64_t seed = 0) {
+  return {{}, layout, "test", "test", seed};
+}
+
+SceneRequest train_request(const Selection& distribution, const std::string& layout, std::uint64_t seed = 0) {
+  return {distribution, layout, "train", "train", seed};
+}
+
+std::vector<const SceneObject*> of_role(const Scene& scene, Role role) {
+  std::vector<const SceneObject*> found;
+  for (const SceneObject& o : scene.objects)
+    if (o.role == role) found.push_back(&o);
+  return found;
+}
+
+std::vector<Polygon> outline(const SceneObject& o) {
+  return placed_outline(object_model(o.object_type), o.position_m, o.yaw_rad);
+}
+
+bool is_letter(const std::string& type) { return type.compare(0, 7, "letter ") == 0; }
+
+// The command, read with the scenario's true distribution: would this object be right beside that target?
+bool satisfies(const Scenario& s, const SceneObject& object, const SceneObject& target) {
+  if (!s.truth.target.contains(object.object_type, object.texture)) return false;
+  return !s.earliest_letter || object.object_type <= target.object_type;
+}
+
+void check_geometry(const Scene& scene) {
+  const SceneObject& goal = *scene.find(Role::goal);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto a = outline(scene.objects[i]);
+    for (const Polygon& polygon : a)
+      for (const Vec2 p : polygon) ASSERT_TRUE(Workspace::contains(p)) << canonical(to_json(scene));
+    for (std::size_t j = 0; j < i; ++j)
+      ASSERT_GE(distance(a, outline(scene.objects[j])), .0199) << canonical(to_json(scene));
+    ASSERT_TRUE(&scene.objects[i] == &goal || norm(scene.objects[i].position_m - goal.position_m) > .1);
+  }
+  // No distractor where the target is to be set down.
+  SceneObject delivered = *scene.find(Role::target);
+  delivered.position_m = goal.position_m;
+  for (const SceneObject* d : of_role(scene, Role::distractor))
+    ASSERT_GE(distance(outline(delivered), outline(*d)), .0199);
+}
+
+void check_roles(const Scenario& s, const Scene& scene) {
+  ASSERT_EQ(of_role(scene, Role::target).size(), 1u);
+  ASSERT_EQ(of_role(scene, Role::goal).size(), 1u);
+  const SceneObject &target = *scene.find(Role::target), &goal = *scene.find(Role::goal);
+  ASSERT_TRUE(s.truth.target.contains(target.object_type, target.texture));
+  ASSERT_EQ(goal.object_type, "pallet");
+  ASSERT_EQ(goal.texture, "wooden");
+  ASSERT_EQ(goal.yaw_rad, 0);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    ASSERT_EQ(scene.objects[i].instance_id, i + 1);
+    ASSERT_TRUE(&scene.objects[i] == &goal || scene.objects[i].object_type != "pallet");
+  }
+  for (const SceneObject* d : of_role(scene, Role::distractor)) {
+    ASSERT_FALSE(satisfies(s, *d, target)) << canonical(to_json(scene));
+    ASSERT_FALSE(scene.arm == "test" && s.never_distractor && s.never_distractor->contains(d->object_type, d->texture));
+  }
+}
+
+class Scenes : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  const Scenario scenario = load_scenario(std::get<0>(GetParam()));
+  const std::string layout = std::get<1>(GetParam());
+};
+
+TEST_P(Scenes, KeepTheProtocol) {
+  std::map<std::size_t, int> distractors;
+  std::set<std::uint64_t> hashes;
+  std::set<std::string> contents;
+  for (int i = 0; i < many; ++i) {
+    const Scene test = sample_scene(scenario, test_request(layout), i);
+    check_geometry(test);
+    check_roles(scenario, test);
+    if (HasFatalFailure()) return;
+    ++distractors[of_role(test, Role::distractor).size()];
+    if (i % 10 != 0) continue;
+    const Scene train = sample_scene(scenario, train_request(scenario.truth, layout), i);
+    check_geometry(train);
+    check_roles(scenario, train);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(of_role(train, Role::distractor).size(), 1u);
+    const Scene dev = sample_scene(scenario, {{}, layout, "dev", "test", 0}, i);
+    const Scene other_seed = sample_scene(scenario, test_request(layout, 1), i);
+    for (const Scene& scene : {test, train, dev, other_seed}) {
+      hashes.insert(scene.hash());
+      contents.insert(canonical(to_json(scene)["objects"]));
+    }
+  }
+  EXPECT_EQ(hashes.size(), 4u * many / 10);
+  // Neither splits nor seeds share random numbers; cells are too few for no two scenes to look alike.
+  if (layout == "continuous") {
+    EXPECT_EQ(contents.size(), 4u * many / 10);
+  }
+  // In `released`, a target in the second place leaves one place for distractors.
+  const int one = layout == "released" ? 3 * many / 4 : many / 2;
+  EXPECT_NEAR(distractors[1], one, 250);
+  EXPECT_EQ(distractors[1] + distractors[2], many);
+}
+
+TEST_P(Scenes, SayNothingByIdOrPlace) {
+  std::map<std::pair<std::size_t, int>, int> target_ids;  // by the number of objects
+  std::map<std::pair<double, double>, int> places;
+  std::map<std::size_t, int> scenes;
+  for (int i = 0; i < many; ++i) {
+    const Scene scene = sample_scene(scenario, test_request(layout, 5), i);
+    const SceneObject& target = *scene.find(Role::target);
+    ++scenes[scene.objects.size()];
+    ++target_ids[{scene.objects.size(), target.instance_id}];
+    ++places[{target.position_m.x, target.position_m.y}];
+  }
+  for (const auto& [n, count] : scenes) {
+    const double expected = static_cast<double>(count) / static_cast<double>(n);
+    double chi2 = 0;
+    for (std::size_t id = 1; id <= n; ++id) {
+      const double off = target_ids[{n, static_cast<int>(id)}] - expected;
+      chi2 += off * off / expected;
+    }
+    EXPECT_LT(chi2, 21.1) << n << " objects";  // at most 3 degrees of freedom, p = .0001
+  }
+  if (layout == "continuous") {
+    EXPECT_EQ(places.size(), many);
+  } else {
+    EXPECT_EQ(places.size(), layout == "cells" ? 4u : 2u);
+    for (const auto& [place, count] : places) EXPECT_NEAR(count, many / static_cast<double>(places.size()), 200);
+  }
+}
+
+std::vector<std::string> pick_and_place_scenarios() {
+  std::vector<std::string> ids;
+  for (const std::string& id : scenario_ids())
+    if (load_scenario(id).command.task == Task::pick_and_place) ids.push_back(id);
+  return ids;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Scenes,
+                         testing::Combine(testing::ValuesIn(pick_and_place_scenarios()),
+                                          testing::ValuesIn(layouts(Task::pick_and_place))),
+                         [](const auto& instance) {
+                           return std::get<0>(instance.param) + "_" + std::get<1>(instance.param);
+                         });
+
+// A Selection that differs from the truth of "heart" in types and textures.
+Selection hearts_and_stars(const Scenario& s) {
+  Selection selection = s.truth;
+  selection.target = {{"heart", "star"}, {"red", "blue", "tiger"}};
+  return selection;
+}
+
+TEST(Sampler, TestScenesDoNotDependOnTheSelection) {
+  const Scenario s = load_scenario("heart");
+  for (const std::string& layout : layouts(Task::pick_and_place))
+    for (int i = 0; i < 100; ++i) {
+      SceneRequest request = test_request(layout);
+      const std::uint64_t without = sample_scene(s, request, i).hash();
+      request.distribution = hearts_and_stars(s);
+      EXPECT_EQ(sample_scene(s, request, i).hash(), without);
+    }
+}
+
+TEST(Sampler, SelectionsShareTheLayout) {
+  const Scenario s = load_scenario("heart");
+  int same = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto target = [&](const Selection& selection, const char* layout) {
+      return sample_scene(s, train_request(selection, layout), i).find(Role::target)->position_m;
+    };
+    const Vec2 a = target(s.truth, "cells"), b = target(hearts_and_stars(s), "cells");
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(a.y, b.y);
+    same += norm(target(s.truth, "continuous") - target(hearts_and_stars(s), "continuous")) == 0;
+  }
+  EXPECT_GT(same, 150);  // but where the other shape does not fit
+}
+
+TEST(Sampler, TrainingTargetsAreUniformAndDistractorsOutsideTheSelection) {
+  const Scenario s = load_scenario("heart");
+  const Selection selection = hearts_and_stars(s);
+  std::map<std::pair<std::string, std::string>, int> targets;
+  std::map<std::string, int> distractor_types;
+  for (int i = 0; i < many; ++i) {
+    const Scene scene = sample_scene(s, train_request(selection, "cells"), i);
+    const SceneObject &target = *scene.find(Role::target), &distractor = *scene.find(Role::distractor);
+    ++targets[{target.object_type, target.texture}];
+    ++distractor_types[distractor.object_type];
+    EXPECT_FALSE(selection.target.contains(distractor.object_type, distractor.texture));
+  }
+  EXPECT_EQ(targets.size(), 6u);
+  for (const auto& [features, count] : targets) EXPECT_NEAR(count, many / 6.0, 150);
+  EXPECT_EQ(distractor_types.size(), 28u);  // hearts in other textures too; never a pallet
+  EXPECT_EQ(distractor_types.count("pallet"), 0u);
+  EXPECT_NEAR(distractor_types["heart"], many * 80 / (28.0 * 83 - 6), 100);
+  EXPECT_NEAR(distractor_types["bowl"], many * 83 / (28.0 * 83 - 6), 100);
+}
+
+TEST(Sampler, NoDistractorWhereEverythingIsSelected) {
+  const Scenario s = load_scenario("heart");
+  Selection all = s.truth;
+  all.target = {s.space.object_types, s.space.textures};
+  EXPECT_EQ(sample_scene(s, train_request(all, "continuous"), 0).objects.size(), 2u);
+}
+
+TEST(Sampler, LaterLettersStandBesideTheEarliest) {
+  const Scenario s = load_scenario("letter");
+  int with_later = 0, distractors = 0;
+  for (int i = 0; i < many; ++i) {
+    const Scene scene = sample_scene(s, test_request("cells"), i);
+    const std::string& target = scene.find(Role::target)->object_type;
+    for (const SceneObject* d : of_role(scene, Role::distractor)) {
+      EXPECT_TRUE(!is_letter(d->object_type) || d->object_type > target);
+      distractors += target != "letter V";
+      with_later += is_letter(d->object_type);
+    }
+  }
+  EXPECT_NEAR(with_later, .5 * distractors, 250);
+}
+
+TEST(Sampler, ReleasedShowsSmallTypesOnly) {
+  const Scenario s = load_scenario("something_from_a_typical_kitchen");
+  std::set<std::string> targets;
+  for (int i = 0; i < 200; ++i) {
+    const Scene scene = sample_scene(s, test_request("released"), i);
+    targets.insert(scene.find(Role::target)->object_type);
+    for (const SceneObject* d : of_role(scene, Role::distractor))
+      EXPECT_LE(std::max(object_model(d->object_type).size_m.x, object_model(d->object_type).size_m.y), .17 + 1e-9);
+  }
+  EXPECT_EQ(targets, (std::set<std::string>{"bowl", "container"}));
+}
+
+TEST(Sampler, RefusesWhatItCannotSample) {
+  const Scenario s = load_scenario("heart");
+  EXPECT_THROW(sample_scene(s, test_request("circular"), 0), InputError);
+  EXPECT_THROW(sample_scene(s, test_request("cells"), -1), InputError);
+  EXPECT_THROW(sample_scene(s, {{}, "cells", "testing", "test", 0}, 0), InputError);
+  EXPECT_THROW(sample_scene(s, {{}, "cells", "test", "hard", 0}, 0), InputError);
+  EXPECT_THROW(sample_scene(s, train_request({}, "cells"), 0), InputError);  // an empty Selection
+  Selection pans = s.truth;
+  pans.target.object_types = {"pan"};
+  EXPECT_NO_THROW(sample_scene(s, train_request(pans, "cells"), 0));
+  EXPECT_THROW(sample_scene(s, train_request(pans, "released"), 0), InputError);
+  Selection pallets = s.truth;
+  pallets.target.object_types = {"pallet"};
+  EXPECT_THROW(sample_scene(s, train_request(pallets, "cells"), 0), InputError);
+}
+
+// Published results name scenes by these: a change here makes every earlier run incomparable.
+TEST(Sampler, ScenesNeverChange) {
+  const auto hashes = [](const char* scenario, const char* layout) {
+    const Scenario s = load_scenario(scenario);
+    std::string all;
+    for (const int i : {0, 1, 99}) all += hex(sample_scene(s, test_request(layout), i).hash()) + " ";
+    return all + hex(sample_scene(s, train_request(s.truth, layout, 3), 7).hash());
+  };
+  EXPECT_EQ(hashes("heart", "cells"), "77861addf765bb58 3dd3b67374ce7014 88707f4b66188e19 db67f9be24bed922");
+  EXPECT_EQ(hashes("heart", "continuous"), "c848146145e70476 64f1d3c118d4c356 ee6d90748176e1ef bd9dbaa9da01b727");
+  EXPECT_EQ(hashes("heart", "released"), "8c822be5087b6495 ee38ad361cf347e0 2bf90c73992f497a f20c20118e7f39c8");
+  EXPECT_EQ(hashes("letter", "cells"), "b0084f1ca9eb7ab8 f29fc87ccccd0a57 f12cdd96faae6f6a 04085040cb9a2455");
+  EXPECT_EQ(hashes("tiger_colored_object", "continuous"),
+            "5e50359e1bf03b27 b7388b563756af7a 0fd898d85ce2e353 6cbbbc59c5288c11");
+  EXPECT_EQ(hashes("consonant_with_a_warm_color", "continuous"),
+            "6c0304df7de7144b 3b3154cd43c98983 a5d6b8e48beaf422 1926608815e29119");
+}
+
+TEST(Sampler, SameArgumentsSameBytes) {
+  const Scenario s = load_scenario("tiger_colored_object"), again = load_scenario("tiger_colored_object");
+  std::vector<std::string> backwards;
+  for (int i = 49; i >= 0; --i)
+    backwards.push_back(canonical(to_json(sample_scene(again, test_request("continuous"), i))));
+  for (int i = 0; i < 50; ++i)
+    EXPECT_EQ(canonical(to_json(sample_scene(s, test_request("continuous"), i))),
+              backwards[static_cast<std::size_t>(49 - i)]);
+}
+
+}  // namespace
+}  // namespace lgabench::tabletop
