@@ -7,5 +7,5 @@ find_package_handle_standard_args(MuJoCoWheel REQUIRED_VARS MuJoCoWheel_LIBRARY 
 if(MuJoCoWheel_FOUND AND NOT TARGET mujoco::mujoco)
   add_library(mujoco::mujoco SHARED IMPORTED)
   set_target_properties(mujoco::mujoco PROPERTIES IMPORTED_LOCATION ${MuJoCoWheel_LIBRARY}
-                                                  INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${MuJoCoWheel_INCLUDE_DIR})
+                                                  INTERFACE_INCLUDE_DIRECTORIES ${MuJoCoWheel_INCLUDE_DIR})
 endif()

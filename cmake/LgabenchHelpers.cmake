@@ -19,12 +19,20 @@ function(lgabench_library target)
   lgabench_target(${target})
 endfunction()
 
-# One plugin from its sources: lgabench_add_plugin(lga lga.cpp).
+# One plugin from its sources: lgabench_add_plugin(lga lga.cpp). It is shipped, unless DIRECTORY names another place.
 function(lgabench_add_plugin name)
-  add_library(${name} MODULE ${ARGN})
-  set_target_properties(${name} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${LGABENCH_PLUGIN_DIRECTORY})
+  cmake_parse_arguments(PARSE_ARGV 1 P "" "DIRECTORY" "")
+  add_library(${name} MODULE ${P_UNPARSED_ARGUMENTS})
+  # Hidden symbols: two plugins may have classes of one name.
+  set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(${name} PRIVATE lgabench_core)
   lgabench_target(${name})
+  if(P_DIRECTORY)
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${P_DIRECTORY})
+  else()
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${LGABENCH_PLUGIN_DIRECTORY})
+    install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/lgabench/plugins)
+  endif()
 endfunction()
 
 # Data lies in the build tree where the installed programs look for it.

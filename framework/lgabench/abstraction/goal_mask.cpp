@@ -16,7 +16,8 @@ std::vector<std::uint8_t> look_up(const Observation& observation, const std::arr
   if (observation.ids.size() != pixels)
     throw InputError(fmt::format("observation: ids: expected {} pixels, got {}", pixels, observation.ids.size()));
   std::vector<std::uint8_t> mask(pixels);
-  std::transform(observation.ids.begin(), observation.ids.end(), mask.begin(), [&](std::uint8_t id) { return kept[id]; });
+  std::transform(observation.ids.begin(), observation.ids.end(), mask.begin(),
+                 [&](std::uint8_t id) { return kept[id]; });
   const auto stray = std::find(mask.begin(), mask.end(), unlisted);
   if (stray != mask.end())
     throw InputError(fmt::format("observation: ids: expected an id of the instance table, got {}",

@@ -16,7 +16,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 fs::path answers_file(const char* name) { return data_directory() / "answers" / name; }
 
 // What answers there are: the `member` of each entry that is about the space.
-std::string known(const Json& document, const fs::path& file, const char* member, const std::string& space) {
+std::string known(const fs::path& file, const char* member, const std::string& space) {
+  const Json document = read_json(file);
   std::vector<std::string> names;
   const JsonReader reader(document, file.string());
   for (const JsonReader& entry : reader.at("answers").elements())
@@ -33,11 +34,10 @@ RecordedLanguageModel::RecordedLanguageModel(const Scenario& scenario, const std
   if (answers != "claude" && find_gpt4(scenario)) return;
   if (answers != "gpt4" && find_claude(scenario)) return;
   const fs::path gpt4 = answers_file("gpt4.json"), claude = answers_file("claude.json");
-  throw InputError(
-      fmt::format("answers={}: nothing is recorded for scenario \"{}\", \"{}\", in the space {}; {}", answers, scenario.id,
-                  utterance_, space_.id,
-                  answers == "gpt4" ? known(read_json(gpt4), gpt4, "scenario", space_.id)
-                                    : known(read_json(claude), claude, "command", space_.id)));
+  const std::string name = scenario.id.empty() ? "" : fmt::format("scenario {}, ", scenario.id);
+  throw InputError(fmt::format(
+      "answers={}: expected recorded answers for {}\"{}\" in the space {}; {}", answers, name, utterance_, space_.id,
+      answers == "gpt4" ? known(gpt4, "scenario", space_.id) : known(claude, "command", space_.id)));
 }
 
 bool RecordedLanguageModel::find_gpt4(const Scenario& scenario) {
@@ -96,7 +96,8 @@ std::string RecordedLanguageModel::asked_as(const Command& command) const {
 
 void RecordedLanguageModel::expect_own(const Command& command) const {
   if (command.utterance != utterance_)
-    throw MethodError(fmt::format("{}: answers are recorded for \"{}\", asked \"{}\"", model_, utterance_, command.utterance));
+    throw MethodError(
+        fmt::format("{}: answers are recorded for \"{}\", asked \"{}\"", model_, utterance_, command.utterance));
 }
 
 }  // namespace lgabench

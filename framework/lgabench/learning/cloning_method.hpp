@@ -4,8 +4,15 @@
 
 #include <lgabench/core/method.hpp>
 
-/// The options that every cloning method has, for its descriptor's JSON.
-#define LGABENCH_CLONING_OPTIONS ""
+/// Members of a descriptor's options that every cloning method has: LGABENCH_METHOD(..., "{" LGABENCH_CLONING_OPTIONS
+/// "}").
+#define LGABENCH_CLONING_OPTIONS                                                                                 \
+  R"("epochs": {"default": 750, "help": "passes over the training data", "source": "paper, appendix"},)"         \
+  R"("batch_size": {"default": 10, "help": "samples a step", "source": "PROTOCOL, section 5"},)"                 \
+  R"("learning_rate": {"default": 0.001, "help": "of Adam", "source": "PROTOCOL, section 5"},)"                  \
+  R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)" \
+  R"("source": "norm: released code; squared: paper"},)"                                                         \
+  R"("batch_norm": {"default": false, "help": "batch normalisation before each ReLU", "source": "true: paper"})"
 
 namespace lgabench {
 

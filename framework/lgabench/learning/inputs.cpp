@@ -13,7 +13,8 @@ namespace {
 constexpr int rows = Observation::rows, columns = Observation::columns;
 
 void expect_size(const char* what, std::size_t size, std::size_t expected) {
-  if (size != expected) throw InputError(fmt::format("observation: {}: expected {} values, got {}", what, expected, size));
+  if (size != expected)
+    throw InputError(fmt::format("observation: {}: expected {} values, got {}", what, expected, size));
 }
 
 }  // namespace

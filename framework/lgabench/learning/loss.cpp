@@ -13,8 +13,7 @@ double loss_and_gradient(Loss loss, const float* outputs, const float* labels, i
     const double norm = std::sqrt(squared);
     total += loss == Loss::norm ? norm : squared;
     const double scale = loss == Loss::squared ? 2 : norm > 0 ? 1 / norm : 0;
-    for (int i = begin; i < end; ++i)
-      gradient[i] = static_cast<float>(scale * (double{outputs[i]} - labels[i]) / rows);
+    for (int i = begin; i < end; ++i) gradient[i] = static_cast<float>(scale * (double{outputs[i]} - labels[i]) / rows);
   }
   return total / rows;
 }

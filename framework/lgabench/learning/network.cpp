@@ -36,7 +36,7 @@ void compute_on_one_thread() {
   flush_denormals();
   // Buffers of a step are freed and asked for again: giving them back to the system costs a quarter of the step.
   mallopt(M_TRIM_THRESHOLD, 1 << 28);
-  mallopt(M_MMAP_THRESHOLD, 1 << 28);
+  mallopt(M_MMAP_THRESHOLD, 1 << 25);  // the most that glibc takes
 }
 
 // A tensor over the caller's numbers, valid as long as they are.
@@ -48,7 +48,8 @@ Tensor view(const std::vector<float>& values, at::IntArrayRef sizes) {
 
 Samples::Samples(const NetworkShape& shape, int count) : rows(count) {
   const auto n = static_cast<std::size_t>(count);
-  for (const int channels : shape.channels) pictures.emplace_back(n * static_cast<std::size_t>(channels) * input_pixels);
+  for (const int channels : shape.channels)
+    pictures.emplace_back(n * static_cast<std::size_t>(channels) * input_pixels);
   if (shape.text) text.resize(n * text_size);
   labels.resize(n * action_size);
 }
@@ -128,7 +129,8 @@ struct Network::Impl {
       }
       features.push_back(x.flatten(1));
     }
-    if (shape.text) features.push_back(at::linear(view(samples.text, {samples.rows, text_size}), text.weight, text.bias));
+    if (shape.text)
+      features.push_back(at::linear(view(samples.text, {samples.rows, text_size}), text.weight, text.bias));
     return at::linear(features.size() == 1 ? features[0] : at::cat(features, 1), head.weight, head.bias);
   }
 };
@@ -154,8 +156,8 @@ std::vector<float> Network::predict(const Samples& samples) {
 double Network::backward(const Samples& samples, Loss loss) {
   const Tensor outputs = impl_->forward(samples, true).contiguous();
   const Tensor gradient = at::empty({samples.rows, action_size});
-  const double mean =
-      loss_and_gradient(loss, outputs.data_ptr<float>(), samples.labels.data(), samples.rows, gradient.data_ptr<float>());
+  const double mean = loss_and_gradient(loss, outputs.data_ptr<float>(), samples.labels.data(), samples.rows,
+                                        gradient.data_ptr<float>());
   impl_->gradients.zero_();
   outputs.backward(gradient);
   return mean;

@@ -15,7 +15,7 @@ namespace lgabench {
 struct NetworkShape {
   std::vector<int> channels;  // of each tower's picture
   bool text = false;
-  bool batch_norm = false;    // before each ReLU, as the appendix has it
+  bool batch_norm = false;  // before each ReLU, as the appendix has it
 };
 
 constexpr int text_size = 384;

@@ -36,9 +36,10 @@ SentenceEmbeddings::SentenceEmbeddings() {
 const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) const {
   const auto found = embeddings_.find(sentence);
   if (found == embeddings_.end())
-    throw InputError(fmt::format("\"{}\": expected a sentence with a committed embedding; add it with "
-                                 "framework/lgabench/learning/embeddings/make_embeddings.py",
-                                 sentence));
+    throw InputError(
+        fmt::format("\"{}\": expected a sentence with a committed embedding; add it with "
+                    "framework/lgabench/learning/embeddings/make_embeddings.py",
+                    sentence));
   return found->second;
 }
 

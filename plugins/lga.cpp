@@ -1,0 +1,20 @@
+// LGA: the policy sees only the goal mask of what a language model selected (paper, section 3).
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/plugin/plugin.hpp>
+
+class Lga : public lgabench::CloningMethod {
+ public:
+  lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
+                             lgabench::Services& services) override {
+    return lgabench::select_features(command, space, services.lm);
+  }
+
+ protected:
+  lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
+    return {{lgabench::PolicyInputs::Picture::mask}};
+  }
+};
+
+LGABENCH_METHOD("lga", "0.1", "Behaviour cloning on a goal mask that a language model selected", Lga,
+                "{" LGABENCH_CLONING_OPTIONS "}")

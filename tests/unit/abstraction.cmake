@@ -1,0 +1,1 @@
+lgabench_unit_test(abstraction_test SOURCES abstraction_test.cpp LINK lgabench_core)

@@ -1,0 +1,238 @@
+// Goal masks, recorded answers, selection by asking, and the quality of what was selected.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/quality.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
+
+Scenario scenario(const std::string& id, const std::string& utterance, Task task = Task::pick_and_place,
+                  const std::string& space = "tabletop") {
+  Scenario s;
+  s.id = id;
+  s.command = {utterance, task};
+  s.space = load_feature_space(space);
+  return s;
+}
+
+Selection ask(const Scenario& s, const std::string& answers = "recorded") {
+  RecordedLanguageModel model(s, answers);
+  return select_features(s.command, s.space, model);
+}
+
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Ids 5, 9, 200 and 31, on single pixels in the corners and one in between.
+Observation four_objects() {
+  Observation o;
+  o.rgb.resize(pixels * 3);
+  o.ids.resize(pixels);
+  o.instances = {{9, "heart", "blue", 1}, {5, "heart", "red", 2}, {200, "pan", "red", 1}, {31, "line", "blue", 1}};
+  o.ids[0] = 5;
+  o.ids[Observation::columns - 1] = 9;
+  o.ids[pixels - Observation::columns] = 200;
+  o.ids[pixels - 1] = 5;
+  o.ids[1000] = 31;
+  return o;
+}
+
+TEST(GoalMask, KeepsAnInstanceWhoseTypeAndTextureAreBothSelected) {
+  Selection red_hearts;
+  red_hearts.target = {{"heart"}, {"red"}};
+  const auto mask = goal_mask(four_objects(), red_hearts);
+  ASSERT_EQ(mask.size(), pixels);
+  for (std::size_t i = 0; i < pixels; ++i) EXPECT_EQ(mask[i], i == 0 || i == pixels - 1 ? 1 : 0) << "pixel " << i;
+}
+
+TEST(GoalMask, AddsWhatIsToBeAvoidedButNeverCrossesItWithTheTarget) {
+  Selection selection;
+  selection.target = {{"heart"}, {"red"}};
+  selection.avoid = FeatureSet{{"pan", "line"}, {"blue"}};
+  const auto mask = goal_mask(four_objects(), selection);
+  EXPECT_EQ(mask[0], 1);                              // the red heart
+  EXPECT_EQ(mask[1000], 1);                           // the blue line
+  EXPECT_EQ(mask[Observation::columns - 1], 0);       // a blue heart: the target's type with avoid's texture
+  EXPECT_EQ(mask[pixels - Observation::columns], 0);  // a red pan: the reverse
+}
+
+TEST(GoalMask, AnythingIsAnObjectWithoutLanguage) {
+  const auto mask = object_mask(four_objects());
+  EXPECT_EQ(std::count(mask.begin(), mask.end(), 1), 5);
+  EXPECT_EQ(std::count(mask.begin(), mask.end(), 0), static_cast<std::ptrdiff_t>(pixels) - 5);
+}
+
+TEST(GoalMask, RefusesAnObservationThatContradictsItself) {
+  Observation stray = four_objects();
+  stray.ids[77] = 6;
+  EXPECT_THROW(goal_mask(stray, {}), InputError);
+  Observation small = four_objects();
+  small.ids.pop_back();
+  EXPECT_THROW(goal_mask(small, {}), InputError);
+  EXPECT_THROW(object_mask(small), InputError);
+}
+
+struct Study {
+  const char* id;
+  const char* utterance;
+  std::size_t types, textures;
+  const char *yes_type, *no_type, *yes_texture, *no_texture;  // nullptr where there is none
+};
+
+// The nine of the user study, as the appendix prints what GPT-4 prefilled.
+const Study study[] = {
+    {"red_heart", "Bring me the red heart.", 1, 5, "heart", "diamond", "red paisley", "dark red and yellow stripe"},
+    {"heart", "Bring me the heart.", 1, 83, "heart", "star", "granite", nullptr},
+    {"tiger_colored_object", "Bring me the tiger-colored object.", 29, 1, "pan", nullptr, "tiger", "orange"},
+    {"letter_from_the_word_letter", "Bring me a letter from the word 'letter'.", 3, 83, "letter T", "letter A", "blue",
+     nullptr},
+    {"consonant_with_a_warm_color", "Bring me a consonant with a warm color on it.", 5, 22, "letter G", "letter A",
+     "dark yellow and purple stripe", "red and blue stripe"},
+    {"vowel_with_multiple_colors", "Bring me a vowel with multiple colors on it.", 2, 59, "letter E", "letter G",
+     "dark green", "red swirl"},
+    {"letter", "Bring me a letter. If there are multiple, bring the one that comes earliest in the alphabet.", 6, 83,
+     "letter T", "letter V", "olive", nullptr},
+    {"something_to_drink_water_out_of", "Bring me something to drink water out of.", 2, 83, "container", "pan", "blue",
+     nullptr},
+    {"something_from_a_typical_kitchen", "Bring me something from a typical kitchen.", 3, 83, "pan", "pallet", "blue",
+     nullptr},
+};
+
+TEST(RecordedAnswers, AreGpt4sForTheNineScenariosOfTheStudy) {
+  for (const Study& s : study) {
+    SCOPED_TRACE(s.id);
+    const Selection selection = ask(scenario(s.id, s.utterance));
+    EXPECT_EQ(selection.target.object_types.size(), s.types);
+    EXPECT_EQ(selection.target.textures.size(), s.textures);
+    EXPECT_TRUE(has(selection.target.object_types, s.yes_type));
+    EXPECT_TRUE(has(selection.target.textures, s.yes_texture));
+    if (s.no_type) {
+      EXPECT_FALSE(has(selection.target.object_types, s.no_type));
+    }
+    if (s.no_texture) {
+      EXPECT_FALSE(has(selection.target.textures, s.no_texture));
+    }
+    EXPECT_FALSE(selection.avoid);
+    EXPECT_EQ(selection.provenance, Provenance::recorded);
+    EXPECT_EQ(selection.source, "gpt-4-0613");
+    EXPECT_EQ(selection.cost.lm_queries, 112);  // 29 object types and 83 textures
+    EXPECT_EQ(selection.cost.lm_seconds, 0);
+  }
+}
+
+TEST(RecordedAnswers, KeepTheWordingThatWasAsked) {
+  EXPECT_EQ(ask(scenario("red_heart", "Bring me the red heart.")).asked_as, "Bring me the red heart");
+  EXPECT_EQ(ask(scenario("vowel_with_multiple_colors", "Bring me a vowel with multiple colors on it.")).asked_as,
+            "Bring me a vowel that has multiple colors on it");
+}
+
+TEST(RecordedAnswers, AreClaudesWhereGpt4WasNotAskedOrByChoice) {
+  const Selection block = ask(scenario("rotate_block", "Rotate the block.", Task::rotate));
+  EXPECT_EQ(block.source, "Claude (Anthropic, 2026)");
+  EXPECT_EQ(block.target.object_types,
+            (std::vector<std::string>{"L-shaped block", "block", "shorter block", "small block"}));
+  const Scenario letter = scenario("letter", study[6].utterance);
+  EXPECT_FALSE(has(ask(letter, "gpt4").target.object_types, "letter V"));
+  EXPECT_TRUE(has(ask(letter, "claude").target.object_types, "letter V"));
+}
+
+TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
+  const Selection sweep =
+      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep));
+  ASSERT_TRUE(sweep.avoid);
+  EXPECT_EQ(sweep.avoid->object_types, std::vector<std::string>{"pan"});
+  EXPECT_EQ(sweep.avoid->textures.size(), 83u);
+  EXPECT_EQ(sweep.target.object_types.size(), 4u);
+  EXPECT_EQ(sweep.cost.lm_queries, 224);
+}
+
+TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
+  try {
+    RecordedLanguageModel(scenario("rotate_block", "Rotate the block."), "gpt4");
+    FAIL() << "GPT-4 was not asked about rotate_block";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("vowel_with_multiple_colors"), std::string::npos) << e.what();
+  }
+  EXPECT_THROW(RecordedLanguageModel(scenario("x", "Bring me the moon."), "recorded"), InputError);
+  EXPECT_THROW(RecordedLanguageModel(scenario("heart", "Bring me the heart."), "gpt5"), InputError);
+  // Nobody was asked what to avoid when bringing a heart.
+  EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", Task::sweep)), MethodError);
+
+  const Scenario heart = scenario("heart", "Bring me the heart.");
+  RecordedLanguageModel model(heart, "recorded");
+  const Question unknown{Question::About::target, Question::Group::texture, "plaid"};
+  EXPECT_THROW(model.answer(heart.command, heart.space, {unknown}), MethodError);
+  EXPECT_THROW(model.answer({"Bring me the star."}, heart.space, {}), MethodError);
+}
+
+TEST(SelectFeatures, CountsOnlyItsOwnQueriesAndWantsEveryAnswer) {
+  const Scenario heart = scenario("heart", "Bring me the heart.");
+  RecordedLanguageModel model(heart, "recorded");
+  select_features(heart.command, heart.space, model);
+  EXPECT_EQ(select_features(heart.command, heart.space, model).cost.lm_queries, 112);
+  EXPECT_EQ(model.cost().lm_queries, 224);
+
+  struct Silent : RecordedLanguageModel {
+    using RecordedLanguageModel::RecordedLanguageModel;
+    std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override {
+      return {true};
+    }
+  } silent(heart, "recorded");
+  EXPECT_THROW(select_features(heart.command, heart.space, silent), MethodError);
+}
+
+Selection selection_of(FeatureSet target, Provenance provenance = Provenance::truth) {
+  Selection s;
+  s.target = std::move(target);
+  s.provenance = provenance;
+  return s;
+}
+
+TEST(Human, SpecifiesTheTruthAndEditsObjectTypesOnly) {
+  TruthAsHuman human(selection_of({{"letter G", "letter V"}, {"brick"}}, Provenance::none));
+  const Selection specified = human.specify({"words"});
+  EXPECT_EQ(specified.provenance, Provenance::truth);
+  EXPECT_EQ(specified.target, (FeatureSet{{"letter G", "letter V"}, {"brick"}}));
+
+  Selection proposal = selection_of({{"letter G", "pan"}, {"red", "tiger"}}, Provenance::recorded);
+  proposal.cost.lm_queries = 112;
+  const Selection edited = human.edit({"words"}, proposal);
+  EXPECT_EQ(edited.provenance, Provenance::simulated_edit);
+  EXPECT_EQ(edited.target, (FeatureSet{{"letter G", "letter V"}, {"red", "tiger"}}));
+  EXPECT_EQ(edited.cost.lm_queries, 112);
+  EXPECT_EQ(edited.cost.human_seconds, 0);
+}
+
+TEST(Quality, IsPrecisionAndRecallOfEachGroup) {
+  const Selection truth = selection_of({{"a", "b", "c", "d"}, {"x"}});
+  const Json q = quality(selection_of({{"a", "b", "z"}, {}}), truth);
+  EXPECT_DOUBLE_EQ(q["target"]["object_types"]["precision"].get<double>(), 2.0 / 3);
+  EXPECT_DOUBLE_EQ(q["target"]["object_types"]["recall"].get<double>(), 0.5);
+  EXPECT_EQ(q["target"]["object_types"]["size"], 3);
+  EXPECT_EQ(q["target"]["object_types"]["true_size"], 4);
+  EXPECT_TRUE(q["target"]["textures"]["precision"].is_null());  // of nothing selected
+  EXPECT_EQ(q["target"]["textures"]["recall"], 0);
+  EXPECT_TRUE(q["avoid"].is_null());
+  EXPECT_TRUE(quality({}, truth).is_null());  // a method that selects nothing
+}
+
+TEST(Quality, OfAnObstacleNobodySelectedIsRecallZero) {
+  Selection truth = selection_of({{"a"}, {"x"}});
+  truth.avoid = FeatureSet{{"pan"}, {"x"}};
+  const Json q = quality(selection_of({{"a"}, {"x"}}), truth);
+  EXPECT_EQ(q["target"]["object_types"]["precision"], 1);
+  EXPECT_EQ(q["avoid"]["object_types"]["recall"], 0);
+  EXPECT_TRUE(q["avoid"]["object_types"]["precision"].is_null());
+}
+
+}  // namespace
+}  // namespace lgabench

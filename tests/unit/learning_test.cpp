@@ -1,0 +1,369 @@
+// Inputs, loss, training and cloning methods.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
+#include <lgabench/learning/training.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int rows = Observation::rows, columns = Observation::columns;
+
+// Length over which small pixel `small` of `count` lies on native pixel `pixel` of `native`, in native pixels.
+double overlap(int small, int count, int pixel, int native) {
+  const double scale = static_cast<double>(native) / count;
+  return std::max(0.0, std::min(scale * (small + 1), pixel + 1.0) - std::max(scale * small, 1.0 * pixel));
+}
+
+TEST(Inputs, ASmallMaskPixelIsOneIfItTouchesAnyNativeOne) {
+  RandomStream random("mask");
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<std::uint8_t> mask(rows * columns);
+    std::vector<float> expected(input_pixels), small(input_pixels, -1);
+    for (int k = 0; k < 40; ++k) {
+      const int y = static_cast<int>(random.below(rows)), x = static_cast<int>(random.below(columns));
+      mask[static_cast<std::size_t>(y * columns + x)] = 1;
+      // In whole numbers: intervals [128 r, 128 (r+1)) and [36 y, 36 (y+1)) meet.
+      for (int r = 0; r < input_rows; ++r)
+        for (int c = 0; c < input_columns; ++c)
+          if (128 * r < 36 * (y + 1) && 36 * y < 128 * (r + 1) && 256 * c < 72 * (x + 1) && 72 * x < 256 * (c + 1))
+            expected[static_cast<std::size_t>(r * input_columns + c)] = 1;
+    }
+    shrink_mask(mask, small.data());
+    ASSERT_EQ(small, expected) << "trial " << trial;
+  }
+}
+
+TEST(Inputs, RgbIsTheAreaMeanOver255) {
+  RandomStream random("rgb");
+  std::vector<std::uint8_t> rgb(rows * columns * 3);
+  for (auto& byte : rgb) byte = static_cast<std::uint8_t>(random.below(256));
+  std::vector<float> small(3 * input_pixels);
+  shrink_rgb(rgb, small.data());
+  const double area = 128.0 / 36 * 256.0 / 72;
+  for (int channel = 0; channel < 3; ++channel)
+    for (const int r : {0, 1, 17, 35})
+      for (const int c : {0, 8, 40, 71}) {
+        double mean = 0;
+        for (int y = 0; y < rows; ++y)
+          for (int x = 0; x < columns; ++x)
+            mean += overlap(r, input_rows, y, rows) * overlap(c, input_columns, x, columns) *
+                    rgb[static_cast<std::size_t>((y * columns + x) * 3 + channel)] / area / 255;
+        EXPECT_NEAR(small[static_cast<std::size_t>((channel * input_rows + r) * input_columns + c)], mean, 1e-5)
+            << channel << " " << r << " " << c;
+      }
+}
+
+TEST(Inputs, RefusePicturesOfAnotherSize) {
+  std::vector<float> out(3 * input_pixels);
+  EXPECT_THROW(shrink_mask(std::vector<std::uint8_t>(rows * columns - 1), out.data()), InputError);
+  EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), out.data()), InputError);
+}
+
+TEST(Losses, HaveTheGradientOfFiniteDifferences) {
+  RandomStream random("loss");
+  std::vector<float> outputs(36), labels(36), gradient(36), unused(36);
+  for (auto* values : {&outputs, &labels})
+    for (float& v : *values) v = static_cast<float>(random.gaussian());
+  for (const Loss loss : {Loss::norm, Loss::squared}) {
+    loss_and_gradient(loss, outputs.data(), labels.data(), 3, gradient.data());
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      const float step = 0x1p-8f, here = outputs[i];
+      outputs[i] = here + step;
+      const double above = loss_and_gradient(loss, outputs.data(), labels.data(), 3, unused.data());
+      outputs[i] = here - step;
+      const double below = loss_and_gradient(loss, outputs.data(), labels.data(), 3, unused.data());
+      outputs[i] = here;
+      EXPECT_NEAR(gradient[i], (above - below) / (2 * step), 1e-5);
+    }
+  }
+}
+
+TEST(Losses, ArePlainNumbersAndTheNormsSubgradientAtZeroIsZero) {
+  std::vector<float> outputs(24), labels(24), gradient(24, NAN);
+  outputs[0] = 3;
+  outputs[1] = 4;  // the first row's error is 5 long, the second's is 0
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::norm, outputs.data(), labels.data(), 2, gradient.data()), 2.5);
+  EXPECT_FLOAT_EQ(gradient[0], .3f);  // 3/5, halved by the mean
+  EXPECT_FLOAT_EQ(gradient[1], .4f);
+  for (std::size_t i = 12; i < 24; ++i) EXPECT_EQ(gradient[i], 0);
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::squared, outputs.data(), labels.data(), 2, gradient.data()), 12.5);
+}
+
+TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
+  Network network({{1}, false, false}, 11);
+  struct Range {
+    int count, fan_in;
+  };
+  const float* value = network.parameters();
+  for (const auto [count, fan_in] : {Range{2080, 64}, Range{32832, 512}, Range{18464, 576}, Range{1932, 160}}) {
+    const double bound = 1 / std::sqrt(fan_in);
+    double highest = 0, squares = 0;
+    for (int i = 0; i < count; ++i, ++value) {
+      highest = std::max(highest, std::abs(double{*value}));
+      squares += double{*value} * *value;
+    }
+    EXPECT_LE(highest, bound);
+    EXPECT_GT(highest, .99 * bound);
+    EXPECT_NEAR(squares / count / (bound * bound / 3), 1, .1);  // a uniform's variance
+  }
+  EXPECT_EQ(value, network.parameters() + network.size());
+}
+
+TEST(BatchOrder, IsAnotherPermutationInEveryPassAndForEverySeed) {
+  std::set<std::vector<int>> orders;
+  for (const std::uint64_t seed : {0u, 1u})
+    for (int epoch = 1; epoch <= 5; ++epoch) {
+      std::vector<int> order = batch_order(seed, epoch, 50);
+      EXPECT_EQ(order, batch_order(seed, epoch, 50));
+      orders.insert(order);
+      std::sort(order.begin(), order.end());
+      for (int i = 0; i < 50; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
+    }
+  EXPECT_EQ(orders.size(), 10u);
+}
+
+TEST(SentenceEmbeddings, CoverTheShippedCommandsWithUnitVectors) {
+  const SentenceEmbeddings embeddings;
+  const auto dot = [&](const std::string& a, const std::string& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 384; ++i) sum += double{embeddings.of(a)[i]} * embeddings.of(b)[i];
+    return sum;
+  };
+  for (const std::string& id : scenario_ids()) {
+    const std::string utterance = load_scenario(id).command.utterance;
+    ASSERT_EQ(embeddings.of(utterance).size(), 384u);
+    EXPECT_NEAR(dot(utterance, utterance), 1, 1e-6) << utterance;
+  }
+  EXPECT_GT(dot("Bring me the heart.", "Bring me the red heart."), dot("Bring me the heart.", "Rotate the block."));
+  EXPECT_THROW(embeddings.of("Bring me the moon."), InputError);
+}
+
+struct Lines : TrainingLog {
+  struct Line {
+    int epochs;
+    long long steps;
+    double loss;
+  };
+  std::vector<Line> lines;
+  void epoch(int epochs, long long steps, double loss) override { lines.push_back({epochs, steps, loss}); }
+};
+
+class Cloner : public CloningMethod {
+ public:
+  explicit Cloner(PolicyInputs seen) : seen_(std::move(seen)) {}
+  Selection select(const Command&, const FeatureSpace&, Services&) override { return {}; }
+
+ protected:
+  PolicyInputs inputs(const Json&) const override { return seen_; }
+
+ private:
+  PolicyInputs seen_;
+};
+
+using Picture = PolicyInputs::Picture;
+const char utterance[] = "Bring me the red heart.";
+
+Instruction instruction() {
+  Selection hearts;
+  hearts.target = {{"heart"}, {"red"}};
+  return {utterance, hearts};
+}
+
+// A red heart and a blue star, squares of 40 pixels at the given corners.
+Observation scene(int heart_row, int heart_column, int star_row, int star_column) {
+  Observation o;
+  o.rgb.assign(rows * columns * 3, 80);
+  o.ids.resize(rows * columns);
+  o.instances = {{7, "star", "blue", 1600}, {3, "heart", "red", 1600}};
+  const auto paint = [&o](std::uint8_t id, int row, int column, int channel) {
+    for (int y = row; y < row + 40; ++y)
+      for (int x = column; x < column + 40; ++x) {
+        o.ids[static_cast<std::size_t>(y * columns + x)] = id;
+        o.rgb[static_cast<std::size_t>((y * columns + x) * 3 + channel)] = 250;
+      }
+  };
+  paint(7, star_row, star_column, 2);
+  paint(3, heart_row, heart_column, 0);
+  return o;
+}
+
+std::vector<Demonstration> demonstrations(int count, int steps_each = 1) {
+  RandomStream random("demonstrations");
+  std::vector<Demonstration> all;
+  for (int i = 0; i < count; ++i) {
+    Demonstration d{instruction(), {}};
+    for (int k = 0; k < steps_each; ++k) {
+      const int row = static_cast<int>(random.below(40)), column = static_cast<int>(random.below(216));
+      const Vec2 centre{.25 + (row + 20) / 256.0, -.5 + (column + 20) / 256.0};
+      d.steps.push_back({scene(row, column, 80, static_cast<int>(random.below(216))), {{centre, {}}, {{.5, .3}, {}}}});
+    }
+    all.push_back(std::move(d));
+  }
+  return all;
+}
+
+struct Trained {
+  std::unique_ptr<Policy> policy;
+  std::vector<Lines::Line> log;
+};
+
+Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, int epochs, std::uint64_t seed = 0,
+              const Json& changes = Json::object()) {
+  Json options = {
+      {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
+  options.update(changes);
+  const Scenario scenario = load_scenario("red_heart");
+  RecordedLanguageModel lm(scenario, "recorded");
+  TruthAsHuman human(scenario.truth);
+  Lines log;
+  Services services{lm, human, options, seed, log};
+  auto policy = Cloner(seen).learn(data, services);
+  return {std::move(policy), log.lines};
+}
+
+ActionVector act(const Trained& trained, const Observation& observation) {
+  return to_vector(trained.policy->act(observation, instruction()));
+}
+
+TEST(Training, OverfitsTenDemonstrations) {
+  const auto data = demonstrations(10);
+  for (const PolicyInputs& seen : {PolicyInputs{{Picture::mask}, false}, PolicyInputs{{Picture::rgb}, true}}) {
+    const Trained trained = learn(seen, data, 400);
+    EXPECT_GT(trained.log.front().loss, .1);
+    EXPECT_LT(trained.log.back().loss, .05);
+    for (const Demonstration& d : data) {
+      const Action action = trained.policy->act(d.steps[0].observation, instruction());
+      EXPECT_LT(norm(action.pose0.position_m - d.steps[0].label.pose0.position_m), .1);
+    }
+  }
+  EXPECT_TRUE(denormals_flushed());
+}
+
+TEST(Training, IsAFunctionOfTheSeed) {
+  const auto data = demonstrations(12);
+  const PolicyInputs seen{{Picture::mask, Picture::rgb}, true};
+  const Trained first = learn(seen, data, 20, 5), again = learn(seen, data, 20, 5), other = learn(seen, data, 20, 6);
+  const Observation probe = scene(10, 100, 80, 30);
+  EXPECT_EQ(act(first, probe), act(again, probe));
+  EXPECT_NE(act(first, probe), act(other, probe));
+  ASSERT_EQ(first.log.size(), again.log.size());
+  for (std::size_t i = 0; i < first.log.size(); ++i) EXPECT_EQ(first.log[i].loss, again.log[i].loss);
+}
+
+TEST(Training, TakesWholeBatchesAndLogsEveryTenthPassAndTheLast) {
+  const PolicyInputs seen{{Picture::mask}, false};
+  const auto steps = [&](int count, int each, int epochs) {
+    return learn(seen, demonstrations(count, each), epochs).log.back().steps;
+  };
+  EXPECT_EQ(steps(25, 1, 3), 6);  // two batches of ten a pass; five samples wait for another pass
+  EXPECT_EQ(steps(3, 1, 4), 4);   // one batch of all
+  EXPECT_EQ(steps(5, 6, 2), 6);   // every step of every demonstration is a sample
+  std::vector<int> epochs;
+  for (const auto& line : learn(seen, demonstrations(3), 23).log) epochs.push_back(line.epochs);
+  EXPECT_EQ(epochs, (std::vector<int>{10, 20, 23}));
+}
+
+TEST(Training, OptionsChangeWhatIsLearned) {
+  const auto data = demonstrations(10);
+  const PolicyInputs seen{{Picture::mask}, false};
+  const Observation probe = scene(10, 100, 80, 30);
+  const ActionVector usual = act(learn(seen, data, 5), probe);
+  for (const Json& change : {Json{{"loss", "squared"}}, Json{{"batch_norm", true}}, Json{{"learning_rate", 2e-3}},
+                             Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
+    EXPECT_NE(act(learn(seen, data, 5, 0, change), probe), usual) << change;
+}
+
+TEST(Training, RefusesWhatItCannotLearnFrom) {
+  const PolicyInputs mask{{Picture::mask}, false}, text{{Picture::rgb}, true};
+  EXPECT_THROW(learn(mask, {}, 1), MethodError);
+  auto unknown = demonstrations(1);
+  unknown[0].instruction.utterance = "Bring me the moon.";
+  EXPECT_THROW(learn(text, unknown, 1), InputError);
+  EXPECT_THROW(learn(mask, demonstrations(1), 0), InputError);
+  auto broken = demonstrations(2);
+  broken[1].steps[0].label.pose0.position_m.x = NAN;
+  EXPECT_THROW(learn(mask, broken, 1), MethodError);
+}
+
+TEST(Policies, SeeWhatTheirInputsShowAndNothingElse) {
+  const auto data = demonstrations(10);
+  const Observation here = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150);
+  Observation recoloured = here;
+  for (auto& byte : recoloured.rgb) byte = static_cast<std::uint8_t>(255 - byte);
+
+  const Trained mask = learn({{Picture::mask}, false}, data, 5);
+  EXPECT_EQ(act(mask, star_moved), act(mask, here));  // zero by construction: the star is not in the mask
+  EXPECT_EQ(act(mask, recoloured), act(mask, here));
+  EXPECT_NE(act(mask, scene(30, 10, 80, 30)), act(mask, here));
+
+  const Trained segmentation = learn({{Picture::segmentation}, false}, data, 5);
+  EXPECT_NE(act(segmentation, star_moved), act(segmentation, here));
+  EXPECT_EQ(act(segmentation, recoloured), act(segmentation, here));
+
+  const Trained rgb = learn({{Picture::rgb}, true}, data, 5);
+  EXPECT_NE(act(rgb, recoloured), act(rgb, here));
+  Instruction other = instruction();
+  other.utterance = "Bring me the heart.";
+  EXPECT_NE(to_vector(rgb.policy->act(here, other)), act(rgb, here));
+}
+
+TEST(Policies, ActTheSameWhateverTheySawBefore) {
+  const Trained trained = learn({{Picture::mask, Picture::rgb}, true}, demonstrations(10), 5);
+  const Observation probe = scene(10, 100, 80, 30);
+  const ActionVector first = act(trained, probe);
+  act(trained, scene(0, 0, 80, 200));
+  EXPECT_EQ(act(trained, probe), first);
+}
+
+TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const auto needs = [&](const char* id, const Json& overrides) {
+    const PluginInfo& plugin = catalogue.find("method", id);
+    return load_method(plugin)->needs(resolve_options(plugin, overrides));
+  };
+  EXPECT_EQ(needs("lga", Json::object()).targets, Needs::Targets::selected);
+  EXPECT_EQ(needs("lga", Json::object()).noisy_per_clean, 0);
+  const Needs recovery = needs("gcbc_dart", Json::object()), none = needs("gcbc_dart", {{"dart", "none"}});
+  EXPECT_EQ(recovery.targets, Needs::Targets::truth);
+  EXPECT_EQ(recovery.noisy_per_clean, 5);
+  EXPECT_EQ(recovery.noise_max, .2);
+  EXPECT_EQ(none.targets, Needs::Targets::truth);
+  EXPECT_EQ(none.noisy_per_clean, 0);
+  EXPECT_THROW(needs("gcbc_dart", {{"dart", "posthoc"}}), InputError);
+}
+
+TEST(ShippedMethods, SelectLearnAndActThroughThePlugin) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const Scenario scenario = load_scenario("red_heart");
+  for (const char* id : {"lga", "gcbc_dart"}) {
+    const PluginInfo& plugin = catalogue.find("method", id);
+    const Json options = resolve_options(plugin, {{"epochs", 3}});
+    RecordedLanguageModel lm(scenario, "recorded");
+    TruthAsHuman human(scenario.truth);
+    Lines log;
+    Services services{lm, human, options, 0, log};
+    const auto method = load_method(plugin);
+    const Selection selection = method->select(scenario.command, scenario.space, services);
+    EXPECT_EQ(selection.cost.lm_queries, id == std::string("lga") ? 112 : 0);
+    EXPECT_EQ(selection.provenance, id == std::string("lga") ? Provenance::recorded : Provenance::none);
+    const auto policy = method->learn(demonstrations(10), services);
+    const Observation probe = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150);
+    const bool same = to_vector(policy->act(probe, instruction())) == to_vector(policy->act(star_moved, instruction()));
+    EXPECT_EQ(same, id == std::string("lga"));  // only the goal mask hides the star
+  }
+}
+
+}  // namespace
+}  // namespace lgabench
