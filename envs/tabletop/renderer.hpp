@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/scene.hpp>
 
 namespace lgabench::tabletop {
 
@@ -14,15 +15,23 @@ struct VisibleObject {
   std::uint8_t instance_id;  // 1..255
 };
 
-/// One thread. The picture depends on the objects alone: same bytes for the same poses, whatever was drawn before.
+/// The scene's objects at rest on the table (z = 0, turned by yaw), before any action; in the scene's order.
+std::vector<VisibleObject> visible_objects(const Scene& scene);
+
+/// One thread at a time. The picture depends on the objects alone: same bytes for the same poses, whatever was drawn
+/// before.
 class Renderer {
  public:
+  /// @throws EngineError if Embree can't be started.
   Renderer();
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Fills rgb, ids and the instance table (ordered as `objects`), one ray a pixel and a hard shadow.
+  /// Fills rgb, ids and the instance table (ordered as `objects`), one ray a pixel and a hard shadow. A lit level
+  /// surface shows its texture's colour as it is. What lies outside the picture or below the table is not seen.
+  /// @throws InputError for an unknown object type or texture, an instance id that is 0 or given twice, or a pose that
+  /// is not finite.
   Observation render(const std::vector<VisibleObject>& objects);
 
  private:

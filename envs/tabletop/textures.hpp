@@ -16,11 +16,16 @@ struct Texture {
   double scale_m = 0.1;
   std::vector<Rgb> pixels;  // size x size, row-major
 
-  /// Colour at a point of the object's surface, given in metres on the plane that faces the surface (nearest pixel).
+  /// Colour at a point of the object's surface, given in metres on the plane that faces the surface: u to the right,
+  /// v down, the picture's centre at (0, 0), repeated without end (nearest pixel). Any finite u, v.
   Rgb at(double u_m, double v_m) const;
 };
 
-/// The texture of that name; made at the first call, lives as long as the program. @throws InputError for an unknown name.
+/// The texture of that name; made at the first call, lives as long as the program. Any thread.
+/// Names: a colour, "C and C stripe", "C and C polka dot", "C swirl" or "C paisley", each possibly after "dark", which
+/// darkens every colour that follows; or a material (brick, tiles, wooden, granite, plastic, polka dot, checkerboard,
+/// tiger, magma, rainbow). Colours and "dark" (HSV value - .3) as in PROTOCOL, section 1.
+/// @throws InputError for any other name.
 const Texture& texture(const std::string& name);
 
 }  // namespace lgabench::tabletop

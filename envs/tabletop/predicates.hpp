@@ -1,0 +1,18 @@
+// Success and failure: what an episode's end says about it (PROTOCOL, section 2).
+#pragma once
+#include <vector>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/scene.hpp>
+#include <tabletop/primitives.hpp>
+
+namespace lgabench::tabletop {
+
+/// The object's centre now: the middle of its height over its frame's origin, also when it has toppled.
+Vec2 centre_of(const SceneObject& object, const Pose& pose);
+
+/// Judges the state that was reached against the scene's beginning. `poses` in the order of `scene.objects`.
+/// Pure. @throws InputError where the scene lacks a target, or a goal that its task needs.
+Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion);
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,130 @@
+#include <tabletop/primitives.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double lift_m = 0.1;
+constexpr double carry_speed = 3, lower_speed = 0.5, turn_speed = 12;  // greatest ones: m/s, m/s, rad/s
+constexpr double limit_s = 10;                                         // of an action, until all is at rest
+// At rest: for so long within so much of one pose. (Velocities say less: a body stands still at the top of a throw, and
+// engines let a resting polygon tremble by some 1e-5 m when they choose among its corners anew in each step.)
+constexpr double rest_s = 0.05, rest_move_m = 25e-6, rest_turn_rad = 4.4e-4;
+
+/// Counts the steps of one action.
+class Clock {
+ public:
+  explicit Clock(PhysicsWorld& world) : world_(world), left_(static_cast<int>(limit_s / world.time_step_s())) {}
+
+  /// @return false, and no step, once the limit is reached.
+  bool step() {
+    if (left_ == 0) return false;
+    --left_;
+    world_.step();
+    return true;
+  }
+
+  int steps(double seconds) const { return std::max(1, static_cast<int>(std::ceil(seconds / world_.time_step_s()))); }
+
+ private:
+  PhysicsWorld& world_;
+  int left_;
+};
+
+/// The gripper's way: straight, the turn at an even share, starting and ending at zero speed (cosine profile).
+struct Stance {
+  Vec3 position_m;
+  double yaw_rad = 0;
+  Pose pose() const { return {position_m, from_yaw(yaw_rad)}; }
+};
+
+bool move(PhysicsWorld& world, Clock& clock, const Stance& from, const Stance& to) {
+  const Vec3 way = to.position_m - from.position_m;
+  const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z), turn = to.yaw_rad - from.yaw_rad;
+  const double mean_to_peak = pi / 2;
+  const int n = clock.steps(mean_to_peak * std::max(length / carry_speed, std::abs(turn) / turn_speed));
+  for (int i = 1; i <= n; ++i) {
+    const double share = (1 - std::cos(pi * i / n)) / 2;
+    const Stance now{from.position_m + share * way, from.yaw_rad + share * turn};
+    world.move_gripper(now.pose());
+    if (!clock.step()) return false;
+  }
+  return true;
+}
+
+bool touches(const PhysicsWorld& world, int body) {
+  const auto contacts = world.contacts();
+  return std::any_of(contacts.begin(), contacts.end(), [body](Contact c) { return c.a == body || c.b == body; });
+}
+
+bool lower(PhysicsWorld& world, Clock& clock, Stance stance, int body) {
+  const double step_m = lower_speed * world.time_step_s();
+  while (stance.position_m.z > 0 && !touches(world, body)) {
+    stance.position_m.z -= step_m;
+    world.move_gripper(stance.pose());
+    if (!clock.step()) return false;
+  }
+  return true;
+}
+
+std::vector<Pose> poses_of(const Bodies& bodies) {
+  std::vector<Pose> all;
+  for (std::size_t i = 0; i < bodies.fixed.size(); ++i) all.push_back(bodies.world.pose(static_cast<int>(i)));
+  return all;
+}
+
+bool still(const Pose& a, const Pose& b) {
+  const Vec3 way = a.position_m - b.position_m;
+  const Quat turn = Quat{-a.rotation.x, -a.rotation.y, -a.rotation.z, a.rotation.w} * b.rotation;
+  const auto length = [](double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); };
+  return length(way.x, way.y, way.z) < rest_move_m && 2 * length(turn.x, turn.y, turn.z) < rest_turn_rad;
+}
+
+bool settle(const Bodies& bodies, Clock& clock) {
+  std::vector<Pose> anchor = poses_of(bodies);
+  for (int resting = 0; resting < clock.steps(rest_s); ++resting) {
+    if (!clock.step()) return false;
+    const std::vector<Pose> now = poses_of(bodies);
+    if (std::equal(now.begin(), now.end(), anchor.begin(), still)) continue;
+    anchor = now;
+    resting = 0;
+  }
+  return true;
+}
+
+}  // namespace
+
+int under_suction(const PhysicsWorld& world, Vec2 point, double& height_m) {
+  constexpr int ring = 8;
+  int body = world.cast_down(point, height_m);
+  for (int i = 0; i < ring; ++i) {
+    double height = 0;
+    const int hit = world.cast_down(point + rotated({suction_radius_m, 0}, 2 * pi * i / ring), height);
+    if (hit == no_body || height <= height_m) continue;
+    body = hit;
+    height_m = height;
+  }
+  return body;
+}
+
+Motion pick_and_place(const Bodies& bodies, const Action& action) {
+  PhysicsWorld& world = bodies.world;
+  Clock clock(world);
+  double height = 0;
+  const int body = under_suction(world, action.pose0.position_m, height);
+  if (body == no_body || bodies.fixed[static_cast<std::size_t>(body)]) return {};
+
+  const Vec2 take = action.pose0.position_m, put = action.pose1.position_m;
+  const Stance down{{take.x, take.y, height}, 0};
+  const Stance up{{take.x, take.y, height + lift_m}, 0};
+  const Stance over{{put.x, put.y, height + lift_m}, yaw_of(action.pose1.rotation)};
+  world.grip(body, down.pose());
+  const bool placed = move(world, clock, down, up) && move(world, clock, up, over) && lower(world, clock, over, body);
+  world.release();
+  return {body, placed && settle(bodies, clock)};
+}
+
+}  // namespace lgabench::tabletop

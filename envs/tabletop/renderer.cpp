@@ -1,0 +1,302 @@
+// The camera looks straight down and the table is flat, so what it sees of the objects and the shadows that they throw
+// on the table are triangles filled in the picture: exact at every pixel's centre, in double precision, hence the same
+// on every processor. Only light on the objects themselves takes rays (Embree), and few points need one.
+#include <tabletop/renderer.hpp>
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <lgabench/core/error.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/textures.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr int rows = Observation::rows, columns = Observation::columns, pixels = rows * columns;
+constexpr double row_m = (Workspace::x_max - Workspace::x_min) / rows;
+constexpr double column_m = (Workspace::y_max - Workspace::y_min) / columns;
+
+constexpr Rgb table_colour{196, 194, 190};
+// Towards the light, a unit vector: from above, the picture's upper left. Shadows fall to the lower right.
+constexpr Vec3 light{-0.36, -0.48, 0.8};
+constexpr double climb = 1 / light.z;  // of the way to the light, for each metre of height
+constexpr int ambient = 141;           // brightness in shadow; a level surface in the light has 256
+constexpr double clearance_m = 2e-4;   // what a shadow ray leaves behind, so that a surface does not shade itself
+
+double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+
+// Position in the picture, in pixels: (row, column), whole numbers at the pixels' centres.
+Vec2 in_picture(double x, double y) {
+  return {(x - Workspace::x_min) / row_m - 0.5, (y - Workspace::y_min) / column_m - 0.5};
+}
+
+// Where the shadow of a point falls on the table.
+Vec2 shadow_of(Vec3 p) { return in_picture(p.x - p.z * climb * light.x, p.y - p.z * climb * light.y); }
+
+// Pixels of the picture: rows first_row..last_row, columns first_column..last_column; none where last < first.
+struct Area {
+  int first_row, last_row, first_column, last_column;
+};
+Area area_of(Vec2 low, Vec2 high) {
+  const auto up = [](double x, int n) { return static_cast<int>(std::ceil(std::clamp(x, 0.0, n + 0.0))); };
+  const auto down = [](double x, int n) { return static_cast<int>(std::floor(std::clamp(x, -1.0, n - 1.0))); };
+  return {up(low.x, rows), down(high.x, rows), up(low.y, columns), down(high.y, columns)};
+}
+
+// Calls visit(pixel, share of b, share of c) for each pixel whose centre lies in the triangle, if a, b, c run
+// counter-clockwise: the side of a surface that faces the eye (or the light) does.
+template <typename Visit>
+void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
+  const double area = cross(b - a, c - a);
+  if (area < 1e-9) return;        // turned away, or seen edge-on
+  constexpr double slack = 1e-9;  // no gap between neighbours through rounding
+  const Area box = area_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
+                           {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})});
+  const std::array<std::array<Vec2, 2>, 3> edges{{{a, b}, {b, c}, {c, a}}};
+  std::array<double, 3> slopes;
+  for (std::size_t i = 0; i < 3; ++i) slopes[i] = (edges[i][1].y - edges[i][0].y) / (edges[i][1].x - edges[i][0].x);
+  for (int row = box.first_row; row <= box.last_row; ++row) {
+    double first = box.first_column, last = box.last_column;
+    for (std::size_t i = 0; i < 3; ++i) {  // an edge that runs down bounds the row on the left, one that runs up right
+      const auto [from, to] = edges[i];
+      const double crossing = from.y + slopes[i] * (row - from.x);
+      if (to.x > from.x) first = std::max(first, crossing - slack);
+      if (to.x < from.x) last = std::min(last, crossing + slack);
+    }
+    for (int column = static_cast<int>(std::ceil(first)); column <= last; ++column) {
+      const Vec2 p{row + 0.0, column + 0.0};
+      visit(static_cast<std::size_t>(row * columns + column), cross(a - c, p - c) / area, cross(b - a, p - a) / area);
+    }
+  }
+}
+
+// An object type, ready to be drawn.
+struct Shape {
+  const Mesh* mesh;
+  std::vector<Vec3> normals;  // of the triangles, unit, in the body's frame
+  RTCScene scene;             // the mesh, for shadow rays in the body's frame
+};
+
+// A shape in this picture.
+struct Placed {
+  const Shape* shape;
+  const Texture* texture;
+  std::uint8_t id;
+  Vec3 position;
+  std::array<Vec3, 3> axes;              // of the body, in the world
+  std::vector<Vec3> vertices;            // in the world
+  std::vector<Vec2> seen_at, shadow_at;  // where the camera sees each vertex, where its shadow falls
+  Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  Vec3 light;  // in the body's frame
+  Area area;
+
+  Vec3 to_body(Vec3 direction) const {
+    return {dot(axes[0], direction), dot(axes[1], direction), dot(axes[2], direction)};
+  }
+};
+
+// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
+// object; on top, u is local y (right at yaw 0) and v local x (down).
+Rgb colour_at(const Texture& texture, Vec3 point, Vec3 normal) {
+  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+  if (z >= x && z >= y) return texture.at(point.y, point.x);
+  return x >= y ? texture.at(point.y, -point.z) : texture.at(point.x, -point.z);
+}
+
+// Brightness in 1/256 (256: the colour as it is), so that a picture takes integers only.
+Rgb lit(Rgb colour, int brightness) {
+  for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(std::min((c * brightness + 128) >> 8, 255));
+  return colour;
+}
+
+}  // namespace
+
+std::vector<VisibleObject> visible_objects(const Scene& scene) {
+  std::vector<VisibleObject> objects;
+  for (const SceneObject& o : scene.objects)
+    objects.push_back(
+        {o.object_type, o.texture, {{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)}, o.instance_id});
+  return objects;
+}
+
+struct Renderer::Impl {
+  RTCDevice device;
+  std::map<std::string, Shape> shapes;  // by object type, made at first use
+  // Of the picture in work, valid where its id is not 0: what is highest there.
+  std::vector<double> heights_m;
+  std::vector<std::uint32_t> triangles;
+
+  Impl() : heights_m(pixels), triangles(pixels) {
+    // One fixed instruction set, so that no machine takes another path through Embree; every x86-64 since 2008 has it.
+    device = rtcNewDevice("threads=1,isa=sse4.2");
+    if (!device) throw EngineError(fmt::format("Embree: not started, error {}", rtcGetDeviceError(nullptr)));
+  }
+
+  ~Impl() {
+    for (const auto& [type, shape] : shapes) rtcReleaseScene(shape.scene);
+    rtcReleaseDevice(device);
+  }
+
+  const Shape& shape_of(const std::string& type) {
+    const auto known = shapes.find(type);
+    if (known != shapes.end()) return known->second;
+    const Mesh& mesh = object_model(type).mesh;
+    Shape shape{&mesh, {}, rtcNewScene(device)};
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 normal = cross(mesh.vertices_m[b] - mesh.vertices_m[a], mesh.vertices_m[c] - mesh.vertices_m[a]);
+      shape.normals.push_back((1 / std::sqrt(dot(normal, normal))) * normal);
+    }
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices_m.size()));
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+    if (!vertices || !indices) throw EngineError(fmt::format("Embree: no memory for the mesh of \"{}\"", type));
+    for (const Vec3& v : mesh.vertices_m)
+      for (const double number : {v.x, v.y, v.z}) *vertices++ = static_cast<float>(number);
+    for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(shape.scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcSetSceneFlags(shape.scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+    rtcCommitScene(shape.scene);
+    if (const RTCError error = rtcGetDeviceError(device))
+      throw EngineError(fmt::format("Embree: the mesh of \"{}\": error {}", type, error));
+    return shapes.emplace(type, std::move(shape)).first->second;
+  }
+
+  Placed place(const VisibleObject& object) {
+    const auto& [p, q] = object.pose;
+    for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w})
+      if (!std::isfinite(number))
+        throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
+    Placed placed;
+    placed.shape = &shape_of(object.object_type);
+    placed.texture = &texture(object.texture);
+    placed.id = object.instance_id;
+    placed.position = p;
+    placed.axes = {rotated({1, 0, 0}, q), rotated({0, 1, 0}, q), rotated({0, 0, 1}, q)};
+    placed.light = placed.to_body(light);
+    for (const Vec3& local : placed.shape->mesh->vertices_m) {
+      const Vec3 v = p + local.x * placed.axes[0] + local.y * placed.axes[1] + local.z * placed.axes[2];
+      placed.vertices.push_back(v);
+      placed.seen_at.push_back(in_picture(v.x, v.y));
+      placed.shadow_at.push_back(shadow_of(v));
+      placed.low = {std::min(placed.low.x, v.x), std::min(placed.low.y, v.y), std::min(placed.low.z, v.z)};
+      placed.high = {std::max(placed.high.x, v.x), std::max(placed.high.y, v.y), std::max(placed.high.z, v.z)};
+    }
+    placed.area = area_of(in_picture(placed.low.x, placed.low.y), in_picture(placed.high.x, placed.high.y));
+    return placed;
+  }
+
+  // Ids of the pixels where this object is the highest so far, and what of it is seen there.
+  void draw(const Placed& object, Observation& seen) {
+    for (std::uint32_t i = 0; i < object.shape->normals.size(); ++i) {
+      const auto [ia, ib, ic] = object.shape->mesh->triangles[i];
+      const double a = object.vertices[ia].z, b = object.vertices[ib].z, c = object.vertices[ic].z;
+      const auto keep_highest = [&](std::size_t pixel, double of_b, double of_c) {
+        const double height = a + of_b * (b - a) + of_c * (c - a);
+        if (height <= (seen.ids[pixel] ? heights_m[pixel] : 0)) return;
+        heights_m[pixel] = height;
+        triangles[pixel] = i;
+        seen.ids[pixel] = object.id;
+      };
+      fill(object.seen_at[ia], object.seen_at[ib], object.seen_at[ic], keep_highest);
+    }
+  }
+
+  // Darkens the table where the object keeps the light from it.
+  static void shade_table(const Placed& object, Observation& seen) {
+    const Rgb shaded = lit(table_colour, ambient);
+    const auto darken = [&](std::size_t pixel, double, double) {
+      if (seen.ids[pixel] == 0) std::copy(shaded.begin(), shaded.end(), seen.rgb.begin() + 3 * pixel);
+    };
+    for (const auto& [a, b, c] : object.shape->mesh->triangles)
+      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], darken);
+  }
+
+  // An object stands between the point on a surface and the light.
+  bool is_shaded(Vec3 point, const std::vector<Placed>& objects) const {
+    for (const Placed& object : objects) {
+      const double below_top = object.high.z - point.z;
+      if (below_top < clearance_m) continue;
+      // The way to the light, as far as it is no higher than the object, against the object's box.
+      const Vec3 end = point + below_top * climb * light;
+      if (end.x > object.high.x || point.x < object.low.x || end.y > object.high.y || point.y < object.low.y) continue;
+      const Vec3 origin = object.to_body(point - object.position);
+      RTCRay ray{};
+      ray.org_x = static_cast<float>(origin.x);
+      ray.org_y = static_cast<float>(origin.y);
+      ray.org_z = static_cast<float>(origin.z);
+      ray.dir_x = static_cast<float>(object.light.x);
+      ray.dir_y = static_cast<float>(object.light.y);
+      ray.dir_z = static_cast<float>(object.light.z);
+      ray.tnear = static_cast<float>(clearance_m);
+      ray.tfar = std::numeric_limits<float>::infinity();
+      ray.mask = ~0u;
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      rtcOccluded1(object.shape->scene, &context, &ray);
+      if (ray.tfar < 0) return true;  // Embree's mark of a hit
+    }
+    return false;
+  }
+
+  // Colours of the pixels that show this object.
+  void paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
+    for (int row = object.area.first_row; row <= object.area.last_row; ++row)
+      for (int column = object.area.first_column; column <= object.area.last_column; ++column) {
+        const auto pixel = static_cast<std::size_t>(row * columns + column);
+        if (seen.ids[pixel] != object.id) continue;
+        const Vec3 point{Workspace::x_min + (row + 0.5) * row_m, Workspace::y_min + (column + 0.5) * column_m,
+                         heights_m[pixel]};
+        const Vec3 normal = object.shape->normals[triangles[pixel]];
+        const double cosine = dot(normal, object.light);
+        const bool in_light = cosine > 0 && !is_shaded(point, objects);
+        const int brightness = ambient + (in_light ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0);
+        const Rgb colour = lit(colour_at(*object.texture, object.to_body(point - object.position), normal), brightness);
+        std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
+      }
+  }
+};
+
+Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
+Renderer::~Renderer() = default;
+
+Observation Renderer::render(const std::vector<VisibleObject>& objects) {
+  std::array<bool, 256> taken{true};  // 0 is the table's
+  std::vector<Placed> placed;
+  for (const VisibleObject& object : objects) {
+    if (taken[object.instance_id])
+      throw InputError(fmt::format("instance id {}: expected 1 to 255, each once", object.instance_id));
+    taken[object.instance_id] = true;
+    placed.push_back(impl_->place(object));
+  }
+
+  static const std::vector<std::uint8_t> empty_table = [] {
+    std::vector<std::uint8_t> rgb;
+    for (int i = 0; i < pixels; ++i) rgb.insert(rgb.end(), table_colour.begin(), table_colour.end());
+    return rgb;
+  }();
+  Observation seen{empty_table, std::vector<std::uint8_t>(pixels), {}};
+  for (const Placed& object : placed) impl_->draw(object, seen);
+  for (const Placed& object : placed) Impl::shade_table(object, seen);
+  for (const Placed& object : placed) impl_->paint(object, placed, seen);
+
+  std::array<int, 256> visible{};
+  for (const std::uint8_t id : seen.ids) ++visible[id];
+  for (const VisibleObject& o : objects)
+    seen.instances.push_back({o.instance_id, o.object_type, o.texture, visible[o.instance_id]});
+  return seen;
+}
+
+}  // namespace lgabench::tabletop

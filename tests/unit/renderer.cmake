@@ -1,0 +1,1 @@
+lgabench_unit_test(renderer_test SOURCES renderer_test.cpp LINK lgabench_tabletop)

@@ -1,0 +1,1 @@
+lgabench_unit_test(textures_test SOURCES textures_test.cpp LINK lgabench_tabletop)
