@@ -1,0 +1,53 @@
+// A run as it lies on disk (docs/formats), read and checked into values.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench::report {
+
+/// Members of timing.json, in the order of the pipeline.
+constexpr std::array<const char*, 6> phases{"select_s", "sample_s",   "demonstrate_s",
+                                            "learn_s",  "evaluate_s", "total_s"};
+
+struct PlayedEpisode {
+  std::string arm, failure;  // failure is "none" exactly on success
+  bool success = false;
+};
+
+/// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
+struct CellResult {
+  std::string key, scenario, utterance, layout, engine, method, kind;  // kind: method or reference
+  int demonstrations = 0, episodes_per_arm = 0;
+  long long training_seed = 0;
+  std::vector<std::string> arms;
+  bool failed = false;
+  std::string fault, reason;  // where it failed; fault: plugin or host
+  std::vector<PlayedEpisode> episodes;
+  Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
+  Json timing;              // as in timing.json
+
+  bool is_reference() const { return kind == "reference"; }
+};
+
+struct RunResults {
+  std::string suite;
+  Json json;                      // run.json
+  std::vector<CellResult> cells;  // by layout, engine, scenario (in run.json's order), method, demonstrations, seed
+  bool smoke = false;             // stamped as not for the leaderboard
+  int not_run = 0;                // asked for by run.json, not there
+  int foreign = 0;                // there, not asked for by run.json: ignored
+};
+
+/// Every word that `failure` may be on an episode that was not won, in a fixed order.
+std::vector<std::string> failure_words();
+
+/// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
+/// @throws InputError naming file and line or place for a file that is missing, malformed, or not what status.json's
+/// checksums say; and for two cells that measure the same.
+RunResults read_run(const fs::path& run);
+
+}  // namespace lgabench::report

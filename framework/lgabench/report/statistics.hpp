@@ -1,0 +1,36 @@
+// Intervals and tests for success rates.
+#pragma once
+#include <string_view>
+#include <vector>
+
+namespace lgabench::report {
+
+struct Interval {
+  double low = 0, high = 1;
+};
+
+/// Wilson's score interval for a binomial proportion, 95 % (Wilson 1927; Brown, Cai and DasGupta 2001).
+/// `successes` need not be whole: a mean of rates times the episodes behind it. @pre 0 <= successes <= episodes > 0
+Interval wilson(double successes, int episodes);
+
+/// Exact two-sided McNemar test of two policies on the same scenes: the probability of a split at least as uneven as
+/// `only_first` against `only_second` (scenes that one of them alone won) were both equally good. @pre both >= 0
+double mcnemar(int only_first, int only_second);
+
+/// Success rates of the policies of one scenario, one a training seed.
+using Cluster = std::vector<double>;
+
+/// Mean over clusters of the mean within each. @pre no cluster is empty, nor the list
+double cluster_mean(const std::vector<Cluster>& clusters);
+
+/// 95 % percentile interval of cluster_mean under a two-stage bootstrap, 10,000 times: clusters (scenarios) are drawn
+/// with replacement, then within each its rates (training seeds). Episodes of one policy are not drawn anew: they are
+/// not independent. `name` seeds the random stream: the same arguments give the same bits. @pre as cluster_mean
+Interval cluster_bootstrap(const std::vector<Cluster>& clusters, std::string_view name);
+
+/// Interval of cluster_mean for a table. One policy: Wilson's. More: the bootstrap's, but nowhere narrower than
+/// Wilson's on all their episodes, since differences between policies only add to the chance in each, and with a few
+/// policies that happen to agree the bootstrap has hardly any width. Arguments as the two; `episodes` in all.
+Interval success_interval(const std::vector<Cluster>& clusters, int episodes, std::string_view name);
+
+}  // namespace lgabench::report

@@ -1,0 +1,141 @@
+// A run directory written by a test, with known outcomes, as docs/formats describes it.
+#pragma once
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+/// Lives in the test's temporary directory; removed at the end.
+class FabricatedRun {
+ public:
+  FabricatedRun() : path(fs::path(testing::TempDir()) / ("lgabench_report_" + std::to_string(::getpid()))) {
+    fs::remove_all(path);
+    run = {{"suite", "q1"},
+           {"preset", "smoke"},
+           {"smoke", true},
+           {"cells", Json::array()},
+           {"version", "0.1.0"},
+           {"machine", {{"processor", "a processor"}, {"cores", 2}, {"memory_gib", 8.0}, {"system", "Linux"}}},
+           {"plugins", {{{"kind", "method"}, {"id", "lga"}, {"version", "0.1"}, {"sha256", std::string(64, 'a')}}}},
+           {"build", {{"lgabench-worker", std::string(64, 'b')}}},
+           {"request", Json::object()},
+           {"command", "lgabench run q1"},
+           {"started", "2024-05-07T12:00:00Z"}};
+  }
+  ~FabricatedRun() { fs::remove_all(path); }
+
+  struct Spec {
+    std::string method;
+    int won = 0;  // of 20: the first
+    std::string scenario = "heart";
+    int demonstrations = 20, seed = 0;
+    std::string kind = "method", layout = "cells", failure = "missed_object";
+  };
+
+  static Json cell_json(const Spec& s) {
+    return {{"suite", "q1"},
+            {"environment", "tabletop"},
+            {"layout", s.layout},
+            {"scenario",
+             {{"id", s.scenario},
+              {"environment", "tabletop"},
+              {"task", "pick_and_place"},
+              {"utterance", "Bring me the " + s.scenario + "."},
+              {"tests", {{{"arm", "test"}}}}}},
+            {"engine", "mujoco"},
+            {"method", {{"kind", s.kind}, {"id", s.method}, {"version", "0.1"}, {"options", Json::object()}}},
+            {"demonstrations", s.demonstrations},
+            {"training_seed", s.seed},
+            {"scene_seed", 7},
+            {"episodes", 20},
+            {"answers", "recorded"},
+            {"data", {{"answers", std::string(64, 'c')}}},
+            {"smoke", true}};
+  }
+
+  static Json selection_json(const Spec& s) {
+    const Json quality{{"precision", 1.0}, {"recall", 0.75}, {"size", 3}, {"true_size", 4}};
+    const bool selects = s.method == "lga" || s.method == "human";
+    return {
+        {"selection",
+         {{"target", {{"object_types", {"heart"}}, {"textures", {"red", "tiger"}}}},
+          {"provenance", s.method == "lga" ? "recorded"
+                         : selects         ? "truth"
+                                           : "none"},
+          {"source", selects ? "gpt-4" : ""},
+          {"asked_as", selects ? "fetch | heart" : ""},
+          {"cost",
+           {{"lm_queries", selects ? 112 : 0}, {"lm_tokens", 0}, {"lm_seconds", 0.0}, {"human_seconds", 0.0}}}}},
+        {"quality",
+         selects ? Json{{"target", {{"object_types", quality}, {"textures", quality}}}, {"avoid", nullptr}} : Json()}};
+  }
+
+  /// A cell that finished; returns its directory.
+  fs::path add(const Spec& s) {
+    std::string episodes, training;
+    for (int i = 0; i < 20; ++i)
+      episodes += canonical({{"arm", "test"},
+                             {"index", i},
+                             {"scene", hex(static_cast<std::uint64_t>(i))},
+                             {"success", i < s.won},
+                             {"failure", i < s.won ? "none" : s.failure},
+                             {"action", std::vector<double>(12, 0.5)}}) +
+                  '\n';
+    for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
+    const Json timing{{"select_s", 0.25}, {"sample_s", 0.5},   {"demonstrate_s", 1.0},
+                      {"learn_s", 4.0},   {"evaluate_s", 2.0}, {"total_s", 7.75}};
+    const fs::path cell = new_cell(s);
+    Json files;
+    for (const auto& [name, text] :
+         std::vector<std::pair<std::string, std::string>>{{"cell.json", canonical(cell_json(s)) + '\n'},
+                                                          {"selection.json", canonical(selection_json(s)) + '\n'},
+                                                          {"training.jsonl", training},
+                                                          {"episodes.jsonl", episodes},
+                                                          {"timing.json", canonical(timing) + '\n'}}) {
+      write_file(cell / name, text);
+      files[name] = sha256(text);
+    }
+    write_file(cell / "status.json", canonical({{"state", "ok"}, {"build", Json::object()}, {"files", files}}) + '\n');
+    return cell;
+  }
+
+  /// A cell that failed.
+  fs::path add_failed(const Spec& s, const std::string& fault) {
+    const fs::path cell = new_cell(s);
+    write_file(cell / "cell.json", canonical(cell_json(s)) + '\n');
+    write_file(cell / "status.json", canonical({{"state", "failed"},
+                                                {"reason", "signal 11 (Segmentation fault) in phase learn"},
+                                                {"signal", 11},
+                                                {"fault", fault},
+                                                {"build", Json::object()},
+                                                {"files", Json::object()},
+                                                {"log_tail", {"last words"}}}) +
+                                         '\n');
+    return cell;
+  }
+
+  /// Writes run.json as it stands.
+  const FabricatedRun& save() const {
+    write_file(path / "run.json", canonical(run) + '\n');
+    return *this;
+  }
+
+  fs::path path;
+  Json run;
+
+ private:
+  fs::path new_cell(const Spec& s) {
+    const std::string key = sha256(canonical(cell_json(s))).substr(0, 16);
+    run["cells"].push_back(key);
+    return path / "cells" / key;
+  }
+};
+
+}  // namespace lgabench

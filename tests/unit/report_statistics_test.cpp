@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// Newcombe, Statistics in Medicine 17 (1998), table I, score method without continuity correction.
+TEST(Wilson, PublishedValues) {
+  struct Case {
+    int successes, episodes;
+    double low, high;
+  };
+  for (const Case& c : {Case{81, 263, .2553, .3662}, Case{15, 148, .0624, .1605}, Case{0, 20, 0, .1611},
+                        Case{1, 29, .0061, .1718}, Case{15, 20, .5313, .8881}}) {
+    const Interval interval = wilson(c.successes, c.episodes);
+    EXPECT_NEAR(interval.low, c.low, 5e-5) << c.successes << "/" << c.episodes;
+    EXPECT_NEAR(interval.high, c.high, 5e-5) << c.successes << "/" << c.episodes;
+  }
+}
+
+TEST(Wilson, ReachesTheEndsExactlyAndIsSymmetric) {
+  EXPECT_EQ(wilson(0, 20).low, 0);
+  EXPECT_EQ(wilson(20, 20).high, 1);
+  EXPECT_NEAR(wilson(20, 20).low, 1 - wilson(0, 20).high, 1e-15);
+}
+
+// 2 sum_{k <= min} C(n, k) / 2^n in exact fractions (Python's fractions.Fraction), then rounded to a double.
+TEST(McNemar, ExactFractions) {
+  EXPECT_NEAR(mcnemar(1, 9), 0.021484375, 1e-14);
+  EXPECT_NEAR(mcnemar(5, 15), 0.04138946533203125, 1e-14);
+  EXPECT_NEAR(mcnemar(15, 5), 0.04138946533203125, 1e-14);
+  EXPECT_NEAR(mcnemar(0, 5), 0.0625, 1e-15);
+  EXPECT_EQ(mcnemar(0, 0), 1);
+  EXPECT_EQ(mcnemar(7, 7), 1);
+  EXPECT_NEAR(mcnemar(3000, 3200), 0.011488253770871206, 1e-12);  // 2^-6200 is no double
+}
+
+// The resampling distribution written out in exact fractions (Python: the mean of every draw within a cluster, mixed
+// over clusters, convolved over draws). Its quantiles at 2.5 % and 97.5 %, chosen to lie well inside a step of it.
+TEST(ClusterBootstrap, ExactResamplingDistributions) {
+  // Eight seeds of one scenario, half of which won: binomial(8, 1/2) / 8; P(<= 0) = .0039, P(<= 1/8) = .0352.
+  const Interval seeds = cluster_bootstrap({{0, 1, 0, 1, 0, 1, 0, 1}}, "test/seeds");
+  EXPECT_DOUBLE_EQ(seeds.low, .125);
+  EXPECT_DOUBLE_EQ(seeds.high, .875);
+  // Two scenarios that differ, seeds that do not: 0, 1/2, 1 with probability 1/4, 1/2, 1/4. Drawing seeds alone gives
+  // 1/2 always.
+  const Interval scenarios = cluster_bootstrap({{0, 0, 0}, {1, 1, 1}}, "test/scenarios");
+  EXPECT_DOUBLE_EQ(scenarios.low, 0);
+  EXPECT_DOUBLE_EQ(scenarios.high, 1);
+  // Both, with unequal numbers of seeds: P(< 1/4) = .0096, P(<= 1/4) = .0314; P(< 11/12) = .9635, P(<= 11/12) = .9794.
+  const Interval both = cluster_bootstrap({{0, .5, 1}, {.5, 1}}, "test/both");
+  EXPECT_NEAR(both.low, .25, 1e-12);
+  EXPECT_NEAR(both.high, 11. / 12, 1e-12);
+}
+
+TEST(ClusterBootstrap, SameNameSameBits) {
+  const std::vector<Cluster> clusters{{.11, .52, .83}, {.94, .15, .36}, {.07, .18, .59}};
+  const Interval a = cluster_bootstrap(clusters, "a"), again = cluster_bootstrap(clusters, "a");
+  EXPECT_EQ(a.low, again.low);
+  EXPECT_EQ(a.high, again.high);
+  const Interval b = cluster_bootstrap(clusters, "b");
+  EXPECT_TRUE(a.low != b.low || a.high != b.high);
+  EXPECT_NEAR(a.low, b.low, .03);
+}
+
+TEST(ClusterMean, WeighsClustersAlike) { EXPECT_DOUBLE_EQ(cluster_mean({{1}, {0, 0, .5, .5}}), .625); }
+
+TEST(SuccessInterval, IsWilsonsForOnePolicy) {
+  EXPECT_NEAR(success_interval({{.75}}, 20, "x").low, .5313, 5e-5);
+  EXPECT_NEAR(success_interval({{.75}}, 20, "x").high, .8881, 5e-5);
+}
+
+TEST(SuccessInterval, IsTheWiderOfBootstrapAndWilson) {
+  // Policies that agree: the bootstrap has no width.
+  const Interval agree = success_interval({{1, 1, 1}}, 60, "x");
+  EXPECT_EQ(agree.low, wilson(60, 60).low);
+  // Policies that differ widely: Wilson's, which takes all episodes for independent, is too narrow.
+  const Interval differ = success_interval({{0, 0, 0}, {1, 1, 1}}, 120, "x");
+  EXPECT_EQ(differ.low, 0);
+  EXPECT_EQ(differ.high, 1);
+}
+
+}  // namespace
+}  // namespace lgabench::report

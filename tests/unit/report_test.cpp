@@ -1,0 +1,322 @@
+// Reports of fabricated runs, whose numbers are known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <regex>
+#include <set>
+
+#include <lgabench/report/figure.hpp>
+#include <lgabench/report/report.hpp>
+#include <lgabench/report/statistics.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+std::string complaint(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "no InputError";
+}
+
+#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "said: " << (text)
+#define EXPECT_SILENT(text, part) EXPECT_EQ((text).find(part), std::string::npos) << "said: " << (text)
+
+Json summary_of(const FabricatedRun& run) {
+  report::write_report(run.save().path);
+  return read_json(run.path / "summary.json");
+}
+
+// The only row of a scenario and method; null if there is none.
+Json row_of(const Json& summary, const std::string& scenario, const std::string& method, int demonstrations = 20) {
+  Json found;
+  for (const Json& row : summary.at("rows"))
+    if (row.at("scenario") == scenario && row.at("method") == method && row.at("demonstrations") == demonstrations) {
+      EXPECT_TRUE(found.is_null()) << "twice";
+      found = row;
+    }
+  return found;
+}
+
+TEST(Summary, RowsHaveTheExactCounts) {
+  FabricatedRun run;
+  run.add({"lga", 15, "heart", 20, 0});
+  run.add({"gcbc_dart", 2, "heart", 20, 0});
+  run.add({"lga", 5, "letter", 20, 0, "method", "cells", "wrong_object"});
+  run.add({"constant_action", 6, "heart", 20, 0, "reference"});
+  run.add({"oracle", 20, "heart", 0, 0, "reference"});
+  const Json summary = summary_of(run);
+  EXPECT_EQ(summary.at("suite"), "q1");
+  EXPECT_EQ(summary.at("failed_cells"), Json::array());
+  EXPECT_EQ(summary.at("rows").size(), 9u);  // five, and a mean of each of four
+
+  const Json lga = row_of(summary, "heart", "lga");
+  EXPECT_EQ(lga.at("seeds"), 1);
+  EXPECT_EQ(lga.at("episodes"), 20);
+  EXPECT_EQ(lga.at("successes"), 15);
+  EXPECT_EQ(lga.at("success"), 0.75);
+  EXPECT_NEAR(lga.at("low"), .5313, 5e-5);
+  EXPECT_NEAR(lga.at("high"), .8881, 5e-5);
+  EXPECT_EQ(lga.at("failures"), (Json{{"missed_object", 5}}));
+  EXPECT_EQ(lga.at("marks"), Json::array());
+  EXPECT_EQ(lga.at("phi").at("provenance"), "recorded");
+  EXPECT_EQ(lga.at("phi").at("lm_queries"), 112);
+  EXPECT_EQ(lga.at("phi").at("quality").at("target").at("textures").at("recall"), 0.75);
+  EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("phi"), nullptr);
+
+  const Json mean = row_of(summary, "(mean)", "lga");
+  EXPECT_EQ(mean.at("success"), 0.5);
+  EXPECT_EQ(mean.at("episodes"), 40);
+  EXPECT_EQ(mean.at("failures"), (Json{{"missed_object", 5}, {"wrong_object", 15}}));
+  EXPECT_EQ(mean.at("low"), 0.25);  // bootstrap over two scenarios: both the worse one
+  EXPECT_EQ(mean.at("high"), 0.75);
+  EXPECT_EQ(mean.at("phi"), nullptr);
+}
+
+TEST(Summary, SeveralSeedsAreAveraged) {
+  FabricatedRun run;
+  run.add({"lga", 20, "heart", 20, 0});
+  run.add({"lga", 10, "heart", 20, 1});
+  run.add({"lga", 0, "heart", 20, 2});
+  const Json row = row_of(summary_of(run), "heart", "lga");
+  EXPECT_EQ(row.at("seeds"), 3);
+  EXPECT_EQ(row.at("episodes"), 60);
+  EXPECT_EQ(row.at("success"), 0.5);
+  // Means of three draws from 0, 1/2, 1: P(0) = 1/27 is above 2.5 %.
+  EXPECT_EQ(row.at("low"), 0.0);
+  EXPECT_EQ(row.at("high"), 1.0);
+}
+
+TEST(Summary, ReferenceRowsMarkWhatLearnedNothing) {
+  FabricatedRun run;
+  run.add({"constant_action", 6, "heart", 20, 0, "reference"});
+  run.add({"constant_action", 2, "heart", 50, 0, "reference"});
+  run.add({"lga", 6, "heart", 20, 0});                                // as good: not below
+  run.add({"gcbc_dart", 5, "heart", 20, 0});                          // below
+  run.add({"gcbc_dart", 5, "heart", 50, 0});                          // above that of 50
+  run.add({"gcbc_dart", 1, "heart", 20, 0, "method", "continuous"});  // no reference in that layout
+  const Json summary = summary_of(run);
+  std::set<std::string> marked;
+  for (const Json& row : summary.at("rows"))
+    if (row.at("marks") == Json{"baseline_not_learned"})
+      marked.insert(row.at("scenario").get<std::string>() + " " + row.at("method").get<std::string>() + " " +
+                    row.at("demonstrations").dump() + " " + row.at("layout").get<std::string>());
+    else
+      EXPECT_EQ(row.at("marks"), Json::array());
+  EXPECT_EQ(marked, (std::set<std::string>{"heart gcbc_dart 20 cells", "(mean) gcbc_dart 20 cells"}));
+  EXPECT_SAYS(report::table_text(run.path), "baseline not learned");
+}
+
+TEST(Summary, FailedCellsAreListedAndNeverCounted) {
+  FabricatedRun run;
+  run.add({"lga", 15, "heart", 20, 0});
+  run.add_failed({"lga", 0, "heart", 20, 1}, "host");
+  run.add_failed({"gcbc_dart", 0, "heart", 20, 0}, "plugin");
+  const Json summary = summary_of(run);
+  const Json lga = row_of(summary, "heart", "lga"), gcbc = row_of(summary, "heart", "gcbc_dart");
+  EXPECT_EQ(lga.at("episodes"), 20);
+  EXPECT_EQ(lga.at("success"), 0.75);
+  EXPECT_EQ(lga.at("n_error"), 20);
+  EXPECT_EQ(lga.at("marks"), Json{"incomplete"});
+  EXPECT_EQ(gcbc.at("episodes"), 0);
+  EXPECT_EQ(gcbc.at("success"), nullptr);
+  EXPECT_EQ(gcbc.at("low"), nullptr);
+  EXPECT_EQ(gcbc.at("n_error"), 0);  // the plugin's own fault
+  EXPECT_EQ(summary.at("failed_cells").size(), 2u);
+  const std::string text = report::table_text(run.path), page = read_file(run.path / "report.md");
+  EXPECT_SAYS(text, "failed: gcbc_dart heart cells mujoco n=20 seed=0 (plugin): signal 11 (Segmentation fault)");
+  EXPECT_SAYS(page, "## Cells that failed");
+  EXPECT_SAYS(page, "1 finished, 2 failed, 0 not run");
+}
+
+TEST(Summary, AMeanThatLacksAScenarioSaysSo) {
+  FabricatedRun run;
+  run.add({"lga", 20, "heart"});
+  run.add({"lga", 10, "letter"});
+  run.add({"gcbc_dart", 10, "heart"});
+  const Json summary = summary_of(run);
+  EXPECT_EQ(row_of(summary, "(mean)", "lga").at("marks"), Json::array());
+  EXPECT_EQ(row_of(summary, "(mean)", "gcbc_dart").at("marks"), Json{"incomplete"});
+}
+
+TEST(Report, TwiceGivesTheSameBytes) {
+  FabricatedRun run;
+  for (const char* layout : {"cells", "continuous"})
+    for (int seed = 0; seed < 2; ++seed)
+      for (int n : {10, 20}) {
+        run.add({"lga", 10 + seed, "heart", n, seed, "method", layout});
+        run.add({"constant_action", 5 + seed, "heart", n, seed, "reference", layout});
+      }
+  run.save();
+  const std::vector<std::string> files{"summary.json", "summary.csv", "report.md", "figures/success_cells_mujoco.svg",
+                                       "figures/success_continuous_mujoco.svg"};
+  const auto written = [&] {
+    report::write_report(run.path);
+    std::vector<std::string> bytes;
+    for (const std::string& file : files) {
+      bytes.push_back(read_file(run.path / file));
+      fs::remove(run.path / file);
+    }
+    return bytes;
+  };
+  const auto first = written(), second = written();
+  for (std::size_t i = 0; i < files.size(); ++i) EXPECT_EQ(first[i], second[i]) << files[i];
+  EXPECT_SAYS(first[3], "<svg");
+  EXPECT_SAYS(first[3], "LGA");
+}
+
+TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
+  FabricatedRun run;
+  for (int seed = 0; seed < 3; ++seed)
+    for (int n : {10, 20, 50})
+      for (const char* scenario : {"heart", "letter"}) {
+        run.add({"lga", 3 + n / 5 + seed, scenario, n, seed});
+        run.add({"gcbc_dart", seed, scenario, n, seed});
+        run.add({"constant_action", 2 + seed, scenario, n, seed, "reference"});
+      }
+  run.add({"oracle", 20, "heart", 0, 0, "reference"});
+  const Json summary = summary_of(run);
+  std::set<std::string> known;
+  for (const Json& row : summary.at("rows")) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f [%.2f, %.2f]", row.at("success").get<double>(), row.at("low").get<double>(),
+                  row.at("high").get<double>());
+    known.insert(text);
+  }
+  const std::regex number(R"(\d\.\d\d \[[^\]]*\])");
+  for (const std::string& page : {read_file(run.path / "report.md"), report::table_text(run.path)}) {
+    std::set<std::string> shown;
+    for (std::sregex_iterator it(page.begin(), page.end(), number), end; it != end; ++it) shown.insert(it->str());
+    EXPECT_EQ(shown, known);
+  }
+}
+
+TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.add({"gcbc_dart", 5});
+  run.add({"human", 18});
+  run.add({"a_method_of_mine", 3});
+  run.add({"random_object", 8, "heart", 0, 0, "reference"});
+  run.save();
+  const std::string text = report::table_text(run.path);
+  const std::size_t lga = text.find("\n  LGA "), human = text.find("\n  Human "), gcbc = text.find("\n  GCBC-DART "),
+                    mine = text.find("\n  a_method_of_mine "), rule = text.find("\n  -----"),
+                    random = text.find("\n  random visible object ");
+  for (const std::size_t at : {lga, human, gcbc, mine, rule, random}) ASSERT_NE(at, std::string::npos) << text;
+  EXPECT_TRUE(lga < human && human < gcbc && gcbc < mine && mine < rule && rule < random) << text;
+  EXPECT_SAYS(text, "Human: true φ̂: an upper bound, no human data");
+
+  report::write_report(run.path);
+  const std::string page = read_file(run.path / "report.md");
+  EXPECT_SAYS(page, "| *LGA, the paper* | *0.293* |");
+  EXPECT_SAYS(page, "| heart | LGA | target | a language model's recorded answers | gpt-4 | 1.00 | 0.75 | 3 of 4 |");
+  EXPECT_SAYS(page, "fetch \\| heart");  // a bar inside a cell
+  EXPECT_SAYS(page, "| cells | mujoco | LGA | 1 | 0.25 | 0.50 | 1.00 | 4.00 | 2.00 | 7.75 |");
+}
+
+TEST(Report, CsvHoldsTheRows) {
+  FabricatedRun run;
+  run.add({"lga", 15, "heart, or \"not\""});
+  summary_of(run);
+  const std::string csv = read_file(run.path / "summary.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
+            "n_error,marks,missed_object,wrong_object,bad_placement,bad_angle,missed_zone,touched_obstacle,"
+            "left_workspace,truncated,abstraction_empty,method_error");
+  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,20,15,0.75,0.53");
+  EXPECT_SAYS(csv, ",0,,5,0,0,0,0,0,0,0,0,0\n");
+}
+
+TEST(Report, WithoutGnuplotItSaysSoAndGoesOn) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.save();
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", "/nowhere", 1);
+  report::write_report(run.path);
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_SAYS(read_file(run.path / "report.md"), "No figure: gnuplot is not installed.");
+  EXPECT_FALSE(fs::exists(run.path / "figures/success_cells_mujoco.svg"));
+}
+
+TEST(Report, AnIdCannotLeaveItsStringOrDirectory) {
+  FabricatedRun run;
+  run.add({"a'\nsystem 'touch broken'\n", 15, "heart", 20, 0, "method", "../../up"});
+  run.save();
+  report::write_report(run.path);
+  EXPECT_TRUE(fs::exists(run.path / "figures/success_______up_mujoco.svg"));
+  const std::string script = read_file(run.path / "figures/success_______up_mujoco.gp");
+  EXPECT_SAYS(script, "'a'' system ''touch broken'' '");
+  EXPECT_SILENT(script, "\nsystem");
+}
+
+TEST(Run, WithoutACellSaysSo) {
+  FabricatedRun run;
+  run.run["cells"] = {"0123456789abcdef"};
+  run.save();
+  EXPECT_SAYS(complaint([&] { report::write_report(run.path); }), "no cell of the run has been played yet");
+  EXPECT_SAYS(complaint([&] { report::table_text(run.path / "elsewhere"); }), "elsewhere/run.json: cannot be read");
+}
+
+TEST(Run, UnfinishedAndForeignDirectoriesAreNoCells) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  fs::create_directories(run.path / "cells/.0123456789abcdef.77");
+  fs::rename(run.add({"gcbc_dart", 5}), run.path / "cells/.fedcba9876543210.78");  // asked for, not there
+  run.add({"lga", 1, "letter"});
+  run.run["cells"].erase(2);  // there, not asked for
+  const Json summary = summary_of(run);
+  EXPECT_EQ(summary.at("rows").size(), 2u);
+  const std::string text = report::table_text(run.path);
+  EXPECT_SAYS(text, "1 of 2 cells have not run yet");
+  EXPECT_SAYS(text, "1 cell directories that run.json does not list were left out");
+}
+
+// Bad input is named with file and place.
+TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
+  const auto broken = [](const std::string& file, const std::function<std::string(std::string)>& change) {
+    FabricatedRun run;
+    const fs::path cell = run.add({"lga", 15});
+    run.save();
+    write_file(cell / file, change(read_file(cell / file)));
+    return complaint([&] { report::write_report(run.path); });
+  };
+  const auto half = [](const std::string& text) { return text.substr(0, text.size() / 2); };
+  const auto replacing = [](const std::string& from, const std::string& to) {
+    return [=](std::string text) { return text.replace(text.find(from), from.size(), to); };
+  };
+  EXPECT_SAYS(broken("episodes.jsonl", half), "episodes.jsonl: line 11: expected valid JSON");
+  EXPECT_SAYS(broken("cell.json", half), "cell.json: line 1 (byte");
+  EXPECT_SAYS(broken("status.json", half), "status.json: line 1 (byte");
+  EXPECT_SAYS(broken("selection.json", [](auto) { return "[]\n"; }), "selection.json: /: expected an object");
+  EXPECT_SAYS(broken("timing.json", replacing("learn_s", "slept_s")), "timing.json: /: expected a member \"learn_s\"");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("missed_object", "bad_luck")),
+              "episodes.jsonl: line 16: /failure: expected none, missed_object");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("missed_object", "none")),
+              "line 16: /failure: expected \"none\" exactly");
+  EXPECT_SAYS(broken("episodes.jsonl", [](auto text) { return text.substr(0, text.find('\n') + 1); }),
+              "episodes.jsonl: line 1: expected 20 episodes of arm \"test\", got 1");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("\"index\":3", "\"index\":4")),
+              "episodes.jsonl: differs from its checksum in status.json");
+}
+
+TEST(Run, TwoCellsOfOneMeasurementAreRefused) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  const fs::path twin = run.path / "cells/0123456789abcdef";
+  fs::copy(run.path / "cells" / run.run["cells"][0].get<std::string>(), twin);
+  run.run["cells"].push_back("0123456789abcdef");
+  run.save();
+  EXPECT_SAYS(complaint([&] { report::write_report(run.path); }), "0123456789abcdef");
+  EXPECT_SAYS(complaint([&] { report::write_report(run.path); }), "measure the same");
+}
+
+}  // namespace
+}  // namespace lgabench
