@@ -1,8 +1,8 @@
 #include "mujoco/mujoco_world.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <limits>
 
 #include <lgabench/core/error.hpp>
@@ -11,10 +11,10 @@ namespace lgabench {
 namespace {
 
 constexpr double time_step = 0.005;
-constexpr double rest_speed = 5e-4;                   // m/s; also the tolerance below which MuJoCo lets a body sleep
-constexpr double rest_turn = 0.5 * 3.14159265 / 180;  // rad/s
-constexpr int awake_now = -(1 + mjMINAWAKE);
+constexpr double stiffest = 2 * time_step;  // time constant of contacts and of suction that the step bears
+constexpr double rest_speed = 5e-4;         // m/s: slower bodies may fall asleep
 
+constexpr int disabled = mjDSBL_AUTORESET;  // an instability is an error, not a new start
 /// Far beside the table, each body in its own place: parked bodies have no contacts, but must not stack for a picture.
 constexpr double parking_distance = 10, parking_gap = 1;
 
@@ -29,11 +29,37 @@ Pose get(const double* position, const double* quaternion) {
   return {{position[0], position[1], position[2]}, {quaternion[1], quaternion[2], quaternion[3], quaternion[0]}};
 }
 
+/// Height at which the vertical line through `point` leaves the convex mesh `geom`; -infinity where it passes by.
+/// MuJoCo's own rays slip through the seam between two pieces: here pieces are closed sets.
+double top_at(const mjModel* m, const mjData* d, int geom, Vec2 point) {
+  constexpr double infinity = std::numeric_limits<double>::infinity(), tolerance_m = 1e-6, vertical = 1e-9;
+  const int mesh = m->geom_dataid[geom];
+  double top = infinity, bottom = -infinity;
+  for (int face = m->mesh_polyadr[mesh]; face < m->mesh_polyadr[mesh] + m->mesh_polynum[mesh]; ++face) {
+    const float* vertex = m->mesh_vert + 3 * (m->mesh_vertadr[mesh] + m->mesh_polyvert[m->mesh_polyvertadr[face]]);
+    const double local[3] = {vertex[0], vertex[1], vertex[2]};
+    double normal[3], corner[3];
+    mju_mulMatVec3(normal, d->geom_xmat + 9 * geom, m->mesh_polynormal + 3 * face);
+    mju_mulMatVec3(corner, d->geom_xmat + 9 * geom, local);
+    mju_addTo3(corner, d->geom_xpos + 3 * geom);
+    // Inside this face: normal.z * z <= room.
+    const double room = mju_dot3(normal, corner) - normal[0] * point.x - normal[1] * point.y;
+    if (normal[2] > vertical)
+      top = std::min(top, room / normal[2]);
+    else if (normal[2] < -vertical)
+      bottom = std::max(bottom, room / normal[2]);
+    else if (room < -tolerance_m)
+      return -infinity;
+  }
+  return bottom <= top + tolerance_m ? top : -infinity;
+}
+
 [[noreturn]] void raise(const char* message) { throw EngineError(fmt::format("MuJoCo: {}", message)); }
 
 }  // namespace
 
-MujocoWorld::MujocoWorld() : model_(nullptr, mj_deleteModel), data_(nullptr, mj_deleteData) {
+MujocoWorld::MujocoWorld()
+    : model_(nullptr, mj_deleteModel), data_(nullptr, mj_deleteData), pristine_(nullptr, mj_deleteData) {
   // MuJoCo's own handlers end the process and write a log file into the working directory.
   mju_user_error = raise;
   mju_user_warning = [](const char*) {};  // check() reads the warnings from the data
@@ -43,8 +69,11 @@ void MujocoWorld::load(const std::vector<BodyModel>& models, int copies) {
   if (model_) throw EngineError("MuJoCo: load() is called once");
   compile(models, copies);
   data_.reset(mj_makeData(model_.get()));
-  if (!data_) throw EngineError("MuJoCo: no memory for the simulation state");
+  pristine_.reset(mj_makeData(model_.get()));
+  if (!data_ || !pristine_) throw EngineError("MuJoCo: no memory for the simulation state");
   mj_setConst(model_.get(), data_.get());  // inertial constants follow the masses set after compiling
+  mj_resetData(model_.get(), pristine_.get());
+  mj_forward(model_.get(), pristine_.get());
 }
 
 void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
@@ -52,13 +81,14 @@ void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
   mjData* d = data_.get();
   if (!d) throw EngineError("MuJoCo: reset() before load()");
   for (const Slot& s : placed_) {
-    set_collidable(s, false);
-    if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_INIT;
+    set_collidable(s.body, false);
+    if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_ALLOWED;
     std::fill_n(owner_.begin() + s.first_geom, s.geoms, no_body);
   }
+  set_collidable(spatula_body_, false);
   placed_.clear();
   held_ = no_body;
-  m->geom_contype[spatula_geom_] = m->geom_conaffinity[spatula_geom_] = 0;
+  mj_copyData(d, m, pristine_.get());  // a copy costs an eighth of mj_resetData, which computes the parked bodies anew
 
   std::vector<std::size_t> used(pool_.size(), 0);
   for (const BodyPlacement& p : placements) {
@@ -66,20 +96,17 @@ void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
     if (model >= pool_.size() || used[model] >= pool_[model].size())
       throw EngineError(fmt::format("MuJoCo: no free body of model {} in the pool", p.model));
     const Slot& s = pool_[model][used[model]++];
-    set_collidable(s, true);
-    if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_ALLOWED;
+    set_collidable(s.body, true);
     std::fill_n(owner_.begin() + s.first_geom, s.geoms, static_cast<int>(placed_.size()));
     placed_.push_back(s);
+    if (s.mocap >= 0) {
+      set_mocap(s.mocap, p.pose);
+    } else {
+      put(p.pose, d->qpos + s.qpos, d->qpos + s.qpos + 3);
+      d->tree_awake[s.tree] = 1;  // marked so, an asleep body counts as moved by the user, and MuJoCo wakes it
+    }
   }
-  mj_resetData(m, d);  // mocap, weld, warm start and sleep included
-  for (std::size_t i = 0; i < placed_.size(); ++i) {
-    const Slot& s = placed_[i];
-    if (s.mocap >= 0)
-      set_mocap(s.mocap, placements[i].pose);
-    else
-      put(placements[i].pose, d->qpos + s.qpos, d->qpos + s.qpos + 3);
-  }
-  mj_forward(m, d);
+  lay_to_sleep();
   stale_ = false;
   check();
 }
@@ -99,13 +126,6 @@ Pose MujocoWorld::pose(int body) const {
   return get(d->qpos + s.qpos, d->qpos + s.qpos + 3);
 }
 
-bool MujocoWorld::at_rest(int body) const {
-  const Slot& s = slot(body);
-  if (s.mocap >= 0 || data_->tree_asleep[s.tree] >= 0) return true;
-  const double* v = data_->qvel + s.dof;
-  return mju_norm3(v) < rest_speed && mju_norm3(v + 3) < rest_turn;
-}
-
 std::vector<Contact> MujocoWorld::contacts() const {
   std::vector<Contact> found;
   for (int i = 0; i < data_->ncon; ++i) {
@@ -120,16 +140,15 @@ std::vector<Contact> MujocoWorld::contacts() const {
 int MujocoWorld::cast_down(Vec2 point, double& height_m) const {
   refresh();
   const mjModel* m = model_.get();
-  const double from[3] = {point.x, point.y, 1}, down[3] = {0, 0, -1};
   int hit = no_body;
   height_m = 0;
   for (std::size_t i = 0; i < placed_.size(); ++i)
     for (int g = placed_[i].first_geom; g < placed_[i].first_geom + placed_[i].geoms; ++g) {
       const double* centre = data_->geom_xpos + 3 * g;
       if (std::hypot(centre[0] - point.x, centre[1] - point.y) > m->geom_rbound[g]) continue;
-      const double distance = mj_rayMesh(m, data_.get(), g, from, down, nullptr);
-      if (distance < 0 || 1 - distance <= height_m) continue;
-      height_m = 1 - distance;
+      const double top = top_at(m, data_.get(), g, point);
+      if (top <= height_m) continue;
+      height_m = top;
       hit = static_cast<int>(i);
     }
   return hit;
@@ -150,8 +169,7 @@ void MujocoWorld::grip(int body, const Pose& gripper) {
   std::fill_n(weld + 3, 3, 0.0);
   m->eq_obj2id[0] = s.body;
   d->eq_active[0] = 1;
-  m->tree_sleep_policy[s.tree] = mjSLEEP_NEVER;  // a weld to a mocap body does not wake what it holds
-  wake(s);
+  m->tree_sleep_policy[s.tree] = mjSLEEP_NEVER;  // wakes it; a weld to a mocap body would not
   held_ = body;
 }
 
@@ -173,7 +191,7 @@ void MujocoWorld::place_spatula(Vec3 size_m, const Pose& pose) {
   std::copy(half, half + 3, m->geom_size + 3 * spatula_geom_);
   std::copy(half, half + 3, m->geom_aabb + 6 * spatula_geom_ + 3);
   m->geom_rbound[spatula_geom_] = mju_norm3(half);
-  m->geom_contype[spatula_geom_] = m->geom_conaffinity[spatula_geom_] = 1;
+  set_collidable(spatula_body_, true);
   set_mocap(spatula_, pose);
   keep_awake(true);  // a mocap body does not wake what it pushes
 }
@@ -181,7 +199,7 @@ void MujocoWorld::place_spatula(Vec3 size_m, const Pose& pose) {
 void MujocoWorld::move_spatula(const Pose& pose) { set_mocap(spatula_, pose); }
 
 void MujocoWorld::remove_spatula() {
-  model_->geom_contype[spatula_geom_] = model_->geom_conaffinity[spatula_geom_] = 0;
+  set_collidable(spatula_body_, false);
   keep_awake(false);
 }
 
@@ -200,12 +218,14 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
   option.impratio = 10;  // stiffer friction than normal force: resting bodies do not creep
   option.sleep_tolerance = rest_speed;
   option.enableflags |= mjENBL_SLEEP;
-  option.disableflags |= mjDSBL_AUTORESET;  // an instability is an error, not a new start
+  option.disableflags = disabled;
 
   mjsBody* world = mjs_findBody(spec.get(), "world");
   mjsGeom* table = mjs_addGeom(world, nullptr);
-  table->type = mjGEOM_PLANE;
-  table->size[0] = table->size[1] = 5, table->size[2] = 1;
+  table->type = mjGEOM_BOX;
+  std::fill_n(table->size, 3, 5.0);  // a box: on a plane, MuJoCo supports a mesh at three corners only, and it rocks
+  table->solref[0] = stiffest;
+  table->pos[2] = -5;
   mjsBody* gripper = mjs_addBody(world, nullptr);
   mjs_setName(gripper->element, "gripper");
   gripper->mocap = true;
@@ -243,6 +263,7 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
         geom->type = mjGEOM_MESH;
         mjs_setString(geom->meshname, fmt::format("{}/{}", i, p).c_str());
         geom->contype = geom->conaffinity = 0;
+        geom->solref[0] = stiffest;
       }
     }
   }
@@ -255,8 +276,8 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
     weld->active = false;
     mjs_setString(weld->name1, "gripper");
     mjs_setString(weld->name2, fmt::format("{}#0", i).c_str());
-    weld->solref[0] = 2 * time_step;  // as stiff as the time step bears
-    weld->data[10] = 1;               // torque scale
+    weld->solref[0] = stiffest;
+    weld->data[10] = 1;  // torque scale
     break;
   }
 
@@ -265,8 +286,9 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
   mjModel* m = model_.get();
   const auto body_id = [&](const std::string& name) { return mj_name2id(m, mjOBJ_BODY, name.c_str()); };
   gripper_ = m->body_mocapid[body_id("gripper")];
-  spatula_ = m->body_mocapid[body_id("spatula")];
-  spatula_geom_ = m->body_geomadr[body_id("spatula")];
+  spatula_body_ = body_id("spatula");
+  spatula_geom_ = m->body_geomadr[spatula_body_];
+  spatula_ = m->body_mocapid[spatula_body_];
   owner_.assign(static_cast<std::size_t>(m->ngeom), no_body);
   owner_[0] = table_body;
   owner_[static_cast<std::size_t>(spatula_geom_)] = spatula_body;
@@ -292,25 +314,33 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
     }
 }
 
-void MujocoWorld::set_collidable(const Slot& s, bool collidable) {
-  for (int g = s.first_geom; g < s.first_geom + s.geoms; ++g)
-    model_->geom_contype[g] = model_->geom_conaffinity[g] = collidable ? 1 : 0;
+void MujocoWorld::set_collidable(int body, bool collidable) {
+  mjModel* m = model_.get();
+  const int bit = collidable ? 1 : 0, first = m->body_geomadr[body];
+  m->body_contype[body] = m->body_conaffinity[body] = bit;
+  for (int g = first; g < first + m->body_geomnum[body]; ++g) m->geom_contype[g] = m->geom_conaffinity[g] = bit;
 }
 
 void MujocoWorld::set_mocap(int mocap, const Pose& pose) {
   put(pose, data_->mocap_pos + 3 * mocap, data_->mocap_quat + 4 * mocap);
 }
 
-void MujocoWorld::wake(const Slot& s) {
-  // An asleep tree that is marked awake is what MuJoCo takes for a change by the user: it wakes it with its neighbours.
-  if (data_->tree_asleep[s.tree] >= 0) data_->tree_awake[s.tree] = 1;
+void MujocoWorld::lay_to_sleep() {
+  mjModel* m = model_.get();
+  mjData* d = data_.get();
+  m->opt.disableflags = disabled | mjDSBL_CONTACT | mjDSBL_GRAVITY;
+  mj_fwdPosition(m, d);  // wakes the placed bodies, and so computes where their geoms are
+  for (const Slot& s : placed_)
+    if (s.tree >= 0) d->tree_asleep[s.tree] = -1;  // due to sleep at the end of a step in which it does not move
+  mj_step(m, d);
+  m->opt.disableflags = disabled;
+  d->time = 0;
 }
 
 void MujocoWorld::keep_awake(bool awake) {
   for (const Slot& s : placed_) {
     if (s.tree < 0) continue;
     model_->tree_sleep_policy[s.tree] = awake ? mjSLEEP_NEVER : mjSLEEP_ALLOWED;
-    if (awake) wake(s);
   }
 }
 
@@ -323,7 +353,8 @@ void MujocoWorld::refresh() const {
 void MujocoWorld::check() const {
   for (int w = 0; w < mjNWARNING; ++w)
     if (data_->warning[w].number > 0)
-      throw EngineError(fmt::format("MuJoCo: {}", mju_warningText(w, static_cast<std::size_t>(data_->warning[w].lastinfo))));
+      throw EngineError(
+          fmt::format("MuJoCo: {}", mju_warningText(w, static_cast<std::size_t>(data_->warning[w].lastinfo))));
 }
 
 }  // namespace lgabench

@@ -1,7 +1,7 @@
 // Rigid bodies on MuJoCo: one compiled pool of every model, most of it parked and asleep.
 #pragma once
-#include <memory>
 #include <mujoco/mujoco.h>
+#include <memory>
 #include <vector>
 
 #include <lgabench/core/physics_world.hpp>
@@ -20,7 +20,6 @@ class MujocoWorld final : public PhysicsWorld {
   double time_step_s() const override;
   void step() override;
   Pose pose(int body) const override;
-  bool at_rest(int body) const override;
   std::vector<Contact> contacts() const override;
   int cast_down(Vec2 point, double& height_m) const override;
   void grip(int body, const Pose& gripper) override;
@@ -40,22 +39,23 @@ class MujocoWorld final : public PhysicsWorld {
 
   const Slot& slot(int body) const;
   void compile(const std::vector<BodyModel>& models, int copies);
-  void set_collidable(const Slot& slot, bool collidable);
+  void set_collidable(int body, bool collidable);
   void set_mocap(int mocap, const Pose& pose);
-  void wake(const Slot& slot);
   void keep_awake(bool awake);
+  /// Bodies are placed at rest: they sleep until something touches them, and cost nothing before.
+  void lay_to_sleep();
   void refresh() const;
   void check() const;
 
   std::unique_ptr<mjModel, void (*)(mjModel*)> model_;
-  std::unique_ptr<mjData, void (*)(mjData*)> data_;
-  std::vector<std::vector<Slot>> pool_;  // by model, then copy
-  std::vector<Slot> placed_;             // by placement
-  std::vector<int> owner_;               // by geom: placement, table_body, spatula_body or no_body
-  int gripper_ = -1, spatula_ = -1;      // mocap ids
-  int spatula_geom_ = -1;
+  std::unique_ptr<mjData, void (*)(mjData*)> data_, pristine_;  // pristine: everything parked and asleep
+  std::vector<std::vector<Slot>> pool_;                         // by model, then copy
+  std::vector<Slot> placed_;                                    // by placement
+  std::vector<int> owner_;           // by geom: placement, table_body, spatula_body or no_body
+  int gripper_ = -1, spatula_ = -1;  // mocap ids
+  int spatula_body_ = -1, spatula_geom_ = -1;
   int held_ = no_body;
-  mutable bool stale_ = false;           // positions of geoms are one step behind the state
+  mutable bool stale_ = false;  // positions of geoms are one step behind the state
 };
 
 }  // namespace lgabench

@@ -43,16 +43,14 @@ class PhysicsWorld {
   /// @pre reset's outcome depends on this pool only through the models it places.
   virtual void load(const std::vector<BodyModel>& models, int copies) = 0;
 
-  /// Places the bodies at rest, drops all else (grip, spatula, velocities, solver state). Pure: same placements, same future.
+  /// Places the bodies at rest, drops all else (grip, spatula, velocities, solver state). Pure: same placements, same
+  /// future.
   virtual void reset(const std::vector<BodyPlacement>& placements) = 0;
 
   virtual double time_step_s() const = 0;
   virtual void step() = 0;
 
   virtual Pose pose(int body) const = 0;
-  /// Neither moves nor turns noticeably: asleep, or its velocity is below .5 mm/s and .5 degree/s at this moment (as it
-  /// also is at the top of a throw: ask over several steps).
-  virtual bool at_rest(int body) const = 0;
   /// Pairs in which both bodies are at rest may be left out.
   virtual std::vector<Contact> contacts() const = 0;
 

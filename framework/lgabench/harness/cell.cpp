@@ -99,7 +99,8 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
   }
   for (const auto& item : variation.options.items())
     if (std::find(grid.methods.begin(), grid.methods.end(), item.key()) == grid.methods.end())
-      throw InputError(fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
+      throw InputError(
+          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
   for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
 
   std::vector<Cell> cells;

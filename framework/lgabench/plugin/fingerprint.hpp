@@ -54,9 +54,9 @@
 #define LGABENCH_SANITIZER "none"
 #endif
 
-// Defined without quotes (LGABENCH_TORCH_VERSION=1.13.1) for whatever links lgabench_learning.
+// lgabench_learning defines it for whatever links it.
 #if defined(LGABENCH_TORCH_VERSION)
-#define LGABENCH_TORCH LGABENCH_TEXT(LGABENCH_TORCH_VERSION)
+#define LGABENCH_TORCH LGABENCH_TORCH_VERSION
 #else
 #define LGABENCH_TORCH "none"
 #endif
@@ -68,7 +68,7 @@
 #endif
 
 /// "key=value;..." of the translation unit that expands it. The compiler is information: it may differ.
-#define LGABENCH_FINGERPRINT                                                                             \
-  "architecture=" LGABENCH_ARCHITECTURE ";standard library=" LGABENCH_STANDARD_LIBRARY                   \
-  ";string ABI=" LGABENCH_STRINGS ";iterators=" LGABENCH_ITERATORS ";sanitizer=" LGABENCH_SANITIZER      \
-  ";SDK=" LGABENCH_VERSION ";LibTorch=" LGABENCH_TORCH ";compiler=" LGABENCH_COMPILER
+#define LGABENCH_FINGERPRINT                                                                                           \
+  "architecture=" LGABENCH_ARCHITECTURE ";standard library=" LGABENCH_STANDARD_LIBRARY ";string ABI=" LGABENCH_STRINGS \
+  ";iterators=" LGABENCH_ITERATORS ";sanitizer=" LGABENCH_SANITIZER ";SDK=" LGABENCH_VERSION                           \
+  ";LibTorch=" LGABENCH_TORCH ";compiler=" LGABENCH_COMPILER

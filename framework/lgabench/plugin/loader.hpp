@@ -21,6 +21,9 @@ struct PluginInfo {
   std::string sha256;  // of the file
 };
 
+/// Every member, under its name.
+Json to_json(const PluginInfo& plugin);
+
 /// Reads the file's bytes and runs nothing of it. @throws PluginError naming the file, the cause and, for a mismatch,
 /// both sides.
 PluginInfo read_plugin(const fs::path& file);

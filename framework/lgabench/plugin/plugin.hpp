@@ -23,14 +23,14 @@
   LGABENCH_PLUGIN_("engine", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
 
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
-#define LGABENCH_PLUGIN_(kind, id, version, summary, Interface, Class, options_json)                                 \
-  static_assert(std::is_base_of<Interface, Class>::value, #Class " must derive from " #Interface);                  \
-  namespace {                                                                                                        \
-  [[gnu::section(".lgabench"), gnu::used]] constexpr ::lgabench::PluginDescriptor lgabench_plugin_descriptor =       \
-      ::lgabench::describe_plugin(kind, id, version, summary, LGABENCH_FINGERPRINT, options_json);                   \
-  void* lgabench_plugin_create() { return static_cast<Interface*>(new Class); }                                      \
-  }                                                                                                                  \
-  extern "C" {                                                                                                       \
-  [[gnu::visibility("default"), gnu::used]] extern const ::lgabench::PluginEntry lga_plugin_v1;                      \
-  const ::lgabench::PluginEntry lga_plugin_v1{&lgabench_plugin_descriptor, &lgabench_plugin_create};                 \
+#define LGABENCH_PLUGIN_(kind, id, version, summary, Interface, Class, options_json)                           \
+  static_assert(std::is_base_of<Interface, Class>::value, #Class " must derive from " #Interface);             \
+  namespace {                                                                                                  \
+  [[gnu::section(".lgabench"), gnu::used]] constexpr ::lgabench::PluginDescriptor lgabench_plugin_descriptor = \
+      ::lgabench::describe_plugin(kind, id, version, summary, LGABENCH_FINGERPRINT, options_json);             \
+  void* lgabench_plugin_create() { return static_cast<Interface*>(new Class); }                                \
+  }                                                                                                            \
+  extern "C" {                                                                                                 \
+  [[gnu::visibility("default")]] extern const ::lgabench::PluginEntry lga_plugin_v1;                           \
+  const ::lgabench::PluginEntry lga_plugin_v1{&lgabench_plugin_descriptor, &lgabench_plugin_create};           \
   }

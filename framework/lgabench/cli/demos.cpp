@@ -1,0 +1,77 @@
+// lgabench demos: the oracle's demonstrations as a robomimic HDF5 file, and a look into one.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/harness/demonstrations.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/harness/hdf5.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  std::string scenario, layout = "cells", engine = "mujoco", out, inspect;
+  int n = 10, noisy = 0;
+  double noise = .2;
+  std::uint64_t seed = 0;
+  std::vector<fs::path> plugin_path;
+};
+
+void write(const Arguments& a) {
+  if (a.scenario.empty() || a.out.empty())
+    throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
+  const Scenario scenario = load_scenario(a.scenario);
+  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
+  std::vector<Scene> scenes;
+  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, scenario.truth, a.seed, i));
+  const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
+  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.command.utterance);
+  write_file(a.out,
+             demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, a.engine)));
+  fmt::print("{}\n", a.out);
+}
+
+// A line a demonstration: its steps, the objects of its first picture, and where its first action goes.
+void inspect(const std::string& file) {
+  const auto demonstrations = read_demonstrations(file);
+  for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+    const auto& [instruction, steps] = demonstrations[i];
+    std::vector<std::string> objects;
+    for (const Instance& instance : steps.front().observation.instances)
+      objects.push_back(instance.texture + " " + instance.object_type);
+    const Action& action = steps.front().label;
+    fmt::print("demo_{}: {} steps; \"{}\"; {}; ({:.3f}, {:.3f}) -> ({:.3f}, {:.3f})\n", i, steps.size(),
+               instruction.utterance, fmt::join(objects, ", "), action.pose0.position_m.x, action.pose0.position_m.y,
+               action.pose1.position_m.x, action.pose1.position_m.y);
+  }
+}
+
+}  // namespace
+
+void add_demos(CLI::App& app, int&) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5");
+  verb->add_option("scenario", a->scenario, "Its true distribution is demonstrated");
+  verb->add_option("--layout", a->layout, "cells, continuous or released")->capture_default_str();
+  verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
+  verb->add_option("--noisy", a->noisy, "DART: noisy rollouts for each demonstration")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  verb->add_option("--noise", a->noise, "DART: sigma of the last of them")
+      ->check(CLI::Range(0.0, 10.0))
+      ->capture_default_str();
+  verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
+  verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
+  auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");
+  verb->add_option("--inspect", a->inspect, "Print what is in a file of demonstrations")->excludes(out);
+  verb->footer("Example: lgabench demos heart --n 10 --out heart.hdf5");
+  verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
+}
+
+}  // namespace lgabench::cli

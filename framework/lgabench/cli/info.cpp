@@ -1,0 +1,125 @@
+// lgabench info NAME: all that is known of a method, an engine, a suite or a scenario before anything of it runs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/harness/suite.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+void print(const PluginInfo& plugin) {
+  fmt::print("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+  fmt::print("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
+             plugin.sha256, plugin.fingerprint);
+  if (plugin.options.empty()) return;
+  fmt::print("options, set with --set {}.NAME=VALUE\n", plugin.id);
+  for (const auto& [name, option] : plugin.options.items()) {
+    fmt::print("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
+               option["source"].get<std::string>());
+    if (option.contains("values")) fmt::print("      one of {}\n", canonical(option["values"]));
+  }
+}
+
+std::string names(const std::vector<std::string>& chosen, const std::vector<std::string>& all) {
+  return chosen.size() == all.size() ? fmt::format("all {}", all.size()) : fmt::format("{}", fmt::join(chosen, ", "));
+}
+
+void print(const Scenario& scenario) {
+  fmt::print("{}, a scenario in {}\n  command     {}\n  task        {}\n", scenario.id, scenario.environment,
+             scenario.command.utterance, to_string(scenario.command.task));
+  const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
+    fmt::print("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
+               names(set.textures, scenario.space.textures));
+  };
+  print_set("target", scenario.truth.target);
+  if (scenario.truth.avoid) print_set("to avoid", *scenario.truth.avoid);
+  std::vector<std::string> arms;
+  for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
+  fmt::print("  tests       {}\n", fmt::join(arms, ", "));
+  const JsonReader reader(scenario.json, scenario.id);
+  if (reader.has("note")) fmt::print("  note        {}\n", reader.at("note").string());
+}
+
+void print(const Suite& suite) {
+  fmt::print("{}, a suite in {}\n  file  {}\n", suite.id, suite.environment, suite.file);
+  const auto print_members = [](const Json& members) {
+    for (const auto& [name, value] : members.items()) fmt::print("    {} = {}\n", name, canonical(value));
+  };
+  fmt::print("  grid\n");
+  print_members(to_json(suite.grid));
+  for (const auto& [name, members] : suite.presets.items()) {
+    fmt::print("  preset {}\n", name);
+    print_members(members);
+  }
+}
+
+Json to_json(const Suite& suite) {
+  return {{"kind", "suite"},
+          {"id", suite.id},
+          {"environment", suite.environment},
+          {"file", suite.file},
+          {"grid", lgabench::to_json(suite.grid)},
+          {"presets", suite.presets}};
+}
+
+template <class Thing>
+void show(const Thing& thing, Json as_json, bool json) {
+  if (json)
+    fmt::print("{}\n", as_json.dump(2));
+  else
+    print(thing);
+}
+
+bool known(const std::vector<std::string>& ids, const std::string& id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+void info(const std::string& name, bool json, const std::vector<fs::path>& directories) {
+  const Catalogue catalogue = scan_plugins(plugin_directories(directories));
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (plugin.id == name) return show(plugin, to_json(plugin), json);
+  if (known(scenario_ids(), name)) {
+    const Scenario scenario = load_scenario(name);
+    Json members = scenario.json;
+    members["kind"] = "scenario";
+    return show(scenario, std::move(members), json);
+  }
+  if (fs::exists(data_directory() / "suites" / (name + ".json"))) {
+    const Suite suite = load_suite(name);
+    return show(suite, to_json(suite), json);
+  }
+  for (const auto& [file, reason] : catalogue.refused)
+    if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
+  throw InputError(fmt::format("{}: expected the name of a method, engine, suite or scenario (lgabench list)", name));
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, int& exit) {
+  struct Arguments {
+    std::string name;
+    bool json = false;
+    std::vector<fs::path> directories;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("info", "Everything known of a method, engine, suite or scenario");
+  verb->footer("Example: lgabench info lga");
+  verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
+  verb->add_flag("--json", arguments->json, "One JSON object on stdout");
+  verb->add_option("--plugin-path", arguments->directories, "Look for plugins here too; may be repeated")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  verb->callback([arguments, &exit] {
+    info(arguments->name, arguments->json, arguments->directories);
+    exit = ok;
+  });
+}
+
+}  // namespace lgabench::cli

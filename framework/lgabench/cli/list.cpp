@@ -1,0 +1,94 @@
+// lgabench list: what there is to run. Reads descriptors and JSON, runs nothing of a plugin.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr const char* sections[] = {"methods", "engines", "suites", "scenarios"};
+
+// Shipped suites with what each says it is for, sorted by id.
+Json suites() {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(data_directory() / "suites", error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".json") files.push_back(it->path());
+  std::sort(files.begin(), files.end());
+  Json all = Json::array();
+  for (const fs::path& file : files) {
+    const Json suite = read_json(file);
+    const JsonReader reader(suite, file.string());
+    all.push_back({{"id", file.stem().string()}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
+  }
+  return all;
+}
+
+Json scenarios() {
+  Json all = Json::array();
+  for (const std::string& id : scenario_ids()) {
+    const Scenario scenario = load_scenario(id);
+    all.push_back({{"id", id}, {"task", to_string(scenario.command.task)}, {"summary", scenario.command.utterance}});
+  }
+  return all;
+}
+
+Json listing(const Catalogue& catalogue) {
+  Json all{{"methods", Json::array()},
+           {"engines", Json::array()},
+           {"refused", Json::array()},
+           {"suites", suites()},
+           {"scenarios", scenarios()}};
+  for (const PluginInfo& plugin : catalogue.plugins)
+    all[plugin.kind + "s"].push_back(
+        {{"id", plugin.id}, {"version", plugin.version}, {"summary", plugin.summary}, {"file", plugin.file.string()}});
+  for (const auto& [file, reason] : catalogue.refused)
+    all["refused"].push_back({{"file", file.string()}, {"reason", reason}});
+  return all;
+}
+
+void print(const Json& all) {
+  for (const char* section : sections) {
+    fmt::print("{}\n", section);
+    std::size_t width = 0;
+    for (const Json& row : all[section]) width = std::max(width, row["id"].get_ref<const std::string&>().size());
+    for (const Json& row : all[section])
+      fmt::print("  {:<{}}  {}{}{}\n", row["id"].get<std::string>(), width, row.value("version", ""),
+                 row.contains("version") ? "  " : "", row["summary"].get<std::string>());
+    if (all[section].empty()) fmt::print("  (none)\n");
+  }
+  for (const Json& row : all["refused"])
+    fmt::print(stderr, "refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, int& exit) {
+  struct Arguments {
+    bool json = false;
+    std::vector<fs::path> directories;
+  };
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("list", "Methods, engines, suites and scenarios; what was refused, and why");
+  verb->footer("Example: lgabench list --plugin-path my/build");
+  verb->add_flag("--json", arguments->json, "One JSON object on stdout");
+  verb->add_option("--plugin-path", arguments->directories, "Look for plugins here too; may be repeated")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  verb->callback([arguments, &exit] {
+    const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
+    if (arguments->json)
+      fmt::print("{}\n", all.dump(2));
+    else
+      print(all);
+    exit = ok;
+  });
+}
+
+}  // namespace lgabench::cli

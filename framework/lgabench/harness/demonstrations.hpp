@@ -1,0 +1,36 @@
+// The oracle's demonstrations, with DART's recovery steps where a method asks for them, and their cache.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/method.hpp>
+
+namespace lgabench {
+
+/// One demonstration a scene. Its first step is clean. With needs.noisy_per_clean = n > 0, recovery (PROTOCOL, section
+/// 5; DART: Laskey et al. 2017): rollout k of n resets the scene, executes the oracle's action with Gaussian noise of
+/// sigma = noise_max k / n (x std .25 sigma, y std .5 sigma, yaw std pi sigma, on both poses), and the state that this
+/// led to is added with the oracle's action for it. A rollout that left the workspace, touched the obstacle or did not
+/// come to rest is dropped. Labels are noiseless and have the precision of a file. A function of its arguments: the
+/// noise is a random stream per scene and k. @throws EngineError if the engine fails.
+std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
+                                       const std::string& utterance);
+
+/// Where finished demonstrations are kept, shared by methods, runs and processes.
+struct DemonstrationCache {
+  std::filesystem::path directory;
+  Json builds;  // hashes of the programs and libraries that demonstrations depend on
+  std::string environment_id;
+};
+
+/// demonstrate() through the cache: files of ten scenes each, named by the hash of all that they depend on, so that
+/// demonstrations of the first ten scenes serve the first fifty too. A file that cannot be read is made again, and that
+/// is said on stderr. `done(n)` after each ten.
+std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache, Environment& environment,
+                                                 const std::vector<Scene>& scenes, const Needs& needs,
+                                                 const std::string& utterance, const std::function<void(int)>& done);
+
+}  // namespace lgabench

@@ -1,0 +1,25 @@
+// The environments that scenarios may name; the only part of the harness that knows them.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/physics_world.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// The scenario's environment on that engine. @throws InputError for an environment that is not known.
+std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
+
+/// Scene `index` to demonstrate: targets drawn from `distribution`, a Selection or the truth.
+/// @throws InputError where the layout is unknown or can show nothing of the distribution.
+Scene training_scene(const Scenario& scenario, const std::string& layout, const Selection& distribution,
+                     std::uint64_t training_seed, int index);
+
+/// Test scene `index` of an arm: targets drawn from the truth, whatever was selected or trained on.
+Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
+                 int index);
+
+}  // namespace lgabench

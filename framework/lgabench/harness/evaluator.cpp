@@ -1,0 +1,81 @@
+#include <lgabench/harness/evaluator.hpp>
+
+#include <fmt/format.h>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+namespace {
+
+Action oracle(const Environment& environment, const Scene&, const Observation&) { return environment.expert_action(); }
+
+Action random_object(const Environment& environment, const Scene& scene, const Observation& observation) {
+  const SceneObject* goal = scene.find(Role::goal);
+  std::vector<std::uint8_t> visible;
+  for (const Instance& instance : observation.instances)
+    if (instance.pixels > 0 && !(goal && instance.id == goal->instance_id)) visible.push_back(instance.id);
+  if (visible.empty()) throw MethodError("no object is visible");
+  RandomStream stream("random_object/" + hex(scene.hash()));
+  return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
+}
+
+}  // namespace
+
+Json to_json(const Episode& e) {
+  return {{"arm", e.arm},
+          {"index", e.index},
+          {"scene", hex(e.scene)},
+          {"success", e.failure == Failure::none},
+          {"failure", to_string(e.failure)},
+          {"action", e.action ? Json(*e.action) : Json(nullptr)}};
+}
+
+Actor policy_actor(Policy& policy, const Instruction& instruction, const std::string& plugin_id) {
+  return [&policy, &instruction, plugin_id](const Environment&, const Scene&, const Observation& observation) {
+    try {
+      return guarded(plugin_id, [&] {
+        policy.reset();
+        return policy.act(observation, instruction);
+      });
+    } catch (const InputError& e) {  // at this point only the method can be at fault
+      throw MethodError(e.what());
+    }
+  };
+}
+
+Actor reference_actor(const std::string& id) {
+  if (id == "oracle") return oracle;
+  if (id == "random_object") return random_object;
+  throw InputError(fmt::format("reference row \"{}\": expected constant_action, random_object or oracle", id));
+}
+
+std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
+                              const std::function<void(int)>& done) {
+  std::vector<Episode> episodes;
+  episodes.reserve(scenes.size());
+  for (const TestScene& test : scenes) {
+    Episode episode{test.arm, test.index, test.scene.hash(), Failure::method_error, std::nullopt};
+    const Observation observation = environment.reset(test.scene);
+    try {
+      const Action action = actor(environment, test.scene, observation);
+      episode.failure = environment.step(action).failure;  // refuses an action that is not finite
+      episode.action = to_vector(action);
+    } catch (const MethodError& e) {
+      fmt::print(stderr, "episode {} of {}: {}\n", test.index, test.arm, e.what());
+    }
+    episodes.push_back(episode);
+    done(static_cast<int>(episodes.size()));
+  }
+  return episodes;
+}
+
+std::vector<Episode> without_abstraction(const std::vector<TestScene>& scenes) {
+  std::vector<Episode> episodes;
+  for (const TestScene& test : scenes)
+    episodes.push_back({test.arm, test.index, test.scene.hash(), Failure::abstraction_empty, std::nullopt});
+  return episodes;
+}
+
+}  // namespace lgabench

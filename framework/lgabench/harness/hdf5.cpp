@@ -1,0 +1,251 @@
+#include <lgabench/harness/hdf5.hpp>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+namespace {
+
+using Sizes = std::vector<hsize_t>;
+
+// Owns an HDF5 identifier of any kind. A negative one is an error that names the file and the place.
+class Handle {
+ public:
+  Handle(hid_t id, const std::string& file, const std::string& place) : id_(id) {
+    if (id < 0) throw InputError(fmt::format("{}: {}: cannot be opened or made by HDF5", file, place));
+  }
+  ~Handle() {
+    if (id_ >= 0) H5Idec_ref(id_);
+  }
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+  Handle& operator=(Handle&&) = delete;
+  operator hid_t() const { return id_; }
+
+ private:
+  hid_t id_;
+};
+
+// The library prints its error stack unless told not to; a property list for everything that is made.
+class Library {
+ public:
+  explicit Library(std::string file) : file_(std::move(file)) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+  Handle handle(hid_t id, const std::string& place) const { return {id, file_, place}; }
+  void check(herr_t status, const std::string& place) const {
+    if (status < 0) fail(place, "cannot be read or written by HDF5");
+  }
+  [[noreturn]] void fail(const std::string& place, const std::string& what) const {
+    throw InputError(fmt::format("{}: {}: {}", file_, place, what));
+  }
+  const std::string& file() const { return file_; }
+
+ private:
+  std::string file_;
+};
+
+Handle text_type(const Library& h5, std::size_t size) {
+  Handle type = h5.handle(H5Tcopy(H5T_C_S1), "string type");
+  h5.check(H5Tset_size(type, std::max<std::size_t>(size, 1)), "string type");
+  h5.check(H5Tset_cset(type, H5T_CSET_UTF8), "string type");
+  return type;
+}
+
+void write_attribute(const Library& h5, hid_t object, const char* name, const std::string& text) {
+  const Handle type = text_type(h5, text.size());
+  const Handle space = h5.handle(H5Screate(H5S_SCALAR), name);
+  const Handle attribute = h5.handle(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), name);
+  h5.check(H5Awrite(attribute, type, text.c_str()), name);
+}
+
+void write_attribute(const Library& h5, hid_t object, const char* name, std::int64_t value) {
+  const Handle space = h5.handle(H5Screate(H5S_SCALAR), name);
+  const Handle attribute = h5.handle(H5Acreate2(object, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT), name);
+  h5.check(H5Awrite(attribute, H5T_NATIVE_INT64, &value), name);
+}
+
+// Pictures are packed a step at a time: mostly background, they shrink twentyfold.
+void write_dataset(const Library& h5, hid_t group, const char* name, hid_t type, const Sizes& sizes, const void* data,
+                   bool packed) {
+  const Handle properties = h5.handle(H5Pcreate(H5P_DATASET_CREATE), name);
+  h5.check(H5Pset_obj_track_times(properties, false), name);
+  if (packed) {
+    Sizes chunk = sizes;
+    chunk[0] = 1;
+    h5.check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), name);
+    h5.check(H5Pset_deflate(properties, 1), name);
+  }
+  const Handle space = h5.handle(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), name);
+  const Handle set = h5.handle(H5Dcreate2(group, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), name);
+  h5.check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), name);
+}
+
+Handle make_group(const Library& h5, hid_t parent, const std::string& name) {
+  const Handle properties = h5.handle(H5Pcreate(H5P_GROUP_CREATE), name);
+  h5.check(H5Pset_obj_track_times(properties, false), name);
+  return h5.handle(H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, properties, H5P_DEFAULT), name);
+}
+
+Json instances_json(const Observation& observation) {
+  Json table = Json::array();
+  for (const Instance& i : observation.instances)
+    table.push_back({{"id", i.id}, {"object_type", i.object_type}, {"texture", i.texture}, {"pixels", i.pixels}});
+  return table;
+}
+
+std::vector<Instance> read_instances(const JsonReader& table) {
+  std::vector<Instance> all;
+  for (const JsonReader& i : table.elements())
+    all.push_back({static_cast<std::uint8_t>(i.at("id").integer(1, 255)), i.at("object_type").string(),
+                   i.at("texture").string(),
+                   static_cast<int>(i.at("pixels").integer(0, Observation::rows * Observation::columns))});
+  return all;
+}
+
+void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration) {
+  std::vector<float> actions;
+  std::vector<std::uint8_t> rgb, ids;
+  Json instances = Json::array();
+  for (const Step& step : demonstration.steps) {
+    const ActionVector label = to_vector(step.label);
+    actions.insert(actions.end(), label.begin(), label.end());
+    rgb.insert(rgb.end(), step.observation.rgb.begin(), step.observation.rgb.end());
+    ids.insert(ids.end(), step.observation.ids.begin(), step.observation.ids.end());
+    instances.push_back(instances_json(step.observation));
+  }
+  const hsize_t steps = demonstration.steps.size(), rows = Observation::rows, columns = Observation::columns;
+  write_attribute(h5, group, "num_samples", static_cast<std::int64_t>(steps));
+  write_attribute(h5, group, "utterance", demonstration.instruction.utterance);
+  // A dataset, not an attribute: attributes end at 64 KiB.
+  const std::string table = canonical(instances);
+  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, 12}, actions.data(), false);
+  write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
+  const Handle obs = make_group(h5, group, "obs");
+  write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
+  write_dataset(h5, obs, "ids", H5T_STD_U8LE, {steps, rows, columns}, ids.data(), true);
+}
+
+std::string read_text(const Library& h5, hid_t object, const char* name, const std::string& place) {
+  const Handle attribute = h5.handle(H5Aopen(object, name, H5P_DEFAULT), place + "@" + name);
+  const Handle type = h5.handle(H5Aget_type(attribute), place);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    h5.fail(place, fmt::format("expected a string attribute \"{}\" of fixed length", name));
+  std::string text(H5Tget_size(type), '\0');
+  h5.check(H5Aread(attribute, type, text.data()), place);
+  return text.substr(0, text.find('\0'));
+}
+
+// Reads a dataset whose shape must be `sizes`; 0 stands for any.
+template <class T>
+std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hid_t type, const Sizes& sizes,
+                            const std::string& place) {
+  const std::string where = place + "/" + name;
+  const Handle set = h5.handle(H5Dopen2(group, name, H5P_DEFAULT), where);
+  const Handle space = h5.handle(H5Dget_space(set), where);
+  std::array<hsize_t, H5S_MAX_RANK> found{};
+  const int rank = H5Sget_simple_extent_dims(space, found.data(), nullptr);
+  bool fits = rank == static_cast<int>(sizes.size());
+  hsize_t count = 1;
+  for (std::size_t i = 0; fits && i < sizes.size(); ++i) {
+    fits = sizes[i] == 0 ? found[i] > 0 && found[i] < (1u << 24) : found[i] == sizes[i];
+    count *= found[i];
+  }
+  if (!fits) h5.fail(where, fmt::format("expected the shape [{}]", fmt::join(sizes, ", ")));
+  std::vector<T> values(count);
+  h5.check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), where);
+  return values;
+}
+
+Demonstration read_demonstration(const Library& h5, hid_t group, const std::string& place) {
+  const hsize_t rows = Observation::rows, columns = Observation::columns;
+  const std::size_t pixels = rows * columns;
+  const auto bytes = read_dataset<std::uint8_t>(h5, group, "instances", H5T_NATIVE_UINT8, {0}, place);
+  const Json tables = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const auto instances = JsonReader(tables, h5.file(), place + "/instances").elements();
+  const hsize_t steps = instances.size();
+  if (steps == 0 || steps > 10000) h5.fail(place, "expected 1 to 10000 steps");
+  const auto actions = read_dataset<float>(h5, group, "actions", H5T_NATIVE_FLOAT, {steps, 12}, place);
+  const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, {steps, rows, columns, 3}, place);
+  const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, {steps, rows, columns}, place);
+
+  Demonstration demonstration;
+  demonstration.instruction.utterance = read_text(h5, group, "utterance", place);
+  for (std::size_t t = 0; t < steps; ++t) {
+    Step step;
+    const auto slice = [t](const auto& all, std::size_t size) {
+      const auto from = all.begin() + static_cast<std::ptrdiff_t>(t * size);
+      return std::vector<std::uint8_t>(from, from + static_cast<std::ptrdiff_t>(size));
+    };
+    step.observation = {slice(rgb, pixels * 3), slice(ids, pixels), read_instances(instances[t])};
+    ActionVector label;
+    std::copy_n(actions.begin() + static_cast<std::ptrdiff_t>(t * label.size()), label.size(), label.begin());
+    step.label = from_vector(label);
+    demonstration.steps.push_back(std::move(step));
+  }
+  return demonstration;
+}
+
+}  // namespace
+
+std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations, const std::string& environment_id) {
+  // Made in memory, so that the one writer of files (core/files.hpp) puts it on the disk.
+  const Library h5("demonstrations");
+  const Handle access = h5.handle(H5Pcreate(H5P_FILE_ACCESS), "/");
+  h5.check(H5Pset_fapl_core(access, std::size_t{1} << 22, false), "/");
+  const Handle creation = h5.handle(H5Pcreate(H5P_FILE_CREATE), "/");
+  h5.check(H5Pset_obj_track_times(creation, false), "/");
+  const Handle file = h5.handle(H5Fcreate("demonstrations", H5F_ACC_TRUNC, creation, access), "/");
+  {
+    const Handle data = make_group(h5, file, "data");
+    std::int64_t total = 0;
+    std::string names;  // fixed-length strings, one after the other
+    const std::size_t name_size = 16;
+    for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+      std::string name = fmt::format("demo_{}", i);
+      write_demonstration(h5, make_group(h5, data, name), demonstrations[i]);
+      total += static_cast<std::int64_t>(demonstrations[i].steps.size());
+      name.resize(name_size);
+      names += name;
+    }
+    write_attribute(h5, data, "total", total);
+    constexpr int gym_type = 2;  // robomimic's EnvType.GYM_TYPE
+    const Json arguments{{"env_name", environment_id}, {"type", gym_type}, {"env_kwargs", Json::object()}};
+    write_attribute(h5, data, "env_args", canonical(arguments));
+    const Handle mask = make_group(h5, file, "mask");
+    write_dataset(h5, mask, "train", text_type(h5, name_size), {demonstrations.size()}, names.data(), false);
+  }
+  h5.check(H5Fflush(file, H5F_SCOPE_GLOBAL), "/");
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  if (size <= 0) h5.fail("/", "its image cannot be taken");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file, bytes.data(), bytes.size()) != size) h5.fail("/", "its image cannot be taken");
+  return bytes;
+}
+
+std::vector<Demonstration> read_demonstrations(const fs::path& path) {
+  const Library h5(path.string());
+  std::string bytes = read_file(path);
+  if (bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") != 0) h5.fail("/", "expected an HDF5 file");
+  const Handle access = h5.handle(H5Pcreate(H5P_FILE_ACCESS), "/");
+  h5.check(H5Pset_fapl_core(access, std::size_t{1} << 16, false), "/");
+  h5.check(H5Pset_file_image(access, bytes.data(), bytes.size()), "/");
+  const Handle file = h5.handle(H5Fopen("demonstrations", H5F_ACC_RDONLY, access), "/");
+  const Handle data = h5.handle(H5Gopen2(file, "data", H5P_DEFAULT), "/data");
+  H5G_info_t info{};
+  h5.check(H5Gget_info(data, &info), "/data");
+  std::vector<Demonstration> all;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const std::string place = fmt::format("/data/demo_{}", i);
+    all.push_back(read_demonstration(h5, h5.handle(H5Gopen2(file, place.c_str(), H5P_DEFAULT), place), place));
+  }
+  if (all.empty()) h5.fail("/data", "expected demonstrations");
+  return all;
+}
+
+}  // namespace lgabench

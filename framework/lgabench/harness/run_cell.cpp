@@ -1,0 +1,193 @@
+#include <lgabench/harness/run_cell.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/quality.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/harness/constant_action.hpp>
+#include <lgabench/harness/demonstrations.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/harness/evaluator.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+namespace {
+
+// Seconds of each phase; a phase ends when the next begins.
+class Phases {
+ public:
+  explicit Phases(const PhaseReport& report) : report_(report) {}
+  void begin(const std::string& phase) {
+    end();
+    phase_ = phase;
+    start_ = Clock::now();
+    report_(phase, 0);
+  }
+  void count(long long n) const { report_(phase_, n); }
+  Json seconds() {
+    end();
+    return seconds_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void end() {
+    if (phase_.empty()) return;
+    const double s = std::chrono::duration<double>(Clock::now() - start_).count();
+    seconds_[phase_ + "_s"] = s;
+    seconds_["total_s"] = seconds_["total_s"].get<double>() + s;
+    phase_.clear();
+  }
+
+  const PhaseReport& report_;
+  std::string phase_;
+  Clock::time_point start_;
+  Json seconds_{{"select_s", 0.0}, {"sample_s", 0.0},   {"demonstrate_s", 0.0},
+                {"learn_s", 0.0},  {"evaluate_s", 0.0}, {"total_s", 0.0}};
+};
+
+// training.jsonl as it grows.
+class TrainingLines : public TrainingLog {
+ public:
+  explicit TrainingLines(const Phases& phases) : phases_(phases) {}
+  void epoch(int epochs, long long steps, double loss) override {
+    if (!std::isfinite(loss))
+      throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epochs, loss));
+    lines += canonical({{"epoch", epochs}, {"steps", steps}, {"loss", loss}}) + '\n';
+    phases_.count(epochs);
+  }
+  std::string lines;
+
+ private:
+  const Phases& phases_;
+};
+
+// The plugin's method, the constant action, or none for a row that learns nothing.
+std::unique_ptr<Method> make_method(const CellJob& job) {
+  if (job.method) return load_method(*job.method);
+  if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
+  return nullptr;
+}
+
+DemonstrationCache demonstration_cache(const CellJob& job) {
+  Json builds = job.build;
+  for (const char* no_part_in_it : {"method", "liblgabench_learning.so"}) builds.erase(no_part_in_it);
+  return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
+}
+
+// A plugin may return any name; only those of the space can be shown, counted and written.
+void expect_within(const FeatureSpace& space, const Selection& selection) {
+  const auto check = [&space](const FeatureSet& set) {
+    try {
+      const Json json = to_json(set);
+      read_feature_set(JsonReader(json, "selection"), space);
+    } catch (const InputError& e) {
+      throw MethodError(e.what());
+    }
+  };
+  check(selection.target);
+  if (selection.avoid) check(*selection.avoid);
+}
+
+std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
+  std::vector<TestScene> scenes;
+  for (const Arm& arm : scenario.tests)
+    for (int i = 0; i < cell.episodes; ++i)
+      scenes.push_back({arm.id, i, test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i)});
+  return scenes;
+}
+
+// Writes the files and, last, status.json with their hashes: a directory without it is not a result.
+void record(const CellJob& job, const std::vector<std::pair<std::string, std::string>>& files) {
+  Json hashes = Json::object();
+  for (const auto& [name, bytes] : files) {
+    write_file(job.directory / name, bytes);
+    hashes[name] = sha256(bytes);
+  }
+  sync_directory(job.directory);
+  const Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  write_file(job.directory / "status.json", canonical(status) + '\n');
+  sync_directory(job.directory);
+}
+
+}  // namespace
+
+void run_cell(const CellJob& job, const PhaseReport& report) {
+  const Cell& cell = job.cell;
+  const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
+  if (data_hashes(scenario) != cell.data)
+    throw InputError("cell: /data: the data directory changed since the run began");
+  const std::string& id = cell.method.id;
+  Phases phases(report);
+
+  // 1 select: which features does the command make matter?
+  phases.begin("select");
+  const std::unique_ptr<Method> method = make_method(job);
+  RecordedLanguageModel lm(scenario, cell.answers);
+  TruthAsHuman human(scenario.truth);
+  TrainingLines training(phases);
+  Services services{lm, human, cell.method.options, cell.training_seed, training};
+  Needs needs;
+  Selection selection;
+  if (method) {
+    needs = guarded(id, [&] { return method->needs(services.options); });
+    selection = guarded(id, [&] { return method->select(scenario.command, scenario.space, services); });
+    expect_within(scenario.space, selection);
+  }
+  const bool on_selected = method && needs.targets == Needs::Targets::selected;
+  const bool abstraction_empty = on_selected && selection.empty();
+  const bool learns = method && !abstraction_empty;
+
+  // 2 sample: what will be shown, with targets from the Selection or from the truth?
+  phases.begin("sample");
+  std::vector<Scene> scenes;
+  if (learns)
+    for (int i = 0; i < cell.demonstrations; ++i)
+      scenes.push_back(
+          training_scene(scenario, cell.layout, on_selected ? selection : scenario.truth, cell.training_seed, i));
+
+  // 3 demonstrate: the oracle shows it.
+  phases.begin("demonstrate");
+  const auto environment = make_environment(scenario, load_engine(job.engine));
+  std::vector<Demonstration> demonstrations =
+      cached_demonstrations(demonstration_cache(job), *environment, scenes, needs, scenario.command.utterance,
+                            [&](int n) { phases.count(n); });
+  for (Demonstration& d : demonstrations) d.instruction.selection = selection;
+
+  // 4 learn: from observations and labels to a policy.
+  phases.begin("learn");
+  std::unique_ptr<Policy> policy;
+  if (learns) {
+    policy = guarded(id, [&] { return method->learn(demonstrations, services); });
+    if (!policy) throw MethodError(fmt::format("plugin {}: learn returned no policy", id));
+  }
+  demonstrations.clear();
+
+  // 5 evaluate: the same test scenes for everyone.
+  phases.begin("evaluate");
+  const std::vector<TestScene> tests = test_scenes(scenario, cell);
+  const Instruction instruction{scenario.command.utterance, selection};
+  const std::vector<Episode> episodes =
+      abstraction_empty
+          ? without_abstraction(tests)
+          : evaluate(*environment, tests, policy ? policy_actor(*policy, instruction, id) : reference_actor(id),
+                     [&](int n) { phases.count(n); });
+
+  // 6 record: no clock but in timing.json.
+  std::string episode_lines;
+  for (const Episode& episode : episodes) episode_lines += canonical(to_json(episode)) + '\n';
+  const Json chosen{{"selection", to_json(selection)}, {"quality", quality(selection, scenario.truth)}};
+  record(job, {{"cell.json", canonical(to_json(cell)) + '\n'},
+               {"selection.json", canonical(chosen) + '\n'},
+               {"training.jsonl", training.lines},
+               {"episodes.jsonl", episode_lines},
+               {"timing.json", canonical(phases.seconds()) + '\n'}});
+}
+
+}  // namespace lgabench

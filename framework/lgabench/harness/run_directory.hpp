@@ -1,0 +1,55 @@
+// A run's directory: what is complete in it, and how a finished cell gets in. The only state of a run.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/harness/cell.hpp>
+
+namespace lgabench {
+
+/// SHA-256 of what computes a cell: the worker, the framework's libraries, "engine" and "method" (the plugins' files;
+/// no "method" for a reference row).
+Json build_hashes(const PluginInfo& engine, const PluginInfo* method);
+
+/// What to do with a directory that is not empty.
+enum class Existing {
+  same,    // go on with a run of the same cells and the same build; refuse any other
+  resume,  // likewise, but cells of another build are computed again
+  fresh    // drop the run that is there; refuse a directory that holds none
+};
+
+/// Holds a lock on the directory as long as it lives. One thread.
+class RunDirectory {
+ public:
+  /// Makes the directory or takes up the run in it: checks that it is a run of the same cells, removes what was left
+  /// half-written, writes run.json.
+  /// @throws InputError, with nothing changed, if the directory holds something else or is in use.
+  RunDirectory(const fs::path& path, const Json& run, Existing existing);
+  ~RunDirectory();
+  RunDirectory(const RunDirectory&) = delete;
+  RunDirectory& operator=(const RunDirectory&) = delete;
+
+  const fs::path& path() const { return path_; }
+
+  /// Whether the cell is complete with this build, and if not, why: "" where it was never begun.
+  struct State {
+    bool complete = false, other_build = false;
+    std::string why;
+  };
+  State state(const std::string& key, const Json& build) const;
+
+  /// A new empty directory for a worker to write into; a later start removes it unless kept.
+  fs::path scratch(const std::string& key) const;
+  /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic but for that.
+  void keep(const std::string& key) const;
+
+ private:
+  fs::path hidden(const std::string& key, const char* what) const;
+
+  fs::path path_;
+  int lock_ = -1;
+};
+
+}  // namespace lgabench

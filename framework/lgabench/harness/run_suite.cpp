@@ -1,0 +1,201 @@
+#include <lgabench/harness/run_suite.hpp>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <fstream>
+#include <set>
+#include <thread>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/version.hpp>
+#include <lgabench/harness/progress.hpp>
+
+namespace lgabench {
+namespace {
+
+const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.method.is_reference() ? nullptr : &catalogue.find("method", cell.method.id);
+}
+
+Json build_of(const Cell& cell, const Catalogue& catalogue) {
+  return build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue));
+}
+
+Json plugin_json(const PluginInfo& info) {
+  return {{"file", fs::absolute(info.file).string()}, {"sha256", info.sha256}};
+}
+
+std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+double memory_bytes() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+}
+
+Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
+  std::vector<std::string> keys;
+  Json plugins = Json::array();
+  std::set<std::string> named;
+  const auto name = [&](const PluginInfo& info) {
+    if (named.insert(info.kind + info.id).second)
+      plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
+  };
+  Json programs;
+  for (const Cell& cell : plan.cells) {
+    keys.push_back(key(cell));
+    name(catalogue.find("engine", cell.engine));
+    if (const PluginInfo* method = method_plugin(cell, catalogue)) name(*method);
+    programs = build_of(cell, catalogue);
+  }
+  for (const char* plugin : {"engine", "method"}) programs.erase(plugin);
+  utsname system{};
+  ::uname(&system);
+  return {{"suite", plan.request.at("suite")},
+          {"preset", plan.request.at("preset")},
+          {"smoke", plan.cells.front().smoke},
+          {"request", plan.request},
+          {"cells", keys},
+          {"plugins", plugins},
+          {"build", programs},
+          {"version", LGABENCH_VERSION},
+          {"command", plan.command},
+          {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
+          {"machine",
+           {{"processor", processor()},
+            {"cores", std::thread::hardware_concurrency()},
+            {"memory_gib", std::round(memory_bytes() / (1 << 30) * 10) / 10},
+            {"system", fmt::format("{} {}", system.sysname, system.release)}}}};
+}
+
+// A worker that leaks meets its own limit before the machine's.
+Json limits(const PoolOptions& pool) {
+  constexpr double least = 4.0 * (1 << 30);
+  return {{"cpu_s", static_cast<long long>(pool.timeout_s) + 60},
+          {"data_bytes", static_cast<long long>(std::max(least, memory_bytes() / pool.jobs))}};
+}
+
+std::vector<std::string> tail(const fs::path& log) {
+  constexpr std::size_t lines = 20, longest = 400;
+  std::ifstream file(log, std::ios::binary);
+  std::vector<std::string> last;
+  for (std::string line; std::getline(file, line);) {
+    if (line.size() > longest) line = line.substr(0, longest) + "...";
+    for (char& c : line)  // whatever was printed, status.json stays text
+      if (static_cast<unsigned char>(c) >= 0x80 || (static_cast<unsigned char>(c) < 0x20 && c != '\t')) c = '?';
+    if (last.size() == lines) last.erase(last.begin());
+    last.push_back(line);
+  }
+  return last;
+}
+
+// status.json of a worker that left none.
+Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
+  const std::string where = end.phase.empty() ? "before its first phase" : "in phase " + end.phase;
+  std::string reason, fault = "plugin";
+  if (end.timed_out) {
+    reason = fmt::format("stopped after {} s {}", timeout_s, where);
+  } else if (end.signal != 0) {
+    reason = fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where);
+    if (end.signal == SIGKILL || end.signal == SIGTERM) fault = "host";  // from outside: a person, or memory ran out
+  } else if (!end.complaint.is_null()) {
+    reason = end.complaint.at("reason");
+    fault = end.complaint.at("fault") == "plugin" ? "plugin" : "host";
+  } else {
+    reason = fmt::format("exited with {} {}", end.exit_code, where);
+  }
+  return {{"state", "failed"},    {"reason", reason}, {"signal", end.signal ? Json(end.signal) : Json(nullptr)},
+          {"fault", fault},       {"build", build},   {"files", Json::object()},
+          {"log_tail", tail(log)}};
+}
+
+// The cells still to be computed, long ones first; says why a cell that was there is computed again.
+std::vector<const Cell*> missing_cells(const RunPlan& plan, const Catalogue& catalogue, const RunDirectory& directory) {
+  std::vector<const Cell*> missing;
+  std::size_t other_build = 0;
+  std::string why;
+  for (const Cell& cell : plan.cells) {
+    const auto state = directory.state(key(cell), build_of(cell, catalogue));
+    if (state.complete) continue;
+    missing.push_back(&cell);
+    if (state.other_build)
+      ++other_build, why = state.why;
+    else if (!state.why.empty())
+      fmt::print(stderr, "{}: {}; computed again\n", cell.title(), state.why);
+  }
+  if (other_build && plan.existing == Existing::same)
+    throw InputError(fmt::format("{}: {} cells were {}; --resume computes them again, --fresh drops the run",
+                                 plan.out.string(), other_build, why));
+  if (other_build) fmt::print(stderr, "{} cells were {}; computed again\n", other_build, why);
+  std::stable_sort(missing.begin(), missing.end(),
+                   [](const Cell* a, const Cell* b) { return a->demonstrations > b->demonstrations; });
+  return missing;
+}
+
+}  // namespace
+
+std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue) {
+  std::string all;
+  for (const Cell& cell : cells) all += key(cell) + canonical(build_of(cell, catalogue));
+  return sha256(all).substr(0, 8);
+}
+
+RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
+  const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
+  const std::vector<const Cell*> missing = missing_cells(plan, catalogue, directory);
+  RunOutcome outcome;
+  outcome.reused = plan.cells.size() - missing.size();
+
+  Progress progress(missing.size());
+  std::vector<fs::path> scratch(missing.size());
+  const auto make = [&](std::size_t i) {
+    const Cell& cell = *missing[i];
+    scratch[i] = directory.scratch(key(cell));
+    Json job{{"cell", to_json(cell)},
+             {"directory", fs::absolute(scratch[i]).string()},
+             {"cache", fs::absolute(plan.cache).string()},
+             {"build", build_of(cell, catalogue)},
+             {"limits", limits(plan.pool)},
+             {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
+    if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
+    return WorkerTask{job, scratch[i] / "log.txt"};
+  };
+  PoolEvents events;
+  events.started = [&](std::size_t i) { progress.started(i, missing[i]->title()); };
+  events.progress = [&](std::size_t i, const std::string& phase, long long n) { progress.phase(i, phase, n); };
+  events.tick = [&] { progress.tick(); };
+  events.ended = [&](std::size_t i, const WorkerEnd& end) {
+    const Cell& cell = *missing[i];
+    constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
+    std::string reason;
+    if (end.exit_code != 0 || end.signal != 0 || !fs::exists(scratch[i] / "status.json")) {
+      const Json status = failure(end, plan.pool.timeout_s, scratch[i] / "log.txt", build_of(cell, catalogue));
+      for (const auto& entry : fs::directory_iterator(scratch[i]))
+        if (entry.path().filename() != "log.txt") fs::remove_all(entry.path());  // parts of a result are none
+      write_file(scratch[i] / "cell.json", canonical(to_json(cell)) + '\n');
+      write_file(scratch[i] / "status.json", canonical(status) + '\n');
+      reason = "failed: " + status.at("reason").get<std::string>();
+      ++outcome.failed;
+      outcome.plugin_refused |= end.exit_code == refused;
+    } else {
+      ++outcome.computed;
+    }
+    directory.keep(key(cell));
+    progress.ended(i, reason);
+  };
+  outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
+  return outcome;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,38 @@
+// A run: cells in, a directory of finished cells out.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/run_directory.hpp>
+#include <lgabench/harness/worker_pool.hpp>
+
+namespace lgabench {
+
+struct RunPlan {
+  std::vector<Cell> cells;
+  Json request;               // the settings that led to the cells, for run.json
+  std::string command;        // as typed
+  std::filesystem::path out;  // the run directory
+  std::filesystem::path cache;
+  Existing existing = Existing::same;
+  PoolOptions pool;
+};
+
+struct RunOutcome {
+  std::size_t computed = 0, reused = 0, failed = 0;
+  bool plugin_refused = false;  // a worker could not load a plugin
+  bool interrupted = false;     // by a signal; all that was finished is kept
+};
+
+/// The first 8 digits of a hash of the cells and of what computes them: names a run's default directory, so that
+/// another configuration or build never meets its results.
+std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
+
+/// Computes the cells that the directory lacks, those with many demonstrations first. A cell that fails is recorded as
+/// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.
+/// @throws InputError, with nothing overwritten, if the directory cannot be used; PluginError for a missing plugin.
+RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue);
+
+}  // namespace lgabench

@@ -1,0 +1,240 @@
+#include <lgabench/harness/worker_pool.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <list>
+#include <utility>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+[[noreturn]] void fail(const std::string& what) { throw InputError(fmt::format("{}: {}", what, std::strerror(errno))); }
+
+// Owns a file descriptor.
+struct Descriptor {
+  int fd = -1;
+  explicit Descriptor(int f = -1) : fd(f) {}
+  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
+  Descriptor& operator=(Descriptor&&) = delete;
+  ~Descriptor() { close(); }
+  void close() {
+    if (fd >= 0) ::close(std::exchange(fd, -1));
+  }
+};
+
+// SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end.
+class Signals {
+ public:
+  Signals() {
+    sigset_t wanted;
+    sigemptyset(&wanted);
+    for (const int signal : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
+    ::sigprocmask(SIG_BLOCK, &wanted, &before_);
+    fd_ = ::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK);
+    if (fd_ < 0) fail("signalfd");
+  }
+  ~Signals() {
+    ::close(fd_);
+    ::sigprocmask(SIG_SETMASK, &before_, nullptr);
+  }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  int fd() const { return fd_; }
+  const sigset_t& before() const { return before_; }
+  /// Takes what arrived; true if the run is to end.
+  bool take() const {
+    signalfd_siginfo info;
+    bool stop = false;
+    while (::read(fd_, &info, sizeof info) == sizeof info) stop |= info.ssi_signo != SIGCHLD;
+    return stop;
+  }
+
+ private:
+  sigset_t before_{};
+  int fd_ = -1;
+};
+
+struct Worker {
+  std::size_t task = 0;
+  pid_t pid = -1;
+  Descriptor messages;  // its fd 3
+  std::string partial;  // of a line
+  Clock::time_point deadline;
+  WorkerEnd end;
+};
+
+// The job in memory: a file that needs no writing to disk and no pump.
+Descriptor job_file(const Json& job) {
+  const std::string text = canonical(job);
+  Descriptor file(::memfd_create("job", MFD_CLOEXEC));
+  if (file.fd < 0) fail("memfd_create");
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t n = ::write(file.fd, text.data() + done, text.size() - done);
+    if (n < 0) fail("job");
+    done += static_cast<std::size_t>(n);
+  }
+  ::lseek(file.fd, 0, SEEK_SET);
+  return file;
+}
+
+// One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
+std::vector<std::string> worker_environment() {
+  std::vector<std::string> all{"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
+                               "LGABENCH_DATA=" + fs::absolute(data_directory()).string()};
+  for (char** variable = environ; *variable; ++variable) {
+    const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
+    if (std::none_of(all.begin(), all.begin() + 4, [&](const auto& ours) { return ours.rfind(name, 0) == 0; }))
+      all.push_back(text);
+  }
+  return all;
+}
+
+Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& options, const Signals& signals) {
+  const std::string program = (program_directory() / "lgabench-worker").string();
+  const Descriptor job = job_file(what.job);
+  const Descriptor log(::open(what.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644));
+  if (log.fd < 0) fail(what.log.string() + ": cannot be written");
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail("pipe");
+  Descriptor reading(ends[0]);
+  const Descriptor writing(ends[1]);
+  ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
+  const std::vector<std::string> variables = worker_environment();  // nothing is allocated between fork and exec
+  std::vector<char*> environment;
+  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
+  environment.push_back(nullptr);
+  char verb[] = "cell";
+  char* const arguments[] = {const_cast<char*>(program.c_str()), verb, nullptr};
+  const pid_t parent = ::getpid();
+
+  const pid_t pid = ::fork();
+  if (pid < 0) fail("fork");
+  if (pid == 0) {
+    ::setpgid(0, 0);  // its own group: what it starts is stopped with it, and a terminal's Ctrl-C asks us alone
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (::getppid() != parent) ::_exit(127);  // we died before that took effect
+    ::sigprocmask(SIG_SETMASK, &signals.before(), nullptr);
+    // All descriptors here are above 3 (0 to 2 are open), except that one may be 3 itself: dup2 would keep CLOEXEC.
+    const int spare = ::fcntl(writing.fd, F_DUPFD, 10);
+    ::dup2(job.fd, 0);
+    ::dup2(log.fd, 1);
+    ::dup2(log.fd, 2);
+    ::dup2(spare, 3);
+    ::close(spare);
+    ::execve(program.c_str(), arguments, environment.data());
+    ::_exit(127);
+  }
+  ::setpgid(pid, pid);  // whoever comes first
+  Worker worker{task, pid, std::move(reading), "", {}, {}};
+  worker.deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s));
+  return worker;
+}
+
+// A line of fd 3: {"phase", "count"} or {"reason", "fault"}. A plugin could write there too: what is no such line is
+// dropped.
+void take_line(const std::string& line, Worker& worker, const PoolEvents& events) {
+  const Json message = Json::parse(line, nullptr, false);
+  if (!message.is_object()) return;
+  const auto text = [&message](const char* name) {
+    return message.contains(name) && message[name].is_string() ? message[name].get<std::string>() : std::string();
+  };
+  if (message.contains("reason")) worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+  if (!message.contains("phase")) return;
+  worker.end.phase = text("phase");
+  const auto count = message.find("count");
+  events.progress(worker.task, worker.end.phase,
+                  count != message.end() && count->is_number_integer() ? count->get<long long>() : 0);
+}
+
+void take_messages(Worker& worker, const PoolEvents& events) {
+  constexpr std::size_t longest = 1 << 16;
+  char block[4096];
+  for (ssize_t n; worker.messages.fd >= 0 && (n = ::read(worker.messages.fd, block, sizeof block)) >= 0;) {
+    if (n == 0) worker.messages.close();  // all writers are gone: poll() shall not report that for ever
+    worker.partial.append(block, static_cast<std::size_t>(n));
+    for (std::size_t end; (end = worker.partial.find('\n')) != std::string::npos;) {
+      take_line(worker.partial.substr(0, end), worker, events);
+      worker.partial.erase(0, end + 1);
+    }
+    if (worker.partial.size() > longest) worker.partial.clear();
+  }
+}
+
+void kill_group(const Worker& worker) { ::kill(-worker.pid, SIGKILL); }
+
+// True once the worker is gone; its group goes with it.
+bool reap(Worker& worker, const PoolEvents& events) {
+  int status = 0;
+  if (::waitpid(worker.pid, &status, WNOHANG) != worker.pid) return false;
+  kill_group(worker);
+  take_messages(worker, events);
+  if (WIFSIGNALED(status)) worker.end.signal = WTERMSIG(status);
+  if (WIFEXITED(status)) worker.end.exit_code = WEXITSTATUS(status);
+  return true;
+}
+
+// However this is left, no worker stays behind.
+struct Crew {
+  std::list<Worker> workers;
+  ~Crew() {
+    for (Worker& worker : workers) {
+      kill_group(worker);
+      ::waitpid(worker.pid, nullptr, 0);
+    }
+  }
+};
+
+}  // namespace
+
+bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
+                 const PoolEvents& events) {
+  const Signals signals;
+  Crew crew;
+  for (std::size_t next = 0; next < tasks || !crew.workers.empty();) {
+    while (next < tasks && crew.workers.size() < static_cast<std::size_t>(options.jobs)) {
+      crew.workers.push_back(start(next, make(next), options, signals));
+      events.started(next++);
+    }
+    std::vector<pollfd> watched{{signals.fd(), POLLIN, 0}};
+    for (const Worker& worker : crew.workers) watched.push_back({worker.messages.fd, POLLIN, 0});
+    ::poll(watched.data(), watched.size(), 200);
+    if (signals.take()) return false;
+    for (auto worker = crew.workers.begin(); worker != crew.workers.end();) {
+      take_messages(*worker, events);
+      if (!worker->end.timed_out && Clock::now() > worker->deadline) {
+        worker->end.timed_out = true;
+        kill_group(*worker);
+      }
+      if (!reap(*worker, events)) {
+        ++worker;
+        continue;
+      }
+      const Worker gone = std::move(*worker);
+      worker = crew.workers.erase(worker);
+      events.ended(gone.task, gone.end);
+    }
+    events.tick();
+  }
+  return true;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,46 @@
+// Runs lgabench-worker processes, a few at a time.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+struct WorkerTask {
+  Json job;                   // the worker's stdin
+  std::filesystem::path log;  // its stdout and stderr
+};
+
+/// How a worker ended.
+struct WorkerEnd {
+  int exit_code = 0;
+  int signal = 0;          // that ended it, or 0
+  bool timed_out = false;  // it was stopped after the limit
+  std::string phase;       // the last one it reported
+  Json complaint;          // {"reason", "fault"} if it said why it failed, else null
+};
+
+struct PoolOptions {
+  int jobs = 1;
+  double timeout_s = 3600;  // of wall time, for one task
+};
+
+/// Called in the calling thread. `task` indexes the tasks.
+struct PoolEvents {
+  std::function<void(std::size_t task)> started;
+  std::function<void(std::size_t task, const std::string& phase, long long count)> progress;
+  std::function<void(std::size_t task, const WorkerEnd& end)> ended;
+  std::function<void()> tick;  // about five times a second
+};
+
+/// Runs all tasks in order, `jobs` at once, each as a fresh process in its own process group that dies with this one.
+/// A task's end, good or bad, changes nothing for the others. `make` is called just before a task starts.
+/// @returns false if SIGINT, SIGTERM or SIGHUP came: all workers are then stopped and gone.
+/// @throws InputError if no process can be started. Uses the process's signal mask and children; one call at a time.
+bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
+                 const PoolEvents& events);
+
+}  // namespace lgabench

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/plugin/reader.hpp>
+
+namespace lgabench {
+
+Json to_json(const PluginInfo& plugin) {
+  return {{"file", plugin.file.string()}, {"kind", plugin.kind},       {"id", plugin.id},
+          {"version", plugin.version},    {"summary", plugin.summary}, {"fingerprint", plugin.fingerprint},
+          {"options", plugin.options},    {"sha256", plugin.sha256}};
+}
+
+const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id) const {
+  std::vector<std::string> known;
+  for (const auto& plugin : plugins) {
+    if (plugin.kind == kind && plugin.id == id) return plugin;
+    if (plugin.kind == kind) known.push_back(plugin.id);
+  }
+  std::sort(known.begin(), known.end());
+  std::string message = fmt::format("no {} \"{}\", expected one of: {}", kind, id, fmt::join(known, ", "));
+  for (const auto& [file, reason] : refused)
+    if (file.stem() == id) message += fmt::format("; {} was refused: {}", file.string(), reason);
+  throw PluginError(message);
+}
+
+std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra) {
+  std::vector<fs::path> all{shipped_plugin_directory()};
+  if (const char* listed = std::getenv("LGABENCH_PLUGIN_PATH")) {
+    std::istringstream parts(listed);
+    for (std::string part; std::getline(parts, part, ':');)
+      if (!part.empty()) all.emplace_back(part);
+  }
+  all.insert(all.end(), extra.begin(), extra.end());
+  return all;
+}
+
+Catalogue scan_plugins(const std::vector<fs::path>& directories) {
+  Catalogue catalogue;
+  std::set<fs::path> seen;  // a directory named twice is one directory
+  for (const fs::path& directory : directories) {
+    std::error_code error;
+    if (!seen.insert(fs::weakly_canonical(directory, error)).second) continue;
+    std::vector<fs::path> files;
+    for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == ".so") files.push_back(it->path());
+    if (error) {
+      catalogue.refused.push_back({directory, "cannot be read: " + error.message()});
+      continue;
+    }
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) {
+      try {
+        PluginInfo plugin = inspect_plugin(file);
+        for (const auto& other : catalogue.plugins)
+          if (other.kind == plugin.kind && other.id == plugin.id)
+            throw PluginError(fmt::format("{} \"{}\" is already in {}", plugin.kind, plugin.id, other.file.string()));
+        catalogue.plugins.push_back(std::move(plugin));
+      } catch (const PluginError& e) {
+        catalogue.refused.push_back({file, e.what()});
+      }
+    }
+  }
+  return catalogue;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+namespace {
+
+const char* type_of(const Json& value) {
+  if (value.is_string()) return "a text";
+  if (value.is_boolean()) return "true or false";
+  if (value.is_number_integer()) return "a whole number";
+  return "a number";
+}
+
+}  // namespace
+
+Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
+  const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
+  const JsonReader given(overrides, owner);
+  std::vector<std::string> known;
+  for (const auto& option : plugin.options.items()) known.push_back(option.key());
+  if (known.empty() && overrides.is_object() && !overrides.empty()) given.fail("none: it has no options");
+  given.only(known);
+
+  Json resolved = Json::object();
+  for (const auto& [name, option] : plugin.options.items()) {
+    const Json& usual = option.at("default");
+    Json value = given.has(name) ? overrides.at(name) : usual;
+    // A fractional option keeps its type, so that 1 and 1.0 are one configuration.
+    if (usual.is_number_float() && value.is_number()) value = value.get<double>();
+    const bool same_type = value.type() == usual.type() || (value.is_number_integer() && usual.is_number_integer());
+    if (!same_type) given.at(name).fail(type_of(usual));
+    if (option.contains("values")) {
+      const Json& values = option.at("values");
+      if (std::find(values.begin(), values.end(), value) == values.end())
+        given.at(name).fail("one of " + canonical(values));
+    }
+    resolved[name] = std::move(value);
+  }
+  return resolved;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,16 @@
+// Inside plugin/: the steps of read_plugin that the catalogue and the loader use too. Errors here do not name the file.
+#pragma once
+#include <string_view>
+
+#include <lgabench/plugin/descriptor.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+
+/// The one descriptor in the bytes of a whole ELF library. @throws PluginError, also for another plugin interface.
+PluginDescriptor find_descriptor(std::string_view bytes);
+
+/// read_plugin without the file's name in errors.
+PluginInfo inspect_plugin(const fs::path& file);
+
+}  // namespace lgabench

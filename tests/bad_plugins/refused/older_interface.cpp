@@ -1,0 +1,8 @@
+// Compiled for another version of the plugin interface.
+#include <lgabench/core/version.hpp>
+#undef LGABENCH_PLUGIN_ABI
+#define LGABENCH_PLUGIN_ABI 0
+#include "../fixture.hpp"
+
+LGABENCH_METHOD("older_interface", "0.1", "made for an older plugin interface",
+                fixture::FixtureMethod<fixture::StayPolicy>, "{}")

@@ -1,0 +1,320 @@
+"""The programs as a person uses them: bad input, determinism, kill -9, faulty plugins, demonstrations.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py Killed
+"""
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
+PROGRAM = BUILD / "bin" / "lgabench"
+FIXTURES = BUILD / "tests" / "plugins"
+# Small but real: both shipped methods train, for seconds.
+SMALL = ["q1", "--scenarios", "heart,letter", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
+         "--episodes", "4", "--set", "lga.epochs=200", "--set", "gcbc_dart.epochs=5"]
+SMALL_CELLS = 2 * 5  # scenarios x (methods + constant action + random object + oracle)
+NO_CLOCK = ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
+        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
+
+    def call(self, *arguments, expect=0, **more):
+        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=self.environment,
+                              cwd=self.dir, timeout=300, **more)
+        self.assertEqual(done.returncode, expect, done.stderr[-3000:])
+        return done
+
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True, env=self.environment, cwd=self.dir)
+        self.addCleanup(process.stderr.close)
+        return process
+
+    def cells(self, run):
+        """key -> (cell, status) of every finished cell."""
+        return {path.name: tuple(json.loads((path / name).read_text()) for name in ("cell.json", "status.json"))
+                for path in (self.dir / run / "cells").iterdir() if not path.name.startswith(".")}
+
+    def results(self, run):
+        """All bytes that must not depend on how the run went."""
+        bytes_of = {f"{path.name}/{name}": (path / name).read_bytes()
+                    for path in (self.dir / run / "cells").iterdir() for name in NO_CLOCK if (path / name).exists()}
+        for name in ("summary.json", "summary.csv"):
+            bytes_of[name] = (self.dir / run / name).read_bytes()
+        return bytes_of
+
+    def assert_same_results(self, run, other):
+        a, b = self.results(run), self.results(other)
+        self.assertEqual(sorted(a), sorted(b))
+        self.assertEqual([name for name in a if a[name] != b[name]], [])
+
+
+class BadInput(Case):
+    def refused(self, *arguments, says, expect=2):
+        done = self.call(*arguments, expect=expect)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertRegex(done.stderr, says)
+
+    def test_command_line(self):
+        for arguments, says in [
+            (["q9"], r'suite "q9": expected one of: q1'),
+            (["q1", "--scenarios", "nope"], r"/scenarios/0: expected one of .*heart.*got \"nope\""),
+            (["q1", "--demos=-5"], r"/demonstrations/0: expected a whole number from 1 .*got -5"),
+            (["q1", "--demos", "10,ten"], r"/demonstrations/1: .*got \"ten\""),
+            (["q1", "--demos", "10,10"], r"/demonstrations/1: expected each value once"),
+            (["q1", "--episodes=-1"], r"/episodes: .*got -1"),
+            (["q1", "--episodes", "0"], r"/episodes: .*got 0"),
+            (["q1", "--seeds", "3:1"], r"/seeds/0: .*got \"3:1\""),
+            (["q1", "--layout", "moon"], r"/layouts/0: expected one of cells, continuous, released"),
+            (["q1", "--preset", "nope"], r'preset "nope": .*q1.json has: leaderboard, paper, smoke'),
+            (["q1", "--set", "lga.epocs=3"], r"unknown member \"epocs\", expected one of: .*epochs"),
+            (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
+            (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, gcbc_dart"),
+            (["q1", "--jobs", "0"], r"--jobs"),
+            (["q1", "--resume", "--fresh"], r"excludes"),
+        ]:
+            with self.subTest(arguments):
+                self.refused("run", *arguments, says=says)
+        self.refused("run", "q1", "--methods", "nope", says=r'no method "nope", expected one of: gcbc_dart, lga', expect=4)
+        self.refused("run", "q1", "--engines", "nope", says=r'no engine "nope"', expect=4)
+        self.assertEqual(list(self.dir.iterdir()), [])
+
+    def test_suite_file(self):
+        good = json.loads((BUILD / "share/lgabench/suites/q1.json").read_text())
+        file = self.dir / "q1.json"
+        for change, says in [
+            ({"episodes": -1}, r"q1.json: /episodes: expected a whole number from 1 to \d+, got -1"),
+            ({"scenarios": ["heart", "nope"]}, r"q1.json: /scenarios/1: expected one of "),
+            ({"scenarios": []}, r"q1.json: /scenarios: expected at least one value"),
+            ({"colour": 1}, r"q1.json: /: unknown member \"colour\""),
+            ({"id": "other"}, r"q1.json: /id: expected \"q1\""),
+            ({"presets": {"smoke": {"seeds": [-1]}}}, r"q1.json: /presets/smoke/seeds/0: "),
+            ({"environment": "kitchen"}, r"is a scenario of tabletop, expected kitchen"),
+        ]:
+            with self.subTest(change):
+                file.write_text(json.dumps({**good, **change}))
+                self.refused("run", file, says=says)
+        file.write_text('{"id": "q1",\n "scenarios": [}')
+        self.refused("run", file, says=r"q1.json: line 2 \(byte \d+\): expected valid JSON")
+        file.write_text(json.dumps({k: v for k, v in good.items() if k != "seeds"}))
+        self.refused("run", file, says=r'q1.json: /: expected a member "seeds"')
+        self.refused("run", self.dir / "none.json", says=r"none.json: cannot be read: No such file")
+
+    def test_output_directory(self):
+        (self.dir / "file").write_text("kept")
+        self.refused("run", "q1", "--limit", "1", "--out", "file/below", says=r"file/below: .*Not a directory")
+        self.refused("run", "q1", "--limit", "1", "--out", "file", says=r"file: .*Not a directory")
+        (self.dir / "mine").mkdir()
+        (self.dir / "mine" / "thesis.txt").write_text("kept")
+        for flags in ([], ["--resume"], ["--fresh"]):
+            self.refused("run", "q1", "--limit", "1", "--out", "mine", *flags, says=r"mine: not empty and not a run")
+        self.assertEqual((self.dir / "file").read_text(), "kept")
+        self.assertEqual([p.name for p in (self.dir / "mine").iterdir()], ["thesis.txt"])
+
+    def test_another_configuration_is_not_overwritten(self):
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--set", "lga.epochs=5",
+               "--methods", "lga", "--out", "out"]
+        self.call(*one, "--episodes", "2")
+        before = self.results("out")
+        for flags in ([], ["--resume"]):
+            self.refused(*one, "--episodes", "3", *flags, says=r"out: holds another run \(episodes 2 there, 3 wanted\)")
+        self.assertEqual(self.results("out"), before)
+        self.call(*one, "--episodes", "3", "--fresh")
+        self.assertEqual({cell["episodes"] for cell, _ in self.cells("out").values()}, {3})
+
+    def test_hdf5(self):
+        (self.dir / "not.hdf5").write_text("this is text")
+        self.refused("demos", "--inspect", "not.hdf5", says=r"not.hdf5: /: expected an HDF5 file")
+        (self.dir / "cut.hdf5").write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
+        self.refused("demos", "--inspect", "cut.hdf5", says=r"cut.hdf5: /")
+        self.refused("demos", "heart", "--out", "not.hdf5/x", says=r"not.hdf5/x: cannot be written: Not a directory")
+        self.refused("demos", "nope", "--out", "x.hdf5", says=r'scenario "nope": expected one of: ')
+        self.refused("demos", "heart", "--n=-1", "--out", "x.hdf5", says=r"--n")
+
+
+class Determinism(Case):
+    def test_jobs_cache_and_repetition_change_no_byte(self):
+        self.call("run", *SMALL, "--jobs", "1", "--out", "one")
+        self.assertEqual(len(self.cells("one")), SMALL_CELLS)
+        self.assertEqual({status["state"] for _, status in self.cells("one").values()}, {"ok"})
+        self.call("run", *SMALL, "--jobs", "2", "--out", "two", "--cache", self.dir / "another")
+        self.assert_same_results("one", "two")
+        cached = {p.name: p.read_bytes() for p in (self.dir / "cache").iterdir()}
+        self.assertEqual(cached, {p.name: p.read_bytes() for p in (self.dir / "another").iterdir()})
+        self.call("run", *SMALL, "--jobs", "2", "--out", "two", "--fresh")  # from the filled cache
+        self.assert_same_results("one", "two")
+
+        # Test scenes are the same for every method and training seed.
+        scenes = {}
+        for key, (cell, _) in self.cells("one").items():
+            lines = (self.dir / "one/cells" / key / "episodes.jsonl").read_text().splitlines()
+            scenes.setdefault(cell["scenario"]["id"], set()).add(tuple(json.loads(line)["scene"] for line in lines))
+        self.assertEqual({scenario: len(kinds) for scenario, kinds in scenes.items()}, {"heart": 1, "letter": 1})
+
+        # A second call computes nothing; a damaged file is computed again, and that is said.
+        self.assertIn(f"0 cells computed, {SMALL_CELLS} were there", self.call("run", *SMALL, "--out", "two").stderr)
+        damaged = next((self.dir / "two/cells").glob("*/episodes.jsonl"))
+        damaged.write_bytes(damaged.read_bytes()[:-10])
+        said = self.call("run", *SMALL, "--out", "two").stderr
+        self.assertRegex(said, r"episodes.jsonl does not have the bytes that were written; computed again")
+        self.assertIn("1 cells computed", said)
+        self.assert_same_results("one", "two")
+
+
+class Killed(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.undisturbed = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.undisturbed, ignore_errors=True)
+        subprocess.run([PROGRAM, "run", *SMALL, "--out", cls.undisturbed / "run"], check=True, capture_output=True,
+                       env=dict(os.environ, LGABENCH_CACHE=str(cls.undisturbed / "cache")))
+
+    def assert_as_undisturbed(self, run):
+        self.assert_same_results(self.undisturbed / "run", run)
+
+    @staticmethod
+    def workers(parent):
+        try:
+            return [int(p) for p in pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()]
+        except OSError:
+            return []
+
+    @staticmethod
+    def gone(pid):
+        try:
+            return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
+        except OSError:
+            return True
+
+    def test_a_worker(self):
+        run = self.start("run", *SMALL, "--jobs", "2", "--out", "out")
+        while not self.workers(run.pid):
+            time.sleep(.001)
+        os.kill(self.workers(run.pid)[0], signal.SIGKILL)
+        said = run.communicate(timeout=300)[1]
+        self.assertEqual(run.returncode, 3, said)
+        failed = [status for _, status in self.cells("out").values() if status["state"] == "failed"]
+        self.assertEqual([(status["signal"], status["fault"]) for status in failed], [(9, "host")])
+        self.assertIn("signal 9", said)
+        self.call("run", *SMALL, "--out", "out", "--resume")
+        self.assert_as_undisturbed("out")
+
+    def test_the_parent_at_random_moments(self):
+        seed = random.randrange(1 << 30)
+        print("seed", seed, flush=True)
+        moments = random.Random(seed)
+        for _ in range(6):
+            run = self.start("run", *SMALL, "--jobs", "2", "--out", "out")
+            time.sleep(moments.uniform(.02, 1.2))
+            workers = self.workers(run.pid)
+            run.kill()
+            run.wait()
+            deadline = time.monotonic() + 5
+            while not all(map(self.gone, workers)):
+                self.assertLess(time.monotonic(), deadline, "a worker outlived its parent")
+                time.sleep(.01)
+        self.call("run", *SMALL, "--out", "out")
+        self.assert_as_undisturbed("out")
+        self.assertEqual(list((self.dir / "out/cells").glob(".*")), [])
+
+    def test_interrupted_prints_the_command_that_resumes(self):
+        run = self.start("run", *SMALL, "--jobs", "2")
+        while not self.workers(run.pid):
+            time.sleep(.001)
+        run.send_signal(signal.SIGINT)
+        said = run.communicate(timeout=60)[1]
+        self.assertEqual(run.returncode, 130, said)
+        command = said.splitlines()[-1].split()
+        self.assertEqual(command[-1], "--resume")
+        subprocess.run(command, check=True, env=self.environment, cwd=self.dir, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL, timeout=300)
+        shutil.move(self.dir / command[-2], self.dir / "out")
+        self.assert_as_undisturbed("out")
+
+    def test_two_runs_cannot_write_into_one_directory(self):
+        run = self.start("run", *SMALL, "--out", "out")
+        while not self.workers(run.pid):
+            time.sleep(.001)
+        self.assertIn("another run is writing into it", self.call("run", *SMALL, "--out", "out", expect=2).stderr)
+        run.kill()
+        run.wait()
+
+
+class FaultyPlugins(Case):
+    RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
+           "--plugin-path", FIXTURES / "good", "--plugin-path", FIXTURES / "faulty", "--timeout", "3"]
+
+    def test_each_costs_its_own_cell_alone(self):
+        faulty = ["abort", "exit", "hang", "nan", "segfault", "throw"]
+        methods = ",".join("fixture_" + name for name in [*faulty[:3], "constant", *faulty[3:]])
+        done = self.call(*self.RUN, "--methods", methods, "--out", "out", expect=3)
+        ended = {}
+        for key, (cell, status) in self.cells("out").items():
+            ended[cell["method"]["id"].removeprefix("fixture_")] = (key, status)
+        reasons = {name: status["reason"] for name, (_, status) in ended.items() if status["state"] == "failed"}
+        self.assertEqual(sorted(reasons), ["abort", "exit", "hang", "segfault"])
+        self.assertRegex(reasons["abort"], r"signal 6 .*in phase evaluate")
+        self.assertRegex(reasons["segfault"], r"signal 11 .*in phase evaluate")
+        self.assertRegex(reasons["exit"], r"exited with 0 in phase evaluate")
+        self.assertRegex(reasons["hang"], r"stopped after 3 s in phase evaluate")
+        self.assertEqual({ended[name][1]["fault"] for name in reasons}, {"plugin"})
+        for name in reasons:
+            self.assertIn(reasons[name], done.stderr)
+            left = {p.name for p in (self.dir / "out/cells" / ended[name][0]).iterdir()}
+            self.assertEqual(left, {"cell.json", "status.json", "log.txt"})
+        for name in ("nan", "throw"):
+            lines = (self.dir / "out/cells" / ended[name][0] / "episodes.jsonl").read_text().splitlines()
+            self.assertEqual([(json.loads(line)["failure"], json.loads(line)["action"]) for line in lines],
+                             [("method_error", None)] * 3)
+
+        self.call(*self.RUN, "--methods", "fixture_constant", "--out", "alone")
+        key = ended["constant"][0]
+        for name in NO_CLOCK:
+            self.assertEqual((self.dir / "out/cells" / key / name).read_bytes(),
+                             (self.dir / "alone/cells" / key / name).read_bytes())
+
+    def test_one_that_cannot_be_loaded(self):
+        done = self.call("run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2",
+                         "--no-reference", "--methods", "missing_symbol,fixture_constant", "--out", "out",
+                         "--plugin-path", FIXTURES / "refused", "--plugin-path", FIXTURES / "good", expect=4)
+        self.assertRegex(done.stderr, r"missing_symbol.*undefined symbol")
+        self.assertEqual(sorted(status["state"] for _, status in self.cells("out").values()), ["failed", "ok"])
+
+
+class Demonstrations(Case):
+    def test_file(self):
+        for name in ("a", "b"):
+            self.call("demos", "heart", "--n", "3", "--noisy", "2", "--out", name + ".hdf5")
+        data = (self.dir / "a.hdf5").read_bytes()
+        self.assertEqual(data, (self.dir / "b.hdf5").read_bytes())
+        lines = self.call("demos", "--inspect", "a.hdf5").stdout.splitlines()
+        self.assertEqual(len(lines), 3)
+        for i, line in enumerate(lines):
+            self.assertRegex(line, rf'^demo_{i}: [123] steps; "Bring me the heart."; .*heart')
+        # What a method is given names no role, scene or seed.
+        for word in (b"role", b"target", b"distractor", b"goal", b"seed", b"scene", b"split", b"index"):
+            self.assertIsNone(re.search(rb"\b" + word, data), word)
+
+    def test_smoke_is_stamped(self):
+        for flags, stamped in ([["--limit", "1"], True], [["--scenarios", "heart", "--seeds", "0", "--demos", "10"], False]):
+            out = f"out{stamped}"
+            self.call("run", "q1", "--methods", "lga", "--set", "lga.epochs=2", "--episodes", "1", "--out", out, *flags)
+            self.assertEqual(json.loads((self.dir / out / "run.json").read_text())["smoke"], stamped)
+            self.assertEqual({cell["smoke"] for cell, _ in self.cells(out).values()}, {stamped})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,5 @@
+lgabench_unit_test(harness_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/harness_suite_test.cpp
+                                        ${CMAKE_CURRENT_LIST_DIR}/harness_cell_test.cpp
+                   LINK lgabench_cell)
+# They play on the real engine, found as the programs find it: beside lib/.
+add_dependencies(harness_test mujoco)

@@ -1,0 +1,208 @@
+// Suites, cells, run directories: what `lgabench` does before and after a worker.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/run_directory.hpp>
+#include <lgabench/harness/suite.hpp>
+#include <lgabench/harness/worker_pool.hpp>
+
+namespace lgabench {
+namespace {
+
+class Directory : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "lgabench-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    path = name;
+  }
+  void TearDown() override { fs::remove_all(path); }
+  fs::path path;
+};
+
+// The one-line complaint of a call that must refuse its input.
+template <class Call>
+std::string complaint(Call call) {
+  try {
+    call();
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+PluginInfo plugin(const std::string& kind, const std::string& id) {
+  const Json options{{"epochs", {{"default", 750}, {"help", "passes"}, {"source", "test"}}}};
+  return {"/none/" + id + ".so", kind, id, "0.1", "", "", options, sha256(id)};
+}
+Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), plugin("engine", "e")}, {}}; }
+
+Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
+
+TEST(Suite, q1) {
+  const Suite suite = load_suite("q1");
+  EXPECT_EQ(suite.grid.scenarios.size(), 9u);
+  EXPECT_EQ(suite.grid.demonstrations, (std::vector<int>{10, 20, 30, 40, 50}));
+  const Grid smoke = preset_grid(suite, "smoke");
+  EXPECT_TRUE(smoke.smoke);
+  EXPECT_EQ(smoke.scenarios, (std::vector<std::string>{"heart", "red_heart"}));
+  EXPECT_EQ(smoke.demonstrations, std::vector<int>{20});
+  const Grid board = preset_grid(suite, "leaderboard");
+  EXPECT_FALSE(board.smoke);
+  EXPECT_EQ(board.layouts, std::vector<std::string>{"continuous"});
+  EXPECT_EQ(board.episodes, 100);
+  EXPECT_EQ(board.seeds.size(), 5u);
+  EXPECT_EQ(board.demonstrations.size(), 5u) << "what a preset does not name it takes from the suite";
+}
+
+TEST(Suite, GridAsJsonReadsBack) {
+  const Json json = to_json(small_grid());
+  EXPECT_EQ(to_json(apply(JsonReader(json, "test"), Grid{})), json);
+}
+
+TEST(Cells, ExpandCrossesTheGrid) {
+  const Suite suite = load_suite("q1");
+  const auto cells = expand(suite, small_grid(), {}, catalogue());
+  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + random object + oracle)
+  EXPECT_EQ(cells.size(), 2u * (2 * 3 * 3 + 2));
+  std::vector<std::string> keys;
+  for (const Cell& cell : cells) keys.push_back(key(cell));
+  std::sort(keys.begin(), keys.end());
+  EXPECT_EQ(std::unique(keys.begin(), keys.end()), keys.end()) << "two cells with one key";
+  const auto oracles = std::count_if(cells.begin(), cells.end(), [](const Cell& c) { return c.method.id == "oracle"; });
+  EXPECT_EQ(oracles, 2);
+  for (const Cell& cell : cells) {
+    if (cell.method.id == "oracle" || cell.method.id == "random_object") {
+      EXPECT_EQ(cell.demonstrations, 0);
+    }
+  }
+  EXPECT_EQ(expand(suite, small_grid(), {"recorded", Json::object(), false}, catalogue()).size(), 2u * 2 * 3 * 2);
+}
+
+TEST(Cells, KeyIsOfTheWholeConfiguration) {
+  const auto cells = expand(load_suite("q1"), small_grid(), {}, catalogue());
+  const Cell& cell = cells.front();
+  EXPECT_EQ(cell.method.options, Json({{"epochs", 750}})) << "defaults are part of a cell";
+  EXPECT_EQ(key(read_cell(Json::parse(canonical(to_json(cell))), "test")), key(cell));
+  EXPECT_EQ(key(cell), sha256(canonical(to_json(cell))).substr(0, 16));
+  const Json json = to_json(cell);
+  for (const auto& member : json.items()) {
+    Json other = json;
+    other[member.key()] = member.value().is_number() ? Json(91) : member.value().is_boolean() ? Json(true) : Json("x");
+    if (member.key() == "scenario") other["scenario"] = {{"id", "x"}};
+    if (member.key() == "method") other["method"] = {{"kind", "method"}, {"id", "x"}, {"version", ""}, {"options", {}}};
+    EXPECT_NE(key(read_cell(other, "test")), key(cell)) << member.key();
+  }
+}
+
+TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
+  const Suite suite = load_suite("q1");
+  const auto with = [&](const Json& options) {
+    return complaint([&] { expand(suite, small_grid(), {"recorded", options, true}, catalogue()); });
+  };
+  EXPECT_EQ(with({{"a", {{"epochs", 5}}}}), "accepted");
+  EXPECT_NE(with({{"a", {{"epoks", 5}}}}).find("epoks"), std::string::npos);
+  EXPECT_NE(with({{"c", {{"epochs", 5}}}}).find("--set c"), std::string::npos);
+  Grid grid = small_grid();
+  grid.methods = {"c"};
+  EXPECT_THROW(expand(suite, grid, {}, catalogue()), PluginError);
+}
+
+using RunDirectories = Directory;
+
+Json run_of(const std::vector<std::string>& keys) {
+  return {{"cells", keys}, {"request", {{"episodes", static_cast<int>(keys.size())}}}};
+}
+
+// What a worker leaves behind.
+void finish(const fs::path& cell, const Json& build) {
+  write_file(cell / "episodes.jsonl", "{}\n");
+  const Json files{{"episodes.jsonl", sha256("{}\n")}};
+  write_file(cell / "status.json", canonical({{"state", "ok"}, {"build", build}, {"files", files}}));
+}
+
+TEST_F(RunDirectories, ACellIsCompleteWithItsBuildAndItsBytes) {
+  const Json build{{"worker", "1"}, {"engine", "2"}};
+  const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+  EXPECT_FALSE(directory.state("k", build).complete);
+  finish(directory.scratch("k"), build);
+  EXPECT_FALSE(directory.state("k", build).complete) << "not yet kept";
+  directory.keep("k");
+  EXPECT_TRUE(directory.state("k", build).complete);
+  EXPECT_TRUE(directory.state("k", {{"worker", "1"}, {"engine", "3"}}).other_build);
+  std::ofstream(path / "run/cells/k/episodes.jsonl") << "{\"success\": true}\n";
+  const auto state = directory.state("k", build);
+  EXPECT_FALSE(state.complete);
+  EXPECT_NE(state.why.find("episodes.jsonl"), std::string::npos);
+  write_file(path / "run/cells/k/status.json", "{\"state\": ");
+  EXPECT_FALSE(directory.state("k", build).complete) << "a broken status is no result";
+}
+
+TEST_F(RunDirectories, KeepingReplacesAnEarlierAttempt) {
+  const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+  write_file(directory.scratch("k") / "old", "");
+  directory.keep("k");
+  write_file(directory.scratch("k") / "new", "");
+  directory.keep("k");
+  EXPECT_TRUE(fs::exists(path / "run/cells/k/new"));
+  EXPECT_FALSE(fs::exists(path / "run/cells/k/old"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
+}
+
+TEST_F(RunDirectories, HalfWrittenCellsGoAndOthersStay) {
+  {
+    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+    write_file(directory.scratch("half") / "cell.json", "{}");
+    write_file(directory.scratch("k") / "cell.json", "{}");
+    directory.keep("k");
+  }
+  const RunDirectory again(path / "run", run_of({"k"}), Existing::same);
+  EXPECT_TRUE(fs::exists(path / "run/cells/k/cell.json"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
+}
+
+TEST_F(RunDirectories, RefusesWhatIsNotItsOwn) {
+  {
+    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+    EXPECT_NE(
+        complaint([&] { RunDirectory(path / "run", run_of({"k"}), Existing::same); }).find("another run is writing"),
+        std::string::npos);
+  }
+  for (const Existing existing : {Existing::same, Existing::resume}) {
+    EXPECT_NE(complaint([&] {
+                RunDirectory(path / "run", run_of({"k", "l"}), existing);
+              }).find("episodes 1 there, 2 wanted"),
+              std::string::npos);
+  }
+  write_file(path / "other/letter.txt", "kept");
+  for (const Existing existing : {Existing::same, Existing::resume, Existing::fresh}) {
+    EXPECT_NE(complaint([&] { RunDirectory(path / "other", run_of({"k"}), existing); }).find("not a run"),
+              std::string::npos);
+  }
+  EXPECT_NE(complaint([&] {
+              RunDirectory(path / "other/letter.txt/run", run_of({}), Existing::same);
+            }).find("Not a directory"),
+            std::string::npos);
+  EXPECT_EQ(read_file(path / "other/letter.txt"), "kept");
+}
+
+TEST_F(RunDirectories, FreshDropsTheRunAndNothingElse) {
+  {
+    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+    finish(directory.scratch("k"), Json::object());
+    directory.keep("k");
+    write_file(path / "run/notes.txt", "kept");
+  }
+  const RunDirectory directory(path / "run", run_of({"k", "l"}), Existing::fresh);
+  EXPECT_FALSE(fs::exists(path / "run/cells/k"));
+  EXPECT_EQ(read_json(path / "run/run.json"), run_of({"k", "l"}));
+  EXPECT_EQ(read_file(path / "run/notes.txt"), "kept");
+}
+
+}  // namespace
+}  // namespace lgabench

@@ -1,0 +1,98 @@
+// `lgabench list` and `lgabench info` as programs.
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include <lgabench/core/json.hpp>
+
+#include "plugin_fixtures.hpp"
+
+namespace lgabench {
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+Outcome lgabench(const std::string& arguments) {
+  const Directory directory;
+  const std::string out = (directory.path() / "out").string(), err = (directory.path() / "err").string();
+  const int status = std::system(("'" LGABENCH_PROGRAM "' " + arguments + " >'" + out + "' 2>'" + err + "'").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+std::string plugin_path(const std::string& kind) {
+  return " --plugin-path '" + (fs::path(LGABENCH_TEST_PLUGINS) / kind).string() + "'";
+}
+
+Json ids(const Json& rows) {
+  Json all = Json::array();
+  for (const Json& row : rows) all.push_back(row.at("id"));
+  return all;
+}
+
+bool holds(const Json& list, const std::string& id) { return std::find(list.begin(), list.end(), id) != list.end(); }
+
+TEST(ListCommand, JsonHoldsEverythingAndRunsNothing) {
+  const Outcome outcome =
+      lgabench("list --json" + plugin_path("good") + plugin_path("faulty") + plugin_path("refused"));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json all = Json::parse(outcome.out);
+  EXPECT_TRUE(holds(ids(all.at("methods")), "fixture_constant"));
+  EXPECT_TRUE(holds(ids(all.at("methods")), "aborting_constructor"));
+  EXPECT_TRUE(holds(ids(all.at("suites")), "q1"));
+  EXPECT_TRUE(holds(ids(all.at("scenarios")), "red_heart"));
+  bool wrong_sdk = false;
+  for (const Json& row : all.at("refused"))
+    if (fs::path(row.at("file").get<std::string>()).stem() == "wrong_sdk") {
+      wrong_sdk = true;
+      expect_contains(row.at("reason").get<std::string>(), "SDK");
+    }
+  EXPECT_TRUE(wrong_sdk);
+}
+
+TEST(ListCommand, RefusalsGoToStandardError) {
+  const Outcome outcome = lgabench("list" + plugin_path("refused"));
+  EXPECT_EQ(outcome.status, 0);
+  expect_contains(outcome.out, "aborting_constructor");
+  EXPECT_EQ(outcome.out.find("wrong_sdk"), std::string::npos);
+  expect_contains(outcome.err, "wrong_sdk.so: built with SDK");
+}
+
+TEST(InfoCommand, MethodWithItsOptions) {
+  const Outcome text = lgabench("info" + plugin_path("good") + " fixture_constant");
+  EXPECT_EQ(text.status, 0) << text.err;
+  expect_contains(text.out, "mode = \"plain\"");
+  expect_contains(text.out, "one of [\"plain\",\"other\"]");
+  expect_contains(text.out, "architecture=");
+  const Json members = Json::parse(lgabench("info fixture_constant --json" + plugin_path("good")).out);
+  EXPECT_EQ(members.at("kind"), "method");
+  EXPECT_EQ(members.at("options").at("scale").at("default"), 1.0);
+}
+
+TEST(InfoCommand, WorksWithAConstructorThatAborts) {
+  const Outcome outcome = lgabench("info aborting_constructor" + plugin_path("refused"));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  expect_contains(outcome.out, "aborts when it is opened");
+}
+
+TEST(InfoCommand, ScenarioAndSuite) {
+  expect_contains(lgabench("info heart").out, "Bring me the heart.");
+  EXPECT_EQ(Json::parse(lgabench("info heart --json").out).at("kind"), "scenario");
+  expect_contains(lgabench("info q1").out, "preset smoke");
+  EXPECT_EQ(Json::parse(lgabench("info q1 --json").out).at("grid").at("engines"), Json({"mujoco"}));
+}
+
+TEST(InfoCommand, RefusedAndUnknownNames) {
+  const Outcome refused = lgabench("info wrong_sdk" + plugin_path("refused"));
+  EXPECT_EQ(refused.status, 4);
+  EXPECT_EQ(refused.out, "");
+  expect_contains(refused.err, "SDK \"0.0.9\"");
+  const Outcome unknown = lgabench("info nothing_of_that_name");
+  EXPECT_EQ(unknown.status, 2);
+  expect_contains(unknown.err, "nothing_of_that_name: expected the name of a method, engine, suite or scenario");
+}
+
+}  // namespace
+}  // namespace lgabench

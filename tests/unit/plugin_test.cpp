@@ -1,0 +1,187 @@
+// Plugins that work: what is read of them, loading, options, and the guard around calls.
+#include <cstdlib>
+
+#include <lgabench/plugin/fingerprint.hpp>
+#include <lgabench/plugin/guarded.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+#include "plugin_fixtures.hpp"
+
+namespace lgabench {
+namespace {
+
+struct NoModel : LanguageModel {
+  std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override { return {}; }
+  std::string model() const override { return "none"; }
+  Provenance provenance() const override { return Provenance::none; }
+  SelectionCost cost() const override { return {}; }
+};
+struct NoHuman : HumanAnswers {
+  Selection specify(const Command&) override { return {}; }
+  Selection edit(const Command&, const Selection& proposal) override { return proposal; }
+};
+struct CountingLog : TrainingLog {
+  void epoch(int epochs, long long steps, double) override {
+    last_epoch = epochs;
+    last_steps = steps;
+  }
+  int last_epoch = 0;
+  long long last_steps = 0;
+};
+
+struct Host {
+  NoModel lm;
+  NoHuman human;
+  CountingLog log;
+  Json options;
+  Services services{lm, human, options, 0, log};
+};
+
+TEST(Plugin, DescriptorIsReadFromTheBytes) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  EXPECT_EQ(info.kind, "method");
+  EXPECT_EQ(info.id, "fixture_constant");
+  EXPECT_EQ(info.version, "0.1");
+  EXPECT_EQ(info.summary, "acts as in one of its demonstrations");
+  EXPECT_EQ(info.fingerprint, LGABENCH_FINGERPRINT);  // this test is compiled like the plugin
+  EXPECT_EQ(info.options.at("mode").at("values"), Json({"plain", "other"}));
+  EXPECT_EQ(info.sha256.size(), 64u);
+}
+
+TEST(Plugin, LoadedMethodLearnsAndActs) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  Host host;
+  host.options = resolve_options(info, {{"demonstration", 1}});
+  std::vector<Demonstration> demonstrations(3);
+  for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+    demonstrations[i].steps.resize(1);
+    demonstrations[i].steps[0].label.pose1.position_m = {0.25 + 0.125 * static_cast<double>(i), -0.25};
+  }
+  std::unique_ptr<Policy> policy;
+  {
+    const auto method = load_method(info);
+    EXPECT_EQ(method->needs(host.options).targets, Needs::Targets::truth);
+    policy = method->learn(demonstrations, host.services);
+  }
+  const Action action = policy->act({}, {});  // the policy outlives its method
+  EXPECT_EQ(action.pose1.position_m.x, 0.375);
+  EXPECT_EQ(action.pose1.position_m.y, -0.25);
+  EXPECT_EQ(host.log.last_epoch, 1);
+  EXPECT_EQ(host.log.last_steps, 3);
+}
+
+TEST(Plugin, SameFileLoadsTwice) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  const auto a = load_method(info), b = load_method(info);
+  EXPECT_NE(a.get(), b.get());
+}
+
+TEST(Plugin, ErrorsOfTheFrameworkCrossTheBoundaryTyped) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  Host host;
+  host.options = resolve_options(info, Json::object());
+  const auto method = load_method(info);
+  const auto learn_from_nothing = [&] { return guarded(info.id, [&] { return method->learn({}, host.services); }); };
+  EXPECT_EQ(message_of<MethodError>(learn_from_nothing), "plugin fixture_constant: needs a demonstration");
+}
+
+TEST(Plugin, FaultyMethodsFailWhenUsedNotWhenLoaded) {
+  Host host;
+  const auto policy_of = [&host](const PluginInfo& info) {
+    host.options = resolve_options(info, Json::object());
+    return load_method(info)->learn({}, host.services);
+  };
+  const PluginInfo throwing = read_plugin(fixture("faulty/fixture_throw"));
+  const auto policy = policy_of(throwing);
+  EXPECT_EQ(message_of<MethodError>([&] { guarded(throwing.id, [&] { policy->act({}, {}); }); }),
+            "plugin fixture_throw: the fixture's own failure");
+
+  const Action nan = policy_of(read_plugin(fixture("faulty/fixture_nan")))->act({}, {});
+  EXPECT_THROW(executable(nan), MethodError);
+
+  const auto segfaulting = policy_of(read_plugin(fixture("faulty/fixture_segfault")));
+  EXPECT_EXIT(
+      segfaulting->act({}, {}), [](int status) { return status != 0; }, "");
+}
+
+TEST(Plugin, FlushToZeroIsRestoredAfterACallThatClearsIt) {
+  const PluginInfo info = read_plugin(fixture("faulty/fixture_denormals"));
+  Host host;
+  host.options = Json::object();
+  const auto policy = load_method(info)->learn({}, host.services);
+  flush_denormals();
+  policy->act({}, {});
+#if defined(__SSE2__)
+  EXPECT_FALSE(denormals_flushed()) << "the fixture does not do its harm";
+#endif
+  guarded(info.id, [&] { return policy->act({}, {}); });
+  EXPECT_TRUE(denormals_flushed());
+}
+
+TEST(Guarded, ReturnsWhatTheCallReturns) {
+  int value = 3;
+  int& same = guarded("p", [&]() -> int& { return value; });
+  EXPECT_EQ(&same, &value);
+  EXPECT_EQ(*guarded("p", [] { return std::make_unique<int>(4); }), 4);
+  guarded("p", [&] { value = 5; });
+  EXPECT_EQ(value, 5);
+}
+
+TEST(Guarded, GivesEveryExceptionATypeAndTheCulprit) {
+  const auto message = [](auto thrown) {
+    return message_of<MethodError>([&] { guarded("p", [&] { throw thrown; }); });
+  };
+  EXPECT_EQ(message(std::runtime_error("first line\nsecond line")), "plugin p: first line");
+  EXPECT_EQ(message(std::runtime_error("")), "plugin p: threw std::runtime_error");
+  EXPECT_EQ(message(7), "plugin p: threw int");
+  EXPECT_EQ(message(MethodError("x")), "plugin p: x");
+  EXPECT_EQ(message(EngineError("x")), "plugin p: x") << "a method's failure is not the engine's";
+}
+
+TEST(Guarded, KeepsInputErrorsAndBlamesEnginesForTheirOwn) {
+  EXPECT_EQ(message_of<InputError>([] { guarded("p", []() { throw InputError("no such file"); }); }),
+            "plugin p: no such file");
+  EXPECT_EQ(message_of<EngineError>([] { guarded<EngineError>("e", []() { throw std::bad_alloc(); }); }),
+            "plugin e: std::bad_alloc");
+}
+
+TEST(Options, DefaultsFillIn) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  EXPECT_EQ(canonical(resolve_options(info, Json::object())),
+            R"({"demonstration":0,"mode":"plain","scale":1.0,"verbose":false})");
+  EXPECT_EQ(canonical(resolve_options(info, {{"mode", "other"}, {"scale", 2}, {"demonstration", -1}})),
+            R"({"demonstration":-1,"mode":"other","scale":2.0,"verbose":false})");
+}
+
+TEST(Options, WrongOnesAreNamedWithWhatIsExpected) {
+  const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
+  const auto refusal = [&info](const Json& overrides) {
+    const std::string message = message_of<InputError>([&] { resolve_options(info, overrides); });
+    expect_contains(message, "options of method fixture_constant: ");
+    return message;
+  };
+  expect_contains(refusal({{"scael", 2}}),
+                  "unknown member \"scael\", expected one of: demonstration, mode, scale, verbose");
+  expect_contains(refusal({{"scale", "big"}}), "/scale: expected a number, got \"big\"");
+  expect_contains(refusal({{"demonstration", 0.5}}), "/demonstration: expected a whole number, got 0.5");
+  expect_contains(refusal({{"verbose", 1}}), "/verbose: expected true or false, got 1");
+  expect_contains(refusal({{"mode", nullptr}}), "/mode: expected a text, got null");
+  expect_contains(refusal({{"mode", "third"}}), "/mode: expected one of [\"plain\",\"other\"], got \"third\"");
+  expect_contains(refusal(Json::array()), "expected an object");
+}
+
+TEST(Options, APluginWithoutOptionsSaysSo) {
+  const PluginInfo info = read_plugin(fixture("faulty/fixture_throw"));
+  EXPECT_EQ(resolve_options(info, Json::object()), Json::object());
+  expect_contains(message_of<InputError>([&] { resolve_options(info, {{"epochs", 1}}); }), "has no options");
+}
+
+TEST(Directories, ShippedThenEnvironmentThenCommandLine) {
+  ::setenv("LGABENCH_PLUGIN_PATH", "/first::/second", 1);
+  const auto directories = plugin_directories({"/third"});
+  ::unsetenv("LGABENCH_PLUGIN_PATH");
+  EXPECT_EQ(directories, (std::vector<fs::path>{shipped_plugin_directory(), "/first", "/second", "/third"}));
+}
+
+}  // namespace
+}  // namespace lgabench

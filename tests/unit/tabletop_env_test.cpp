@@ -1,0 +1,324 @@
+// The tabletop over MuJoCo: the oracle succeeds, failures are typed, and an episode depends on its scene alone.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include <lgabench/core/error.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/predicates.hpp>
+#include <tabletop/sampler.hpp>
+#include <tabletop/tabletop.hpp>
+
+#include "mujoco/mujoco_world.hpp"
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+/// The engine, with an eye kept on the bodies that the environment does not show.
+class WatchedWorld : public PhysicsWorld {
+ public:
+  void load(const std::vector<BodyModel>& models, int copies) override { world_.load(models, copies); }
+  void reset(const std::vector<BodyPlacement>& placements) override {
+    world_.reset(placements);
+    steps = 0;
+  }
+  double time_step_s() const override { return world_.time_step_s(); }
+  void step() override {
+    world_.step();
+    ++steps;
+  }
+  Pose pose(int body) const override {
+    Pose pose = world_.pose(body);
+    if (creeps) pose.position_m.x += 1e-5 * steps;
+    return pose;
+  }
+  std::vector<Contact> contacts() const override { return world_.contacts(); }
+  int cast_down(Vec2 point, double& height_m) const override { return world_.cast_down(point, height_m); }
+  void grip(int body, const Pose& gripper) override { world_.grip(body, gripper); }
+  void move_gripper(const Pose& gripper) override { world_.move_gripper(gripper); }
+  void release() override { world_.release(); }
+  void place_spatula(Vec3 size_m, const Pose& pose) override { world_.place_spatula(size_m, pose); }
+  void move_spatula(const Pose& pose) override { world_.move_spatula(pose); }
+  void remove_spatula() override { world_.remove_spatula(); }
+
+  bool creeps = false;  // all bodies, at 2 mm/s
+  int steps = 0;        // since reset
+
+ private:
+  MujocoWorld world_;
+};
+
+struct Bench {
+  WatchedWorld* world;
+  std::unique_ptr<Environment> environment;
+};
+
+Bench make_bench() {
+  auto world = std::make_unique<WatchedWorld>();
+  WatchedWorld* const watched = world.get();
+  return {watched, make_environment(std::move(world), load_feature_space("tabletop"))};
+}
+
+Bench& bench() {
+  static Bench shared = make_bench();
+  return shared;
+}
+Environment& environment() { return *bench().environment; }
+
+int scenes_per_case() {
+  const char* full = std::getenv("LGABENCH_FULL");
+  return full && std::string(full) == "1" ? 500 : 50;
+}
+
+SceneObject object(const std::string& type, const std::string& texture, Role role, Vec2 position, std::uint8_t id) {
+  SceneObject o;
+  o.object_type = type;
+  o.texture = texture;
+  o.role = role;
+  o.position_m = position;
+  o.instance_id = id;
+  return o;
+}
+
+// 0: distractor (id 1), 1: the pallet (id 2), 2: target (id 3).
+Scene bring(const std::string& type = "heart") {
+  Scene scene;
+  scene.objects = {object("block", "blue", Role::distractor, {.4, -.35}, 1),
+                   object("pallet", "wooden", Role::goal, {.5, .3}, 2),
+                   object(type, "red", Role::target, {.6, -.05}, 3)};
+  return scene;
+}
+
+Action from_to(Vec2 from, Vec2 to) { return {{from, {}}, {to, {}}}; }
+
+struct Episode {
+  Observation first;
+  Action action;
+  StepResult result;
+};
+Episode play(Environment& env, const Scene& scene) {
+  Episode episode;
+  episode.first = env.reset(scene);
+  episode.action = env.expert_action();
+  episode.result = env.step(episode.action);
+  return episode;
+}
+
+void expect_same(const Episode& a, const Episode& b) {
+  EXPECT_EQ(a.first.rgb, b.first.rgb);
+  EXPECT_EQ(a.first.ids, b.first.ids);
+  EXPECT_EQ(to_vector(a.action), to_vector(b.action));
+  EXPECT_EQ(a.result.observation.rgb, b.result.observation.rgb);
+  EXPECT_EQ(a.result.observation.ids, b.result.observation.ids);
+  EXPECT_EQ(a.result.failure, b.result.failure);
+}
+
+struct Case {
+  std::string scenario, layout;
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.layout; }
+
+std::vector<Case> pick_and_place_cases() {
+  std::vector<Case> cases;
+  for (const std::string& id : scenario_ids())
+    if (const Scenario scenario = load_scenario(id); scenario.command.task == Task::pick_and_place)
+      for (const std::string& layout : layouts(scenario.command.task)) cases.push_back({id, layout});
+  return cases;
+}
+
+class Oracle : public testing::TestWithParam<Case> {};
+
+TEST_P(Oracle, Succeeds) {
+  const Scenario scenario = load_scenario(GetParam().scenario);
+  const int scenes = scenes_per_case();
+  for (int i = 0; i < scenes; ++i) {
+    const std::string split = i % 2 ? "train" : "test";  // one distractor, or one or two
+    const Scene scene = sample_scene(scenario, {scenario.truth, GetParam().layout, split, split, 3}, i);
+    const StepResult result = play(environment(), scene).result;
+    EXPECT_TRUE(result.is_success) << "scene " << i << ", " << split << ", " << scene.find(Role::target)->object_type
+                                   << ": " << to_string(result.failure);
+    EXPECT_TRUE(result.terminated);
+    EXPECT_FALSE(result.truncated);
+    EXPECT_EQ(result.failure, Failure::none);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, Oracle, testing::ValuesIn(pick_and_place_cases()),
+                         [](const testing::TestParamInfo<Case>& c) { return c.param.scenario + "_" + c.param.layout; });
+
+TEST(Tabletop, TheOracleCarriesEveryTypeFromEveryYawOntoTheGoal) {
+  for (const std::string& type : object_types())
+    for (const double yaw : {0.0, 2.0, -1.2}) {
+      Scene scene = bring(type);
+      scene.objects[2].yaw_rad = yaw;
+      const Episode episode = play(environment(), scene);
+      EXPECT_TRUE(episode.result.is_success) << type << ": " << to_string(episode.result.failure);
+      const Pose reached = bench().world->pose(2);
+      EXPECT_LT(norm(centre_of(scene.objects[2], reached) - Vec2{.5, .3}), .03) << type << " at yaw " << yaw;
+      EXPECT_NEAR(yaw_of(episode.action.pose1.rotation), 0, 1e-12);
+    }
+}
+
+TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
+  for (const std::string type : {"block", "bowl", "L-shaped block", "letter G"})
+    for (const double degrees : {120.0, 135.0, -90.0}) {
+      Scene scene = bring(type);
+      scene.task = Task::rotate;
+      scene.angle_rad = degrees * pi / 180;
+      scene.objects.erase(scene.objects.begin() + 1);
+      const StepResult result = play(environment(), scene).result;
+      EXPECT_TRUE(result.is_success) << type << " by " << degrees << ": " << to_string(result.failure);
+    }
+}
+
+TEST(Tabletop, AnEpisodeDependsOnItsSceneAlone) {
+  const Scenario scenario = load_scenario("something_to_drink_water_out_of");
+  const auto scene = [&](int i) {
+    return sample_scene(scenario, {scenario.truth, "continuous", "test", "test", 5}, i);
+  };
+  std::vector<Episode> first;
+  for (int i = 0; i < 5; ++i) first.push_back(play(environment(), scene(i)));
+  for (int i = 4; i >= 0; --i) expect_same(play(environment(), scene(i)), first[static_cast<std::size_t>(i)]);
+  const Bench other = make_bench();
+  expect_same(play(*other.environment, scene(3)), first[3]);
+}
+
+TEST(Tabletop, ANumberThatIsNotOneIsTheMethodsFault) {
+  const Observation before = environment().reset(bring());
+  Action action = environment().expert_action();
+  action.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(environment().step(action), MethodError);
+  action = environment().expert_action();
+  action.pose0.rotation = {0, 0, 0, 0};
+  EXPECT_THROW(environment().step(action), MethodError);
+  EXPECT_EQ(bench().world->steps, 0);
+  EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
+}
+
+TEST(Tabletop, WhereNothingIsTakenNothingMoves) {
+  const Vec2 empty{.3, .1}, on_pallet{.5, .3};
+  for (const Vec2 point : {empty, on_pallet}) {
+    const Observation before = environment().reset(bring());
+    const StepResult result = environment().step(from_to(point, {.5, 0}));
+    EXPECT_EQ(result.failure, Failure::missed_object);
+    EXPECT_FALSE(result.is_success);
+    EXPECT_TRUE(result.terminated);
+    EXPECT_EQ(result.observation.rgb, before.rgb);
+    EXPECT_EQ(result.observation.ids, before.ids);
+  }
+}
+
+TEST(Tabletop, TheSuctionDiscReachesAHundredthAroundItsCentre) {
+  const double edge = .4 - .035;  // of the distractor, in x
+  environment().reset(bring());
+  EXPECT_EQ(environment().step(from_to({edge - .0115, -.35}, {.4, .1})).failure, Failure::missed_object);
+  environment().reset(bring());
+  EXPECT_EQ(environment().step(from_to({edge - .009, -.35}, {.4, .1})).failure, Failure::wrong_object);
+}
+
+TEST(Tabletop, TakingADistractorIsTheWrongObject) {
+  environment().reset(bring());
+  const StepResult result = environment().step(environment().expert_action_for(1));
+  EXPECT_EQ(result.failure, Failure::wrong_object);
+  EXPECT_LT(norm(centre_of(bring().objects[0], bench().world->pose(0)) - Vec2{.5, .3}), .03);
+}
+
+TEST(Tabletop, PlacingBesideTheGoalIsABadPlacement) {
+  environment().reset(bring("block"));
+  Action action = environment().expert_action();
+  action.pose1.position_m.y -= .13;
+  EXPECT_EQ(environment().step(action).failure, Failure::bad_placement);
+  environment().reset(bring("block"));
+  action.pose1.position_m.y += .05;  // .08 from the goal's centre
+  EXPECT_EQ(environment().step(action).failure, Failure::none);
+}
+
+TEST(Tabletop, TurnsByTheSecondPosesYaw) {
+  environment().reset(bring("L-shaped block"));
+  Action action = environment().expert_action();
+  action.pose1 = {{.5, .05}, from_yaw(2.5)};
+  environment().step(action);
+  EXPECT_NEAR(yaw_of(bench().world->pose(2).rotation), 2.5, .02);
+  EXPECT_NEAR(bench().world->pose(2).position_m.z, 0, 1e-3);
+}
+
+TEST(Tabletop, PositionsOutsideAreCarriedOutAtTheBorder) {
+  environment().reset(bring());
+  Action action = environment().expert_action();
+  action.pose1.position_m = {9, -9};
+  environment().step(action);
+  const Vec2 reached = centre_of(bring().objects[2], bench().world->pose(2));
+  EXPECT_LT(norm(reached - Vec2{Workspace::x_max, Workspace::y_min}), .1);
+}
+
+TEST(Tabletop, ASecondActionStartsFromTheStateReached) {
+  environment().reset(bring());
+  EXPECT_EQ(environment().step(from_to({.3, .1}, {.5, .3})).failure, Failure::missed_object);
+  EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
+
+  environment().reset(bring());
+  Action wide = environment().expert_action();
+  wide.pose1 = {{.4, .1}, from_yaw(1)};
+  EXPECT_EQ(environment().step(wide).failure, Failure::bad_placement);
+  const Action again = environment().expert_action();
+  EXPECT_LT(norm(again.pose0.position_m - Vec2{.4, .1}), .01);  // where suction let go of it
+  EXPECT_TRUE(environment().step(again).is_success);
+}
+
+TEST(Tabletop, TheOracleRecoversFromWhateverANoisyActionLeaves) {
+  const Scenario scenario = load_scenario("something_from_a_typical_kitchen");
+  int recovered = 0, played = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Scene scene = sample_scene(scenario, {scenario.truth, "cells", "train", "train", 9}, i);
+    environment().reset(scene);
+    Action noisy = environment().expert_action();
+    noisy.pose1.position_m = noisy.pose1.position_m + Vec2{.05 * std::sin(i), .2 * std::cos(2 * i)};
+    noisy.pose1.rotation = from_yaw(i);
+    if (environment().step(noisy).failure == Failure::left_workspace) continue;
+    ++played;
+    recovered += environment().step(environment().expert_action()).is_success;
+  }
+  EXPECT_GT(played, 20);
+  EXPECT_EQ(recovered, played);
+}
+
+TEST(Tabletop, ABodyThatNeverRestsIsTruncated) {
+  environment().reset(bring());
+  bench().world->creeps = true;
+  const StepResult result = environment().step(environment().expert_action());
+  bench().world->creeps = false;
+  EXPECT_TRUE(result.truncated);
+  EXPECT_FALSE(result.is_success);
+  EXPECT_EQ(result.failure, Failure::truncated);
+  EXPECT_EQ(bench().world->steps, std::lround(10 / bench().world->time_step_s()));
+}
+
+TEST(Tabletop, RefusesSceneryItDoesNotKnow) {
+  EXPECT_THROW(environment().reset(bring("unicorn")), InputError);
+  Scene scene = bring();
+  scene.objects[2].texture = "invisible";
+  EXPECT_THROW(environment().reset(scene), InputError);
+  scene = bring();
+  scene.objects[1].object_type = "bowl";  // only a pallet is a goal
+  EXPECT_THROW(environment().reset(scene), InputError);
+  environment().reset(bring());
+  EXPECT_THROW(environment().expert_action_for(77), InputError);
+  EXPECT_THROW(make_bench().environment->expert_action(), InputError);
+}
+
+TEST(Tabletop, AnObservationCarriesTheScenesIdsAndNoMore) {
+  const Observation o = environment().reset(bring());
+  ASSERT_EQ(o.instances.size(), 3u);
+  EXPECT_EQ(o.instances[2].id, 3);
+  EXPECT_EQ(o.instances[2].object_type, "heart");
+  const StepResult after = environment().step(environment().expert_action());
+  ASSERT_EQ(after.observation.instances.size(), 3u);
+  EXPECT_NE(after.observation.ids, o.ids);
+}
+
+}  // namespace
+}  // namespace lgabench::tabletop

@@ -1,0 +1,136 @@
+// Success and failures at their boundaries, without physics.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include <lgabench/core/error.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/predicates.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+
+SceneObject object(const std::string& type, Role role, Vec2 position, std::uint8_t id) {
+  SceneObject o;
+  o.object_type = type;
+  o.texture = "red";
+  o.role = role;
+  o.position_m = position;
+  o.instance_id = id;
+  return o;
+}
+
+// 0: distractor, 1: target, 2: the pallet.
+Scene bring() {
+  Scene scene;
+  scene.objects = {object("block", Role::distractor, {.4, -.3}, 1), object("heart", Role::target, {.6, -.1}, 2),
+                   object("pallet", Role::goal, {.5, .3}, 3)};
+  return scene;
+}
+
+Scene turn(double degrees) {
+  Scene scene;
+  scene.task = Task::rotate;
+  scene.angle_rad = degrees * pi / 180;
+  scene.objects = {object("block", Role::distractor, {.4, -.3}, 1), object("block", Role::target, {.6, -.1}, 2)};
+  scene.objects[1].yaw_rad = 1;
+  return scene;
+}
+
+std::vector<Pose> start(const Scene& scene) {
+  std::vector<Pose> poses;
+  for (const SceneObject& o : scene.objects)
+    poses.push_back({{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)});
+  return poses;
+}
+
+Failure judge_moved(const Scene& scene, std::size_t which, Vec2 to, double yaw, const Motion& motion) {
+  auto poses = start(scene);
+  poses[which] = {{to.x, to.y, 0}, from_yaw(yaw)};
+  return judge(scene, poses, motion);
+}
+
+const Motion took_target{1, true}, took_distractor{0, true}, took_nothing{no_body, true};
+
+TEST(PickAndPlace, SucceedsWithinTheRadiusOfTheGoal) {
+  const Scene scene = bring();
+  for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
+    const auto beside = [&](double r) { return Vec2{.5, .3} + rotated({r, 0}, angle); };
+    EXPECT_EQ(judge_moved(scene, 1, beside(.0999), .7, took_target), Failure::none);
+    EXPECT_EQ(judge_moved(scene, 1, beside(.1001), .7, took_target), Failure::bad_placement);
+  }
+}
+
+TEST(PickAndPlace, ADistractorOnTheGoalSpoilsIt) {
+  const Scene scene = bring();
+  auto poses = start(scene);
+  poses[1].position_m = {.5, .3, .035};
+  poses[0].position_m = {.5, .3 - .0999, .035};
+  EXPECT_EQ(judge(scene, poses, took_target), Failure::bad_placement);
+  poses[0].position_m = {.5, .3 - .1001, 0};
+  EXPECT_EQ(judge(scene, poses, took_target), Failure::none);
+}
+
+TEST(PickAndPlace, SaysWhatWentWrong) {
+  const Scene scene = bring();
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
+  EXPECT_EQ(judge_moved(scene, 0, {.5, .3}, 0, took_distractor), Failure::wrong_object);
+  EXPECT_EQ(judge_moved(scene, 1, {.7, .3}, 0, took_target), Failure::bad_placement);
+  EXPECT_EQ(judge_moved(scene, 1, {.7, .51}, 0, took_target), Failure::left_workspace);
+  EXPECT_EQ(judge_moved(scene, 0, {.24, 0}, 0, took_distractor), Failure::left_workspace);
+  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, {1, false}), Failure::truncated);
+}
+
+TEST(PickAndPlace, IsJudgedByTheStateNotByTheLastMotion) {
+  EXPECT_EQ(judge_moved(bring(), 1, {.5, .3}, 0, took_nothing), Failure::none);
+}
+
+TEST(PickAndPlace, NeedsATargetAndAGoal) {
+  Scene scene = bring();
+  scene.objects[2].role = Role::distractor;
+  EXPECT_THROW(judge(scene, start(scene), took_target), InputError);
+  scene = bring();
+  scene.objects[1].role = Role::distractor;
+  EXPECT_THROW(judge(scene, start(scene), took_target), InputError);
+}
+
+TEST(PickAndPlace, ACentreIsTheMiddleAlsoOfAToppledObject) {
+  const SceneObject block = object("block", Role::target, {}, 1);
+  const double height = object_model("block").height_m;
+  const Pose on_its_side{{.5, .3, .035}, {0, std::sin(pi / 4), 0, std::cos(pi / 4)}};  // a quarter turn about y
+  EXPECT_NEAR(centre_of(block, on_its_side).x, .5 + height / 2, 1e-12);
+  EXPECT_NEAR(centre_of(block, on_its_side).y, .3, 1e-12);
+}
+
+TEST(Rotate, SucceedsWithin15DegreesOfTheTrueAngle) {
+  for (const double degrees : {120.0, 135.0, -120.0, 180.0}) {
+    const Scene scene = turn(degrees);
+    const auto after = [&](double d) { return judge_moved(scene, 1, {.6, -.1}, 1 + d * pi / 180, took_target); };
+    EXPECT_EQ(after(degrees), Failure::none);
+    EXPECT_EQ(after(degrees + 14.9), Failure::none);
+    EXPECT_EQ(after(degrees - 14.9), Failure::none);
+    EXPECT_EQ(after(degrees + 15.1), Failure::bad_angle);
+    EXPECT_EQ(after(degrees - 15.1), Failure::bad_angle);
+    EXPECT_EQ(after(degrees - 90), Failure::bad_angle) << "a square block's symmetry does not count";
+    EXPECT_EQ(after(0), Failure::bad_angle);
+  }
+}
+
+TEST(Rotate, TheTargetStaysAndDistractorsAreNotDisturbed) {
+  const Scene scene = turn(120);
+  const double yaw = 1 + 120 * pi / 180;
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .0999}, yaw, took_target), Failure::none);
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .1001}, yaw, took_target), Failure::bad_placement);
+  auto poses = start(scene);
+  poses[1].rotation = from_yaw(yaw);
+  poses[0].position_m.x += .0199;
+  EXPECT_EQ(judge(scene, poses, took_target), Failure::none);
+  poses[0].position_m.x += .0002;
+  EXPECT_EQ(judge(scene, poses, took_target), Failure::bad_placement);
+}
+
+}  // namespace
+}  // namespace lgabench::tabletop
