@@ -60,6 +60,11 @@ class Case(unittest.TestCase):
         self.assertEqual(sorted(a), sorted(b))
         self.assertEqual([name for name in a if a[name] != b[name]], [])
 
+    def assert_matches_schemas(self, run):
+        done = subprocess.run([BUILD / "bin" / "schema_check", self.dir / run], capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+
 
 class BadInput(Case):
     def refused(self, *arguments, says, expect=2):
@@ -82,6 +87,7 @@ class BadInput(Case):
             (["q1", "--preset", "nope"], r'preset "nope": .*q1.json has: leaderboard, paper, smoke'),
             (["q1", "--set", "lga.epocs=3"], r"unknown member \"epocs\", expected one of: .*epochs"),
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
+            (["q1", "--set", "lga.epochs=-3"], r"/epochs: expected a whole number of 1 or more, got -3"),
             (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, gcbc_dart"),
             (["q1", "--jobs", "0"], r"--jobs"),
             (["q1", "--resume", "--fresh"], r"excludes"),
@@ -172,6 +178,7 @@ class Determinism(Case):
         self.assertRegex(said, r"episodes.jsonl does not have the bytes that were written; computed again")
         self.assertIn("1 cells computed", said)
         self.assert_same_results("one", "two")
+        self.assert_matches_schemas("two")
 
 
 class Killed(Case):
@@ -279,6 +286,7 @@ class FaultyPlugins(Case):
             lines = (self.dir / "out/cells" / ended[name][0] / "episodes.jsonl").read_text().splitlines()
             self.assertEqual([(json.loads(line)["failure"], json.loads(line)["action"]) for line in lines],
                              [("method_error", None)] * 3)
+        self.assert_matches_schemas("out")
 
         self.call(*self.RUN, "--methods", "fixture_constant", "--out", "alone")
         key = ended["constant"][0]

@@ -1,9 +1,6 @@
 // Random numbers, JSON, scenarios, actions: values that everything else stands on.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -15,19 +12,10 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench {
 namespace {
-
-std::string complaint(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
-
-#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << "said: " << (text)
 
 // Known answers of Random123's philox4x32_R 10.
 TEST(Random, PhiloxKnownAnswers) {
@@ -97,29 +85,30 @@ TEST(JsonReader, NamesFileAndPlace) {
   const JsonReader reader(json, "suite.json");
   const auto elements = reader.at("a").at("b").elements();
   EXPECT_EQ(elements[0].integer(0, 5), 1);
-  const std::string wrong = complaint([&] { elements[1].integer(0, 5); });
+  const std::string wrong = message_of<Error>([&] { elements[1].integer(0, 5); });
   EXPECT_SAYS(wrong, "suite.json: /a/b/1: expected a whole number from 0 to 5, got \"two\"");
-  EXPECT_SAYS(complaint([&] { elements[0].integer(2, 5); }), "from 2 to 5, got 1");
-  EXPECT_SAYS(complaint([&] { elements[2].integer(0, 5); }), "got 3.5");
-  EXPECT_SAYS(complaint([&] { reader.at("z"); }), "suite.json: /: expected a member \"z\"");
-  EXPECT_SAYS(complaint([&] { reader.at("a").only({"c"}); }), "suite.json: /a: unknown member \"b\"");
-  EXPECT_SAYS(complaint([&] { reader.at("a").string(); }), "expected a string");
-  EXPECT_SAYS(complaint([&] { reader.elements(); }), "expected an array");
+  EXPECT_SAYS(message_of<Error>([&] { elements[0].integer(2, 5); }), "from 2 to 5, got 1");
+  EXPECT_SAYS(message_of<Error>([&] { elements[2].integer(0, 5); }), "got 3.5");
+  EXPECT_SAYS(message_of<Error>([&] { reader.at("z"); }), "suite.json: /: expected a member \"z\"");
+  EXPECT_SAYS(message_of<Error>([&] { reader.at("a").only({"c"}); }), "suite.json: /a: unknown member \"b\"");
+  EXPECT_SAYS(message_of<Error>([&] { reader.at("a").string(); }), "expected a string");
+  EXPECT_SAYS(message_of<Error>([&] { reader.elements(); }), "expected an array");
 }
 
 TEST(JsonReader, MalformedFileIsNamedWithItsLine) {
-  const fs::path file = fs::path(testing::TempDir()) / "lgabench_malformed.json";
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path / "malformed.json";
   write_file(file, "{\n \"a\": 1,\n oops\n}\n");
-  const std::string said = complaint([&] { read_json(file); });
+  const std::string said = message_of<Error>([&] { read_json(file); });
   EXPECT_SAYS(said, file.string() + ": line 3");
   fs::remove(file);
-  EXPECT_SAYS(complaint([&] { read_json(file); }), file.string() + ": cannot be read");
+  EXPECT_SAYS(message_of<Error>([&] { read_json(file); }), file.string() + ": cannot be read");
 }
 
 Json heart() { return load_scenario("heart").json; }
 
 std::string refusal(const Json& json) {
-  return complaint([&] { read_scenario(json, "mine.json"); });
+  return message_of<Error>([&] { read_scenario(json, "mine.json"); });
 }
 
 TEST(Scenario, NineOfPickAndPlace) {
@@ -165,7 +154,7 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["truth"]["avoid"] = json["truth"]["target"];
   EXPECT_SAYS(refusal(json), "mine.json: /truth: expected \"avoid\" for sweep");
-  EXPECT_SAYS(complaint([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
+  EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
 }
 
 TEST(Action, VectorHasOneSignOfEachQuaternion) {
@@ -191,7 +180,7 @@ TEST(Action, RefusesWhatCannotBeCarriedOut) {
   Action bad = good;
   bad.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(executable(bad), MethodError);
-  EXPECT_SAYS(complaint([&] { executable(bad); }), "pose1: expected finite numbers");
+  EXPECT_SAYS(message_of<Error>([&] { executable(bad); }), "pose1: expected finite numbers");
   bad = good;
   bad.pose0.rotation = {0, 0, 0, 1e-7};
   EXPECT_THROW(executable(bad), MethodError);

@@ -1,7 +1,4 @@
 // Demonstrations, their file and cache, the evaluator and the reference rows: what a worker does.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -14,18 +11,13 @@
 #include <lgabench/harness/hdf5.hpp>
 #include <lgabench/plugin/loader.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench {
 namespace {
 
-class Play : public ::testing::Test {
+class Play : public ::testing::Test, public TemporaryDirectory {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "lgabench-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    path = name;
-  }
-  void TearDown() override { fs::remove_all(path); }
-
   static void SetUpTestSuite() {
     scenario = std::make_unique<Scenario>(load_scenario("heart"));
     const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
@@ -46,7 +38,6 @@ class Play : public ::testing::Test {
 
   static std::unique_ptr<Scenario> scenario;
   static std::unique_ptr<Environment> environment;
-  fs::path path;
 };
 std::unique_ptr<Scenario> Play::scenario;
 std::unique_ptr<Environment> Play::environment;

@@ -1,7 +1,4 @@
 // Suites, cells, run directories: what `lgabench` does before and after a worker.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <fstream>
 
@@ -11,30 +8,10 @@
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench {
 namespace {
-
-class Directory : public ::testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "lgabench-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    path = name;
-  }
-  void TearDown() override { fs::remove_all(path); }
-  fs::path path;
-};
-
-// The one-line complaint of a call that must refuse its input.
-template <class Call>
-std::string complaint(Call call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 PluginInfo plugin(const std::string& kind, const std::string& id) {
   const Json options{{"epochs", {{"default", 750}, {"help", "passes"}, {"source", "test"}}}};
@@ -102,18 +79,16 @@ TEST(Cells, KeyIsOfTheWholeConfiguration) {
 
 TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
   const Suite suite = load_suite("q1");
-  const auto with = [&](const Json& options) {
-    return complaint([&] { expand(suite, small_grid(), {"recorded", options, true}, catalogue()); });
-  };
-  EXPECT_EQ(with({{"a", {{"epochs", 5}}}}), "accepted");
-  EXPECT_NE(with({{"a", {{"epoks", 5}}}}).find("epoks"), std::string::npos);
-  EXPECT_NE(with({{"c", {{"epochs", 5}}}}).find("--set c"), std::string::npos);
+  const auto with = [&](const Json& options) { expand(suite, small_grid(), {"recorded", options, true}, catalogue()); };
+  EXPECT_NO_THROW(with({{"a", {{"epochs", 5}}}}));
+  EXPECT_SAYS(message_of<InputError>([&] { with({{"a", {{"epoks", 5}}}}); }), "epoks");
+  EXPECT_SAYS(message_of<InputError>([&] { with({{"c", {{"epochs", 5}}}}); }), "--set c");
   Grid grid = small_grid();
   grid.methods = {"c"};
   EXPECT_THROW(expand(suite, grid, {}, catalogue()), PluginError);
 }
 
-using RunDirectories = Directory;
+struct RunDirectories : testing::Test, TemporaryDirectory {};
 
 Json run_of(const std::vector<std::string>& keys) {
   return {{"cells", keys}, {"request", {{"episodes", static_cast<int>(keys.size())}}}};
@@ -138,7 +113,7 @@ TEST_F(RunDirectories, ACellIsCompleteWithItsBuildAndItsBytes) {
   std::ofstream(path / "run/cells/k/episodes.jsonl") << "{\"success\": true}\n";
   const auto state = directory.state("k", build);
   EXPECT_FALSE(state.complete);
-  EXPECT_NE(state.why.find("episodes.jsonl"), std::string::npos);
+  EXPECT_SAYS(state.why, "episodes.jsonl");
   write_file(path / "run/cells/k/status.json", "{\"state\": ");
   EXPECT_FALSE(directory.state("k", build).complete) << "a broken status is no result";
 }
@@ -169,25 +144,21 @@ TEST_F(RunDirectories, HalfWrittenCellsGoAndOthersStay) {
 TEST_F(RunDirectories, RefusesWhatIsNotItsOwn) {
   {
     const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
-    EXPECT_NE(
-        complaint([&] { RunDirectory(path / "run", run_of({"k"}), Existing::same); }).find("another run is writing"),
-        std::string::npos);
+    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "run", run_of({"k"}), Existing::same); }),
+                "another run is writing");
   }
   for (const Existing existing : {Existing::same, Existing::resume}) {
-    EXPECT_NE(complaint([&] {
-                RunDirectory(path / "run", run_of({"k", "l"}), existing);
-              }).find("episodes 1 there, 2 wanted"),
-              std::string::npos);
+    EXPECT_SAYS(message_of<InputError>([&] {
+                  RunDirectory(path / "run", run_of({"k", "l"}), existing);
+                }),
+                "episodes 1 there, 2 wanted");
   }
   write_file(path / "other/letter.txt", "kept");
   for (const Existing existing : {Existing::same, Existing::resume, Existing::fresh}) {
-    EXPECT_NE(complaint([&] { RunDirectory(path / "other", run_of({"k"}), existing); }).find("not a run"),
-              std::string::npos);
+    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other", run_of({"k"}), existing); }), "not a run");
   }
-  EXPECT_NE(complaint([&] {
-              RunDirectory(path / "other/letter.txt/run", run_of({}), Existing::same);
-            }).find("Not a directory"),
-            std::string::npos);
+  EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other/letter.txt/run", run_of({}), Existing::same); }),
+              "Not a directory");
   EXPECT_EQ(read_file(path / "other/letter.txt"), "kept");
 }
 

@@ -40,7 +40,7 @@ TEST(DamagedPlugin, EveryCutIsRefused) {
   EXPECT_TRUE(accepted(directory, good_bytes()));
 
   directory.write("damaged.so", good_bytes().substr(0, descriptor_at() + 1000));
-  expect_contains(message_of<PluginError>([&] { read_plugin(directory.path() / "damaged.so"); }), "cut off");
+  EXPECT_SAYS(message_of<PluginError>([&] { read_plugin(directory.path / "damaged.so"); }), "cut off");
 }
 
 TEST(DamagedPlugin, DescriptorOutsideOfWhatIsLoadedDoesNotCount) {

@@ -16,8 +16,8 @@ struct Outcome {
 };
 
 Outcome lgabench(const std::string& arguments) {
-  const Directory directory;
-  const std::string out = (directory.path() / "out").string(), err = (directory.path() / "err").string();
+  const TemporaryDirectory directory;
+  const std::string out = (directory.path / "out").string(), err = (directory.path / "err").string();
   const int status = std::system(("'" LGABENCH_PROGRAM "' " + arguments + " >'" + out + "' 2>'" + err + "'").c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
@@ -47,7 +47,7 @@ TEST(ListCommand, JsonHoldsEverythingAndRunsNothing) {
   for (const Json& row : all.at("refused"))
     if (fs::path(row.at("file").get<std::string>()).stem() == "wrong_sdk") {
       wrong_sdk = true;
-      expect_contains(row.at("reason").get<std::string>(), "SDK");
+      EXPECT_SAYS(row.at("reason").get<std::string>(), "SDK");
     }
   EXPECT_TRUE(wrong_sdk);
 }
@@ -55,17 +55,17 @@ TEST(ListCommand, JsonHoldsEverythingAndRunsNothing) {
 TEST(ListCommand, RefusalsGoToStandardError) {
   const Outcome outcome = lgabench("list" + plugin_path("refused"));
   EXPECT_EQ(outcome.status, 0);
-  expect_contains(outcome.out, "aborting_constructor");
-  EXPECT_EQ(outcome.out.find("wrong_sdk"), std::string::npos);
-  expect_contains(outcome.err, "wrong_sdk.so: built with SDK");
+  EXPECT_SAYS(outcome.out, "aborting_constructor");
+  EXPECT_SILENT(outcome.out, "wrong_sdk");
+  EXPECT_SAYS(outcome.err, "wrong_sdk.so: built with SDK");
 }
 
 TEST(InfoCommand, MethodWithItsOptions) {
   const Outcome text = lgabench("info" + plugin_path("good") + " fixture_constant");
   EXPECT_EQ(text.status, 0) << text.err;
-  expect_contains(text.out, "mode = \"plain\"");
-  expect_contains(text.out, "one of [\"plain\",\"other\"]");
-  expect_contains(text.out, "architecture=");
+  EXPECT_SAYS(text.out, "mode = \"plain\"");
+  EXPECT_SAYS(text.out, "one of [\"plain\",\"other\"]");
+  EXPECT_SAYS(text.out, "architecture=");
   const Json members = Json::parse(lgabench("info fixture_constant --json" + plugin_path("good")).out);
   EXPECT_EQ(members.at("kind"), "method");
   EXPECT_EQ(members.at("options").at("scale").at("default"), 1.0);
@@ -74,13 +74,13 @@ TEST(InfoCommand, MethodWithItsOptions) {
 TEST(InfoCommand, WorksWithAConstructorThatAborts) {
   const Outcome outcome = lgabench("info aborting_constructor" + plugin_path("refused"));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  expect_contains(outcome.out, "aborts when it is opened");
+  EXPECT_SAYS(outcome.out, "aborts when it is opened");
 }
 
 TEST(InfoCommand, ScenarioAndSuite) {
-  expect_contains(lgabench("info heart").out, "Bring me the heart.");
+  EXPECT_SAYS(lgabench("info heart").out, "Bring me the heart.");
   EXPECT_EQ(Json::parse(lgabench("info heart --json").out).at("kind"), "scenario");
-  expect_contains(lgabench("info q1").out, "preset smoke");
+  EXPECT_SAYS(lgabench("info q1").out, "preset smoke");
   EXPECT_EQ(Json::parse(lgabench("info q1 --json").out).at("grid").at("engines"), Json({"mujoco"}));
 }
 
@@ -88,10 +88,10 @@ TEST(InfoCommand, RefusedAndUnknownNames) {
   const Outcome refused = lgabench("info wrong_sdk" + plugin_path("refused"));
   EXPECT_EQ(refused.status, 4);
   EXPECT_EQ(refused.out, "");
-  expect_contains(refused.err, "SDK \"0.0.9\"");
+  EXPECT_SAYS(refused.err, "SDK \"0.0.9\"");
   const Outcome unknown = lgabench("info nothing_of_that_name");
   EXPECT_EQ(unknown.status, 2);
-  expect_contains(unknown.err, "nothing_of_that_name: expected the name of a method, engine, suite or scenario");
+  EXPECT_SAYS(unknown.err, "nothing_of_that_name: expected the name of a method, engine, suite or scenario");
 }
 
 }  // namespace

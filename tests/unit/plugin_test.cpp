@@ -149,31 +149,32 @@ TEST(Options, DefaultsFillIn) {
   const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
   EXPECT_EQ(canonical(resolve_options(info, Json::object())),
             R"({"demonstration":0,"mode":"plain","scale":1.0,"verbose":false})");
-  EXPECT_EQ(canonical(resolve_options(info, {{"mode", "other"}, {"scale", 2}, {"demonstration", -1}})),
-            R"({"demonstration":-1,"mode":"other","scale":2.0,"verbose":false})");
+  EXPECT_EQ(canonical(resolve_options(info, {{"mode", "other"}, {"scale", 2}, {"demonstration", 3}})),
+            R"({"demonstration":3,"mode":"other","scale":2.0,"verbose":false})");
 }
 
 TEST(Options, WrongOnesAreNamedWithWhatIsExpected) {
   const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
   const auto refusal = [&info](const Json& overrides) {
     const std::string message = message_of<InputError>([&] { resolve_options(info, overrides); });
-    expect_contains(message, "options of method fixture_constant: ");
+    EXPECT_SAYS(message, "options of method fixture_constant: ");
     return message;
   };
-  expect_contains(refusal({{"scael", 2}}),
-                  "unknown member \"scael\", expected one of: demonstration, mode, scale, verbose");
-  expect_contains(refusal({{"scale", "big"}}), "/scale: expected a number, got \"big\"");
-  expect_contains(refusal({{"demonstration", 0.5}}), "/demonstration: expected a whole number, got 0.5");
-  expect_contains(refusal({{"verbose", 1}}), "/verbose: expected true or false, got 1");
-  expect_contains(refusal({{"mode", nullptr}}), "/mode: expected a text, got null");
-  expect_contains(refusal({{"mode", "third"}}), "/mode: expected one of [\"plain\",\"other\"], got \"third\"");
-  expect_contains(refusal(Json::array()), "expected an object");
+  EXPECT_SAYS(refusal({{"scael", 2}}),
+              "unknown member \"scael\", expected one of: demonstration, mode, scale, verbose");
+  EXPECT_SAYS(refusal({{"scale", "big"}}), "/scale: expected a number, got \"big\"");
+  EXPECT_SAYS(refusal({{"demonstration", 0.5}}), "/demonstration: expected a whole number, got 0.5");
+  EXPECT_SAYS(refusal({{"demonstration", -3}}), "/demonstration: expected a whole number of 0 or more, got -3");
+  EXPECT_SAYS(refusal({{"verbose", 1}}), "/verbose: expected true or false, got 1");
+  EXPECT_SAYS(refusal({{"mode", nullptr}}), "/mode: expected a text, got null");
+  EXPECT_SAYS(refusal({{"mode", "third"}}), "/mode: expected one of [\"plain\",\"other\"], got \"third\"");
+  EXPECT_SAYS(refusal(Json::array()), "expected an object");
 }
 
 TEST(Options, APluginWithoutOptionsSaysSo) {
   const PluginInfo info = read_plugin(fixture("faulty/fixture_throw"));
   EXPECT_EQ(resolve_options(info, Json::object()), Json::object());
-  expect_contains(message_of<InputError>([&] { resolve_options(info, {{"epochs", 1}}); }), "has no options");
+  EXPECT_SAYS(message_of<InputError>([&] { resolve_options(info, {{"epochs", 1}}); }), "has no options");
 }
 
 TEST(Directories, ShippedThenEnvironmentThenCommandLine) {

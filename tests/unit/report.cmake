@@ -1,3 +1,2 @@
-find_package(valijson REQUIRED)
 lgabench_unit_test(report_test SOURCES report_statistics_test.cpp report_test.cpp report_schemas_test.cpp LINK lgabench_report
                    valijson)

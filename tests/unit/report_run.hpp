@@ -1,8 +1,5 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <string>
 #include <vector>
 
@@ -10,13 +7,13 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench {
 
-/// Lives in the test's temporary directory; removed at the end.
-class FabricatedRun {
+class FabricatedRun : public TemporaryDirectory {
  public:
-  FabricatedRun() : path(fs::path(testing::TempDir()) / ("lgabench_report_" + std::to_string(::getpid()))) {
-    fs::remove_all(path);
+  FabricatedRun() {
     run = {{"suite", "q1"},
            {"preset", "smoke"},
            {"smoke", true},
@@ -29,7 +26,6 @@ class FabricatedRun {
            {"command", "lgabench run q1"},
            {"started", "2024-05-07T12:00:00Z"}};
   }
-  ~FabricatedRun() { fs::remove_all(path); }
 
   struct Spec {
     std::string method;
@@ -127,7 +123,6 @@ class FabricatedRun {
     return *this;
   }
 
-  fs::path path;
   Json run;
 
  private:

@@ -23,6 +23,7 @@ void print(const PluginInfo& plugin) {
   for (const auto& [name, option] : plugin.options.items()) {
     fmt::print("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
                option["source"].get<std::string>());
+    if (option.contains("min")) fmt::print("      {} or more\n", canonical(option["min"]));
     if (option.contains("values")) fmt::print("      one of {}\n", canonical(option["values"]));
   }
 }
@@ -70,7 +71,7 @@ Json to_json(const Suite& suite) {
 }
 
 template <class Thing>
-void show(const Thing& thing, Json as_json, bool json) {
+void show(const Thing& thing, const Json& as_json, bool json) {
   if (json)
     fmt::print("{}\n", as_json.dump(2));
   else
@@ -89,7 +90,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     const Scenario scenario = load_scenario(name);
     Json members = scenario.json;
     members["kind"] = "scenario";
-    return show(scenario, std::move(members), json);
+    return show(scenario, members, json);
   }
   if (fs::exists(data_directory() / "suites" / (name + ".json"))) {
     const Suite suite = load_suite(name);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  Json options;        // {name: {"default", "help", "source", "values"?}}
+  Json options;        // {name: {"default", "help", "source", "values"?, "min"?}}
   std::string sha256;  // of the file
 };
 

@@ -38,6 +38,8 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
       if (std::find(values.begin(), values.end(), value) == values.end())
         given.at(name).fail("one of " + canonical(values));
     }
+    if (option.contains("min") && value.get<double>() < option.at("min").get<double>())
+      given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));
     resolved[name] = std::move(value);
   }
   return resolved;

@@ -5,7 +5,8 @@
 //   LGABENCH_METHOD("mine", "0.1", "what it does, in a line", Mine, R"({
 //     "epochs": {"default": 750, "help": "passes over the demonstrations", "source": "paper, appendix"}})")
 //
-// An option's default fixes its type (text, number, whole number, boolean); "values", if given, lists all it may be.
+// An option's default fixes its type (text, number, whole number, boolean); "values", if given, lists all it may be;
+// "min" the least a number may be.
 #pragma once
 #include <type_traits>
 

@@ -81,7 +81,7 @@ template <std::size_t Size>
 std::string text(const char (&field)[Size], const char* name) {
   const auto* end = static_cast<const char*>(std::memchr(field, 0, Size));
   if (!end) throw PluginError(fmt::format("descriptor: {} has no end within {} bytes", name, Size));
-  const std::string value(field, end);
+  std::string value(field, end);
   try {
     canonical(value);
   } catch (const InputError&) {
@@ -108,7 +108,7 @@ Json read_options(const std::string& options_json) {
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
-      reader.only({"default", "help", "source", "values"});
+      reader.only({"default", "help", "source", "values", "min"});
       const Json& usual = reader.at("default").json();
       if (usual.is_structured() || usual.is_null()) reader.at("default").fail("a text, number or boolean");
       reader.at("help").string();
@@ -118,6 +118,8 @@ Json read_options(const std::string& options_json) {
         if (!values.is_array() || std::find(values.begin(), values.end(), usual) == values.end())
           reader.at("values").fail("a list that holds the default");
       }
+      if (reader.has("min") && (!usual.is_number() || usual.get<double>() < reader.at("min").number()))
+        reader.at("min").fail("a number, not above a default that is one");
     }
   } catch (const InputError& e) {
     throw PluginError(e.what());

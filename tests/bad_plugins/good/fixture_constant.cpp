@@ -30,7 +30,7 @@ class Constant : public fixture::FixtureMethod<fixture::StayPolicy> {
 }  // namespace
 
 LGABENCH_METHOD("fixture_constant", "0.1", "acts as in one of its demonstrations", Constant, R"({
-  "demonstration": {"default": 0, "help": "which one it repeats", "source": "test fixture"},
+  "demonstration": {"default": 0, "min": 0, "help": "which one it repeats", "source": "test fixture"},
   "scale": {"default": 1.0, "help": "unused, a fractional option", "source": "test fixture"},
   "mode": {"default": "plain", "help": "unused, one of a few", "source": "test fixture", "values": ["plain", "other"]},
   "verbose": {"default": false, "help": "unused, a boolean", "source": "test fixture"}

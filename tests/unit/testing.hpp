@@ -1,0 +1,56 @@
+// What several tests need.
+#pragma once
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench {
+
+/// what() of the Expected that `call` throws. Anything else, or nothing, fails the test.
+template <class Expected, class Call>
+std::string message_of(Call&& call) {
+  try {
+    call();
+  } catch (const Expected& e) {
+    return e.what();
+  } catch (const std::exception& e) {
+    ADD_FAILURE() << "another exception: " << e.what();
+    return {};
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return {};
+}
+
+inline testing::AssertionResult says(const std::string& text, const std::string& part) {
+  const bool found = text.find(part) != std::string::npos;
+  return (found ? testing::AssertionSuccess() : testing::AssertionFailure()) << "\"" << part << "\" in: " << text;
+}
+
+// Macros, so that a failure names the line of the test.
+#define EXPECT_SAYS(text, part) EXPECT_TRUE(says(text, part))
+#define EXPECT_SILENT(text, part) EXPECT_FALSE(says(text, part))
+
+/// A new directory, removed at the end.
+class TemporaryDirectory {
+ public:
+  TemporaryDirectory() {
+    std::string name = (fs::temp_directory_path() / "lgabench-test-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
+    path = name;
+  }
+  ~TemporaryDirectory() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+
+  fs::path path;
+};
+
+}  // namespace lgabench
