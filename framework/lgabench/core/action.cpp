@@ -1,8 +1,8 @@
 #include <lgabench/core/action.hpp>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 
 #include <lgabench/core/error.hpp>
 
@@ -14,7 +14,8 @@ PlanarPose executable(const PlanarPose& pose, const char* name) {
   for (const double v : {pose.position_m.x, pose.position_m.y, q.x, q.y, q.z, q.w})
     if (!std::isfinite(v)) throw MethodError(fmt::format("{}: expected finite numbers, got {}", name, v));
   const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (length < 1e-6) throw MethodError(fmt::format("{}: expected a quaternion of norm 1e-6 or more, got {}", name, length));
+  if (length < 1e-6)
+    throw MethodError(fmt::format("{}: expected a quaternion of norm 1e-6 or more, got {}", name, length));
   return {{std::clamp(pose.position_m.x, Workspace::x_min, Workspace::x_max),
            std::clamp(pose.position_m.y, Workspace::y_min, Workspace::y_max)},
           {q.x / length, q.y / length, q.z / length, q.w / length}};

@@ -18,7 +18,8 @@ void write_file(const fs::path& file, std::string_view bytes);
 /// fsync of a directory, so that a rename in it survives a power cut.
 void sync_directory(const fs::path& directory);
 
-/// Installed data (scenarios/, suites/, spaces/, answers/, embeddings/, paper/): $LGABENCH_DATA, or ../share/lgabench from the program.
+/// Installed data (scenarios/, suites/, spaces/, answers/, embeddings/, paper/): $LGABENCH_DATA, or ../share/lgabench
+/// from the program.
 fs::path data_directory();
 
 /// Plugins shipped with the program: ../lib/lgabench/plugins from it.

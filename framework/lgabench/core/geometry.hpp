@@ -35,9 +35,7 @@ inline Vec2 rotated(Vec2 v, double yaw_rad) {
 /// Rotation about z. w >= 0 for |yaw_rad| <= pi.
 inline Quat from_yaw(double yaw_rad) { return {0, 0, std::sin(yaw_rad / 2), std::cos(yaw_rad / 2)}; }
 /// Rotation about z that `q` holds, in (-pi, pi].
-inline double yaw_of(const Quat& q) {
-  return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z));
-}
+inline double yaw_of(const Quat& q) { return std::atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z)); }
 /// Hamilton product: first b, then a.
 inline Quat operator*(const Quat& a, const Quat& b) {
   return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,

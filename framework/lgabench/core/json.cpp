@@ -1,7 +1,7 @@
 #include <lgabench/core/json.hpp>
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <lgabench/core/files.hpp>
 
@@ -29,7 +29,8 @@ std::string canonical(const Json& value) {
 void JsonReader::fail(const std::string& expectation) const {
   std::string shown = value_.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (shown.size() > 60) shown = shown.substr(0, 57) + "...";
-  throw InputError(fmt::format("{}: {}: expected {}, got {}", file_, place_.empty() ? "/" : place_, expectation, shown));
+  throw InputError(
+      fmt::format("{}: {}: expected {}, got {}", file_, place_.empty() ? "/" : place_, expectation, shown));
 }
 
 JsonReader JsonReader::at(const std::string& key) const {
@@ -71,7 +72,8 @@ bool JsonReader::boolean() const {
 long long JsonReader::integer(long long lowest, long long highest) const {
   const std::string expectation = fmt::format("a whole number from {} to {}", lowest, highest);
   if (!value_.is_number_integer()) fail(expectation);
-  if (value_.is_number_unsigned() && value_.get<std::uint64_t>() > static_cast<std::uint64_t>(highest)) fail(expectation);
+  if (value_.is_number_unsigned() && value_.get<std::uint64_t>() > static_cast<std::uint64_t>(highest))
+    fail(expectation);
   const auto n = value_.get<long long>();
   if (n < lowest || n > highest) fail(expectation);
   return n;

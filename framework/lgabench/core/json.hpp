@@ -14,7 +14,8 @@ using Json = nlohmann::json;  // keys sorted, so a dump is canonical
 /// Parses the file. @throws InputError naming the file and the byte where parsing stopped, or why it could not be read.
 Json read_json(const std::filesystem::path& file);
 
-/// One line, sorted keys, shortest round-trip numbers: the text that hashes and files use. @throws InputError on invalid UTF-8.
+/// One line, sorted keys, shortest round-trip numbers: the text that hashes and files use. @throws InputError on
+/// invalid UTF-8.
 std::string canonical(const Json& value);
 
 /// A value with its place, for strict reading: every complaint reads "FILE: PLACE: expected ...".

@@ -1,7 +1,7 @@
 #include <lgabench/core/scenario.hpp>
 
-#include <algorithm>
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <lgabench/core/files.hpp>
 
@@ -30,7 +30,8 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   s.truth.source = "true distribution";
   s.truth.asked_as = s.command.utterance;
   if (s.truth.target.empty()) reader.at("truth").fail("at least one object type and one texture");
-  if ((s.command.task == Task::sweep) != s.truth.avoid.has_value()) reader.at("truth").fail("\"avoid\" for sweep, and only there");
+  if ((s.command.task == Task::sweep) != s.truth.avoid.has_value())
+    reader.at("truth").fail("\"avoid\" for sweep, and only there");
   if (s.command.task == Task::rotate) s.angle_deg = reader.at("angle_deg").number();
   if (reader.has("never_distractor")) s.never_distractor = read_feature_set(reader.at("never_distractor"), s.space);
   if (reader.has("earliest_letter")) s.earliest_letter = reader.at("earliest_letter").boolean();
@@ -58,7 +59,9 @@ Scenario load_scenario(const std::string& id) {
     throw InputError(fmt::format("scenario \"{}\": expected one of: {}", id, fmt::join(known, ", ")));
   const fs::path file = data_directory() / "scenarios" / (id + ".json");
   Scenario s = read_scenario(read_json(file), file.string());
-  if (s.id != id) throw InputError(fmt::format("{}: /id: expected \"{}\", as the file is named, got \"{}\"", file.string(), id, s.id));
+  if (s.id != id)
+    throw InputError(
+        fmt::format("{}: /id: expected \"{}\", as the file is named, got \"{}\"", file.string(), id, s.id));
   return s;
 }
 

@@ -25,11 +25,11 @@ struct Scenario {
   Command command;
   double angle_deg = 0;  // rotate only
   FeatureSpace space;
-  Selection truth;                            // what the scenario's author means; provenance truth
-  std::optional<FeatureSet> never_distractor; // test distractors stay out of it, beyond the true distribution
-  bool earliest_letter = false;               // "bring the one that comes earliest": a distractor may be a later letter
+  Selection truth;                             // what the scenario's author means; provenance truth
+  std::optional<FeatureSet> never_distractor;  // test distractors stay out of it, beyond the true distribution
+  bool earliest_letter = false;  // "bring the one that comes earliest": a distractor may be a later letter
   std::vector<Arm> tests;
-  Json json;                                  // as read: goes into a cell's configuration whole
+  Json json;  // as read: goes into a cell's configuration whole
 };
 
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.

@@ -18,7 +18,7 @@ std::string to_string(Role role);
 struct SceneObject {
   std::string object_type, texture;
   Role role = Role::distractor;
-  Vec2 position_m;    // of the object type's centre
+  Vec2 position_m;  // of the object type's centre
   double yaw_rad = 0;
   std::uint8_t instance_id = 0;  // 1..255, permuted over the scene
 };

@@ -6,12 +6,12 @@
 
 /// Members of a descriptor's options that every cloning method has: LGABENCH_METHOD(..., "{" LGABENCH_CLONING_OPTIONS
 /// "}").
-#define LGABENCH_CLONING_OPTIONS                                                                                 \
-  R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)"         \
-  R"("batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "PROTOCOL, section 5"},)"                 \
-  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "PROTOCOL, section 5"},)"                  \
-  R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)" \
-  R"("source": "norm: released code; squared: paper"},)"                                                         \
+#define LGABENCH_CLONING_OPTIONS                                                                                   \
+  R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)" \
+  R"("batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "PROTOCOL, section 5"},)"         \
+  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "PROTOCOL, section 5"},)"          \
+  R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)"   \
+  R"("source": "norm: released code; squared: paper"},)"                                                           \
   R"("batch_norm": {"default": false, "help": "batch normalisation before each ReLU", "source": "true: paper"})"
 
 namespace lgabench {

@@ -19,8 +19,9 @@ struct PluginDescriptor {
   char id[64];       // lower-case letters, digits, underscores; starts with a letter
   char version[32];  // the plugin's own
   char summary[160];
-  char fingerprint[256];    // LGABENCH_FINGERPRINT where the plugin was compiled
-  char options_json[4096];  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n}, ...}
+  char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
+  char
+      options_json[4096];  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n}, ...}
 };
 static_assert(sizeof(PluginDescriptor) == 4648, "the descriptor has no padding");
 
