@@ -10,9 +10,14 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double lift_m = 0.1;
 constexpr double carry_speed = 3, lower_speed = 0.5, turn_speed = 12;  // greatest ones: m/s, m/s, rad/s
 constexpr double limit_s = 10;                                         // of an action, until all is at rest
-// At rest: for so long within so much of one pose. (Velocities say less: a body stands still at the top of a throw, and
-// engines let a resting polygon tremble by some 1e-5 m when they choose among its corners anew in each step.)
-constexpr double rest_s = 0.05, rest_move_m = 25e-6, rest_turn_rad = 4.4e-4;
+// At rest: for so long within so much of one pose. (Velocities say less: a body stands still at the top of a throw.)
+struct Stillness {
+  double for_s, move_m, turn_rad;
+};
+constexpr Stillness stillness[] = {
+    {0.05, 25e-6, 4.4e-4},  // a resting polygon trembles by some 1e-5 m as engines choose among its corners anew
+    {0.5, 5e-4, 17e-3},     // what leans on an edge may tremble by half a degree and creep by .05 mm/s for ever
+};
 
 /// Counts the steps of one action.
 class Clock {
@@ -76,23 +81,32 @@ std::vector<Pose> poses_of(const Bodies& bodies) {
   return all;
 }
 
-bool still(const Pose& a, const Pose& b) {
+bool within(const Stillness& limit, const Pose& a, const Pose& b) {
   const Vec3 way = a.position_m - b.position_m;
   const Quat turn = Quat{-a.rotation.x, -a.rotation.y, -a.rotation.z, a.rotation.w} * b.rotation;
   const auto length = [](double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); };
-  return length(way.x, way.y, way.z) < rest_move_m && 2 * length(turn.x, turn.y, turn.z) < rest_turn_rad;
+  return length(way.x, way.y, way.z) < limit.move_m && 2 * length(turn.x, turn.y, turn.z) < limit.turn_rad;
 }
 
 bool settle(const Bodies& bodies, Clock& clock) {
-  std::vector<Pose> anchor = poses_of(bodies);
-  for (int resting = 0; resting < clock.steps(rest_s); ++resting) {
-    if (!clock.step()) return false;
+  struct Watch {
+    Stillness limit;
+    std::vector<Pose> anchor;
+    int resting = 0;  // steps
+  };
+  std::vector<Watch> watches;
+  for (const Stillness& limit : stillness) watches.push_back({limit, poses_of(bodies)});
+  while (clock.step()) {
     const std::vector<Pose> now = poses_of(bodies);
-    if (std::equal(now.begin(), now.end(), anchor.begin(), still)) continue;
-    anchor = now;
-    resting = 0;
+    for (Watch& watch : watches) {
+      const auto still = [&watch](const Pose& a, const Pose& b) { return within(watch.limit, a, b); };
+      const bool rests = std::equal(now.begin(), now.end(), watch.anchor.begin(), still);
+      if (!rests) watch.anchor = now;
+      watch.resting = rests ? watch.resting + 1 : 1;
+      if (watch.resting >= clock.steps(watch.limit.for_s)) return true;
+    }
   }
-  return true;
+  return false;
 }
 
 }  // namespace

@@ -286,6 +286,20 @@ TEST(Tabletop, TheOracleRecoversFromWhateverANoisyActionLeaves) {
   EXPECT_EQ(recovered, played);
 }
 
+TEST(Tabletop, WhatLeansOnThePalletComesToRest) {
+  Environment& env = environment();
+  const Scene scene = bring();
+  const Vec2 goal = scene.find(Role::goal)->position_m;
+  env.reset(scene);
+  Action action = env.expert_action();
+  for (int i = 0; i < 48; ++i) {  // around the pallet, half on it, turned
+    const double angle = 2 * pi * i / 24;
+    action.pose1 = {goal + rotated({i < 24 ? .10 : .13, 0}, angle), from_yaw(.5 * angle)};
+    env.reset(scene);
+    EXPECT_FALSE(env.step(action).truncated) << "placement " << i;
+  }
+}
+
 TEST(Tabletop, ABodyThatNeverRestsIsTruncated) {
   environment().reset(bring());
   bench().world->creeps = true;
