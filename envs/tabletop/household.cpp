@@ -136,9 +136,10 @@ Drawing bread() {
   return drawing;
 }
 
-// Along u, its end at -.09; the other end's half width is given.
+// Along u, its end at -.09; the other end's half width is given. Thin, so that fork and spoon do not sag when suction
+// holds them by the head.
 void add_handle(Drawing& drawing, double u, double half_width) {
-  add_solid(drawing, {{-.09, -.007}, {u, -half_width}, {u, half_width}, {-.09, .007}}, bevelled(.008, .002));
+  add_solid(drawing, {{-.09, -.007}, {u, -half_width}, {u, half_width}, {-.09, .007}}, bevelled(.005, .001));
 }
 
 Drawing fork() {
@@ -150,9 +151,9 @@ Drawing fork() {
 }
 
 Drawing spoon() {
-  Drawing drawing{{}, {}, {.065, 0}};
-  add_handle(drawing, .045, .005);
-  add_solid(drawing, ellipse(.026, .015, {.064, 0}), bevelled(.01, .004));
+  Drawing drawing{{}, {}, {.042, 0}};
+  add_handle(drawing, .03, .006);
+  add_solid(drawing, ellipse(.036, .015, {.054, 0}), bevelled(.01, .003));
   return drawing;
 }
 
@@ -166,8 +167,8 @@ Drawing knife() {
 Drawing mug() {
   Drawing drawing{{prism(disc(.036, {}, 24), 0, .01)}, {disc(.043, {}, 24), rectangle(.04, -.007, .078, .007)}, {}};
   for (const Polygon& wall : arc({}, .036, .043, 0, 360, 12)) drawing.parts.push_back(prism(wall, 0, .085));
-  drawing.parts.push_back(prism(rectangle(.04, -.007, .078, .007), .06, .072));
-  drawing.parts.push_back(prism(rectangle(.066, -.007, .078, .007), .026, .06));
+  drawing.parts.push_back(prism(rectangle(.04, -.007, .078, .007), .073, .085));
+  drawing.parts.push_back(prism(rectangle(.066, -.007, .078, .007), .026, .073));
   drawing.parts.push_back(prism(rectangle(.04, -.007, .078, .007), .014, .026));
   return drawing;
 }
@@ -216,8 +217,8 @@ Drawing brush() {
   add_solid(drawing, {{-.025, -.012}, {-.008, -.027}, {.02, -.027}, {.02, .027}, {-.008, .027}, {-.025, .012}},
             bevelled(.024, .004));
   for (int i = 0; i < 5; ++i) {  // bristles: side by side at the root, apart at the ends
-    const double root = -.027 + .0108 * i, tip = -.033 + .0138 * i, end = i % 2 ? .08 : .072;
-    add_solid(drawing, {{.018, root}, {end, tip + .001}, {end, tip + .0105}, {.018, root + .0108}}, slab(0, .014));
+    const double root = -.027 + .0108 * i, tip = -.031 + .0124 * i, end = i % 2 ? .076 : .08;
+    add_solid(drawing, {{.018, root}, {end, tip + .001}, {end, tip + .0115}, {.018, root + .0108}}, slab(0, .014));
   }
   return drawing;
 }
