@@ -87,7 +87,8 @@ ObjectModel make(const Shape& shape) {
 const ObjectModel& object_model(const std::string& type) {
   static const std::map<std::string, ObjectModel> models = [] {
     std::map<std::string, ObjectModel> all;
-    for (const Shape& shape : shapes()) all.emplace(shape.type, make(shape));
+    for (const auto* kind : {&shapes(), &household_shapes()})
+      for (const Shape& shape : *kind) all.emplace(shape.type, make(shape));
     return all;
   }();
   const auto found = models.find(type);
@@ -99,7 +100,8 @@ const ObjectModel& object_model(const std::string& type) {
 const std::vector<std::string>& object_types() {
   static const std::vector<std::string> types = [] {
     std::vector<std::string> all;
-    for (const Shape& shape : shapes()) all.push_back(shape.type);
+    for (const auto* kind : {&shapes(), &household_shapes()})
+      for (const Shape& shape : *kind) all.push_back(shape.type);
     return all;
   }();
   return types;

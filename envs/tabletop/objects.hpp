@@ -33,7 +33,7 @@ struct ObjectModel {
 /// The model of an object type; lives as long as the program. @throws InputError for an unknown type.
 const ObjectModel& object_model(const std::string& type);
 
-/// All object types that can be made, in the order of the feature space.
+/// All object types that can be made, in the order of the household space, which begins with the tabletop's.
 const std::vector<std::string>& object_types();
 
 /// Outlines moved to a pose on the table.

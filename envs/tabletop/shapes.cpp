@@ -6,53 +6,9 @@
 namespace lgabench::tabletop {
 namespace {
 
-using Part = Drawing::Part;
 constexpr double pi = 3.14159265358979323846;
 constexpr double thick = 0.036;  // of letters, and of other flat shapes
 constexpr double stroke = 0.03;  // of letters: suction needs .01 on either side
-
-Vec2 polar(Vec2 centre, double radius, double degrees) {
-  return centre + Vec2{radius * std::cos(degrees * pi / 180), radius * std::sin(degrees * pi / 180)};
-}
-
-Polygon rectangle(double left, double bottom, double right, double top) {
-  return {{left, bottom}, {right, bottom}, {right, top}, {left, top}};
-}
-
-// Corners at first, first + 360/n, ... degrees.
-Polygon regular(int corners, double radius, double first, Vec2 centre = {}) {
-  Polygon polygon;
-  for (int i = 0; i < corners; ++i) polygon.push_back(polar(centre, radius, first + 360.0 * i / corners));
-  return polygon;
-}
-
-Polygon disc(double radius, Vec2 centre = {}, int corners = 32) { return regular(corners, radius, 0, centre); }
-
-// A slanted stroke: from [bottom, bottom + width] at v = low to [top, top + width] at v = high.
-Polygon slanted(double low, double bottom, double high, double top, double width) {
-  return {{bottom, low}, {bottom + width, low}, {top + width, high}, {top, high}};
-}
-
-Polygon mirrored(const Polygon& polygon) {
-  Polygon other;
-  for (const Vec2 p : polygon) other.push_back({-p.x, p.y});
-  std::reverse(other.begin(), other.end());
-  return other;
-}
-
-// A band between two radii in convex pieces, each with two outer segments over one inner chord.
-std::vector<Polygon> arc(Vec2 centre, double inner, double outer, double from, double to, int pieces) {
-  std::vector<Polygon> all;
-  const double step = (to - from) / pieces;
-  for (int i = 0; i < pieces; ++i) {
-    const double a = from + i * step;
-    all.push_back({polar(centre, inner, a), polar(centre, outer, a), polar(centre, outer, a + step / 2),
-                   polar(centre, outer, a + step), polar(centre, inner, a + step)});
-  }
-  return all;
-}
-
-Part prism(const Polygon& polygon, double z_low, double z_high) { return {polygon, polygon, z_low, z_high}; }
 
 Drawing extruded(const std::vector<Polygon>& polygons, double height, Vec2 grasp = {}) {
   Drawing drawing{{}, {}, grasp};

@@ -3,28 +3,19 @@
 #include <string>
 #include <vector>
 
-#include <tabletop/outline.hpp>
+#include <tabletop/drawing.hpp>
 
 namespace lgabench::tabletop {
-
-/// Drawings have u to the right and v up, as the picture shows them at yaw 0; heights z from the table.
-struct Drawing {
-  /// A convex solid between two horizontal polygons with parallel edges (equal ones make a prism).
-  struct Part {
-    Polygon bottom, top;
-    double z_low = 0, z_high = 0;
-  };
-  std::vector<Part> parts;
-  std::vector<Polygon> outline;  // empty: the parts' own polygons
-  Vec2 grasp;
-};
 
 struct Shape {
   std::string type;
   Drawing (*draw)();
 };
 
-/// Every object type, in the order of the feature space. Sizes from PROTOCOL, section 1.
+/// The paper's object types, in the order of the tabletop space. Sizes from PROTOCOL, section 1.
 const std::vector<Shape>& shapes();
+
+/// What the household space has beyond the tabletop's, in its order.
+const std::vector<Shape>& household_shapes();
 
 }  // namespace lgabench::tabletop

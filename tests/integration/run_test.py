@@ -1,4 +1,4 @@
-"""The programs as a person uses them: bad input, determinism, kill -9, faulty plugins, demonstrations.
+"""The programs as a person uses them: bad input, determinism, kill -9, faulty plugins, demonstrations, gallery.
 
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py Killed
 """
@@ -322,6 +322,17 @@ class Demonstrations(Case):
             self.call("run", "q1", "--methods", "lga", "--set", "lga.epochs=2", "--episodes", "1", "--out", out, *flags)
             self.assertEqual(json.loads((self.dir / out / "run.json").read_text())["smoke"], stamped)
             self.assertEqual({cell["smoke"] for cell, _ in self.cells(out).values()}, {stamped})
+
+
+class Gallery(Case):
+    def test_the_legends_in_the_documentation_are_the_sheets_own(self):
+        page = (pathlib.Path(__file__).parents[2] / "docs" / "gallery.md").read_text()
+        for what in ("objects", "textures", "scenes"):
+            printed = self.call("render", "--gallery", what, "--out", "sheet.png").stdout
+            file, legend = printed.split("\n\n", 1)
+            self.assertEqual(file, "sheet.png")
+            self.assertTrue((self.dir / file).read_bytes().startswith(b"\x89PNG"))
+            self.assertIn(legend, page, f"write the sheets and their legends anew: lgabench render --gallery {what}")
 
 
 if __name__ == "__main__":

@@ -159,7 +159,14 @@ INSTANTIATE_TEST_SUITE_P(All, Objects, testing::ValuesIn(object_types()), [](con
   return name;
 });
 
-TEST(ObjectTypes, AreTheFeatureSpace) { EXPECT_EQ(object_types(), load_feature_space("tabletop").object_types); }
+TEST(ObjectTypes, AreTheFeatureSpaces) {
+  const FeatureSpace tabletop = load_feature_space("tabletop"), household = load_feature_space("household");
+  EXPECT_EQ(object_types(), household.object_types);
+  const auto& all = household.object_types;
+  ASSERT_EQ(all.size(), tabletop.object_types.size() + 20);
+  EXPECT_TRUE(std::equal(tabletop.object_types.begin(), tabletop.object_types.end(), all.begin()));
+  EXPECT_EQ(household.textures, tabletop.textures);
+}
 
 TEST(ObjectTypes, UnknownOneIsRefused) { EXPECT_THROW(object_model("teapot"), InputError); }
 
@@ -183,6 +190,15 @@ TEST(ObjectTypes, HaveTheProtocolsSizes) {
   expect("line", .04, .25, .001);
   expect("square", .2, .2, .001);
   expect("pan", .16, .24, .03);
+  expect("fork", .03, .18, .01);
+  expect("spoon", .03, .18, .01);
+  const FeatureSpace household = load_feature_space("household");
+  for (std::size_t i = load_feature_space("tabletop").object_types.size(); i < household.object_types.size(); ++i) {
+    const ObjectModel& model = object_model(household.object_types[i]);
+    if (model.type == "fork" || model.type == "spoon") continue;
+    EXPECT_LE(std::max(model.size_m.x, model.size_m.y), .1601) << model.type;
+    EXPECT_GE(std::max(model.size_m.x, model.size_m.y), .07) << model.type;
+  }
   for (const char* letter : {"A", "E", "G", "M", "R", "T", "V"})
     expect(std::string("letter ") + letter, .144, .144, .036);
   for (const auto& [type, size] : std::map<std::string, double>{{"heart", .144},
@@ -222,6 +238,11 @@ TEST(ObjectTypes, LettersReadUpright) {
       {"three-sided rectangle", {{-.09, .09}, {.09, .09}, {0, -.09}}, {{0, .09}, {0, 0}}},
       {"triangle", {{0, .05}, {.06, -.054}}, {{.06, .05}}},
       {"pallet", {{.1, .08}}, {{.08, .1}}},
+      {"banana", {{0, -.01}, {.065, .015}, {-.065, .015}}, {{0, .015}}},
+      {"fork", {{.085, .012}, {.085, 0}, {.085, -.012}, {-.085, 0}}, {{.085, .006}, {.085, -.006}, {-.05, .012}}},
+      {"mug", {{.057, 0}}, {{.057, .02}, {-.055, .035}}},
+      {"water bottle", {{-.05, .028}, {.05, 0}}, {{.05, .028}}},
+      {"drill", {{.075, .047}, {-.06, -.06}}, {{.075, -.06}}},
   };
   for (const Probe& probe : probes) {
     const auto& mesh = object_model(probe.type).mesh;
@@ -232,9 +253,9 @@ TEST(ObjectTypes, LettersReadUpright) {
 }
 
 TEST(ObjectTypes, HollowOnesAreHollow) {
-  for (const char* type : {"bowl", "container", "pan"}) {
+  for (const char* type : {"bowl", "container", "mug", "pan", "plate"}) {
     const ObjectModel& model = object_model(type);
-    EXPECT_LT(*top_at(model.mesh, model.grasp_m), .3 * model.height_m) << type;
+    EXPECT_LT(*top_at(model.mesh, model.grasp_m), .31 * model.height_m) << type;
   }
   for (const char* type : {"frame", "ring", "square"}) EXPECT_FALSE(top_at(object_model(type).mesh, {})) << type;
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,25 +6,24 @@
 #include <memory>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cli/gallery.hpp>
+#include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
-#include <tabletop/textures.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, layout = "cells", split = "test", out;
+  std::string scenario, gallery, layout = "cells", split = "test", out;
   std::uint64_t seed = 0;
   int index = 0;
 };
 
-using tabletop::Rgb;
-
-constexpr Rgb gutter_colour{255, 255, 255}, dropped{32, 32, 32}, kept{245, 245, 245};
+constexpr Rgb dropped{32, 32, 32}, kept{245, 245, 245};
 
 // Far hues for near ids (steps of the golden section around the colour circle).
 Rgb colour_of(std::uint8_t id) {
@@ -38,38 +36,26 @@ Rgb colour_of(std::uint8_t id) {
   return {channel(0), channel(2), channel(4)};
 }
 
-/// Pictures of the observation's size side by side, each pixel as a square of `zoom`, with gutters between them.
+// The observation's size side by side, enlarged.
 struct Panels {
-  static constexpr int zoom = 4, gutter = 8, panel_width = Observation::columns * zoom;
-  int count, width, height = Observation::rows * zoom;
-  std::vector<std::uint8_t> rgb;
+  static constexpr int zoom = 4, gutter = 8, step = Observation::columns * zoom + gutter;
+  Picture picture;
 
-  explicit Panels(int panels) : count(panels), width(panels * (panel_width + gutter) - gutter) {
-    for (int i = 0; i < width * height; ++i) rgb.insert(rgb.end(), gutter_colour.begin(), gutter_colour.end());
-  }
+  explicit Panels(int count) : picture(count * step - gutter, Observation::rows * zoom) {}
 
   void fill(int panel, const std::function<Rgb(std::size_t pixel)>& colour_at) {
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < panel_width; ++x) {
-        const Rgb colour = colour_at(static_cast<std::size_t>(y / zoom * Observation::columns + x / zoom));
-        std::copy(colour.begin(), colour.end(), rgb.begin() + 3 * (y * width + panel * (panel_width + gutter) + x));
-      }
-  }
-
-  std::string png() const {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    image.width = static_cast<png_uint_32>(width);
-    image.height = static_cast<png_uint_32>(height);
-    image.format = PNG_FORMAT_RGB;
-    std::string bytes(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
-    png_alloc_size_t size = bytes.size();
-    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr))
-      throw Error(fmt::format("libpng: {}", image.message));
-    bytes.resize(size);
-    return bytes;
+    picture.paste(panel * step, 0, Observation::columns, Observation::rows, zoom, [&](int column, int row) {
+      return colour_at(static_cast<std::size_t>(row * Observation::columns + column));
+    });
   }
 };
+
+void render_gallery(const Arguments& arguments) {
+  const Sheet sheet = gallery(arguments.gallery);
+  const fs::path file = arguments.out.empty() ? fmt::format("{}.png", arguments.gallery) : arguments.out;
+  write_file(file, sheet.png);
+  fmt::print("{}\n\n{}", file.string(), sheet.legend);
+}
 
 void render(const Arguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario);
@@ -90,7 +76,7 @@ void render(const Arguments& arguments) {
   panels.fill(1, [&](std::size_t i) { return colour_of(seen.ids[i]); });
   panels.fill(2, [&](std::size_t i) { return mask[i] ? kept : dropped; });
   const fs::path file = arguments.out.empty() ? fmt::format("{}-{}.png", scenario.id, arguments.index) : arguments.out;
-  write_file(file, panels.png());
+  write_file(file, panels.picture.png());
 
   fmt::print("{}\n", file.string());
   fmt::print("{}: {}\n", scenario.id, scenario.command.utterance);
@@ -103,19 +89,24 @@ void render(const Arguments& arguments) {
 
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("render", "Draw a scene, its ids and its goal mask as a PNG");
-  verb->add_option("scenario", arguments->scenario, "A scenario's id")->required();
+  CLI::App* verb =
+      app.add_subcommand("render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG");
+  CLI::Option_group* what = verb->add_option_group("What to draw");
+  what->add_option("scenario", arguments->scenario, "A scenario's id");
+  what->add_option("--gallery", arguments->gallery, "objects, textures or scenes: every one, on one sheet");
+  what->require_option(1);
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
   verb->add_option("--layout", arguments->layout, "cells, continuous or released")->capture_default_str();
   verb->add_option("--split", arguments->split, "train, dev or test")->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
-  verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png if not given");
+  verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   verb->footer(
       "Draws the scene before the first action; the mask is the one of the true Selection.\n"
-      "Example: lgabench render red_heart --index 3 --out scene.png");
-  verb->callback([arguments] { render(*arguments); });
+      "Example: lgabench render red_heart --index 3 --out scene.png\n"
+      "         lgabench render --gallery objects --out objects.png");
+  verb->callback([arguments] { arguments->gallery.empty() ? render(*arguments) : render_gallery(*arguments); });
 }
 
 }  // namespace lgabench::cli

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cli/gallery.hpp>
+#include <lgabench/cli/picture.hpp>
+#include <lgabench/core/error.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/renderer.hpp>
+#include <tabletop/sampler.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr int zoom = 2, gutter = 8;
+
+struct Tile {
+  std::string caption;
+  int columns, rows;
+  std::vector<Rgb> pixels;
+};
+
+Rgb pixel_of(const Observation& seen, int column, int row) {
+  const auto i = 3 * static_cast<std::size_t>(row * Observation::columns + column);
+  return {seen.rgb[i], seen.rgb[i + 1], seen.rgb[i + 2]};
+}
+
+// One object in the middle of the table, and what lies around it.
+Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::string& texture,
+              const std::string& caption) {
+  Tile tile{caption, 72, 72, {}};
+  const Observation seen = renderer.render({{type, texture, {{.5, 0, 0}, {}}, 1}});
+  const int left = (Observation::columns - tile.columns) / 2, top = (Observation::rows - tile.rows) / 2;
+  for (int row = 0; row < tile.rows; ++row)
+    for (int column = 0; column < tile.columns; ++column)
+      tile.pixels.push_back(pixel_of(seen, left + column, top + row));
+  return tile;
+}
+
+Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario) {
+  tabletop::SceneRequest request;
+  request.distribution = scenario.truth;
+  request.layout = "cells";
+  request.split = "test";
+  const Observation seen = renderer.render(tabletop::visible_objects(sample_scene(scenario, request, 0)));
+  const auto mask = goal_mask(seen, scenario.truth);
+  Tile tile{fmt::format("`{}`: {}", scenario.id, scenario.command.utterance),
+            2 * Observation::columns,
+            Observation::rows,
+            {}};
+  for (int row = 0; row < Observation::rows; ++row) {
+    for (int column = 0; column < Observation::columns; ++column) tile.pixels.push_back(pixel_of(seen, column, row));
+    for (int column = 0; column < Observation::columns; ++column)
+      tile.pixels.push_back(mask[static_cast<std::size_t>(row * Observation::columns + column)] ? Rgb{245, 245, 245}
+                                                                                                : Rgb{32, 32, 32});
+  }
+  return tile;
+}
+
+// Row by row; all tiles have one size.
+Sheet sheet(const std::vector<Tile>& tiles, int across) {
+  const int count = static_cast<int>(tiles.size()), down = (count + across - 1) / across;
+  const int width = zoom * tiles[0].columns + gutter, height = zoom * tiles[0].rows + gutter;
+  Picture picture(across * width - gutter, down * height - gutter);
+  std::string header, rule, body;
+  for (int i = 0; i < across; ++i) header += "| ", rule += "| --- ";
+  for (int i = 0; i < across * down; ++i) {
+    const bool ends_row = i % across == across - 1;
+    if (i < count) {
+      const Tile& tile = tiles[static_cast<std::size_t>(i)];
+      picture.paste(i % across * width, i / across * height, tile.columns, tile.rows, zoom, [&](int column, int row) {
+        return tile.pixels[static_cast<std::size_t>(row * tile.columns + column)];
+      });
+      body += "| " + tile.caption + " ";
+    } else {
+      body += "| ";
+    }
+    if (ends_row) body += "|\n";
+  }
+  return {picture.png(), header + "|\n" + rule + "|\n" + body};
+}
+
+}  // namespace
+
+Sheet gallery(const std::string& what) {
+  tabletop::Renderer renderer;
+  std::vector<Tile> tiles;
+  if (what == "objects") {
+    for (const std::string& type : tabletop::object_types()) tiles.push_back(close_up(renderer, type, "yellow", type));
+    return sheet(tiles, 7);
+  }
+  if (what == "textures") {
+    for (const std::string& texture : load_feature_space("tabletop").textures)
+      tiles.push_back(close_up(renderer, "pallet", texture, texture));
+    return sheet(tiles, 7);
+  }
+  if (what == "scenes") {
+    for (const std::string& id : scenario_ids()) tiles.push_back(scene_and_mask(renderer, load_scenario(id)));
+    return sheet(tiles, 1);
+  }
+  throw InputError(fmt::format("--gallery {}: expected objects, textures or scenes", what));
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,16 @@
+// Contact sheets: all that a scene can show, side by side, for a person to look at.
+#pragma once
+#include <string>
+
+namespace lgabench::cli {
+
+struct Sheet {
+  std::string png;
+  std::string legend;  // a Markdown table, cell by cell what the sheet shows
+};
+
+/// `what`: "objects" (every type), "textures" (every one, on a pallet) or "scenes" (a test scene of every scenario,
+/// with its goal mask). Twice the observation's size. @throws InputError for anything else.
+Sheet gallery(const std::string& what);
+
+}  // namespace lgabench::cli

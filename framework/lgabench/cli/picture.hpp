@@ -1,0 +1,30 @@
+// A picture in memory, made of enlarged pieces, and its PNG bytes.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tabletop/textures.hpp>
+
+namespace lgabench::cli {
+
+using tabletop::Rgb;
+
+class Picture {
+ public:
+  /// White, in pixels.
+  Picture(int width, int height);
+
+  /// Draws columns x rows squares of `zoom` pixels each, the first at (left, top). @pre They fit.
+  void paste(int left, int top, int columns, int rows, int zoom, const std::function<Rgb(int column, int row)>& colour);
+
+  /// @throws Error if libpng cannot write it.
+  std::string png() const;
+
+ private:
+  int width_, height_;
+  std::vector<std::uint8_t> rgb_;
+};
+
+}  // namespace lgabench::cli
