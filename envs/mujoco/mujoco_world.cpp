@@ -85,7 +85,7 @@ void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
     if (s.tree >= 0) m->tree_sleep_policy[s.tree] = mjSLEEP_ALLOWED;
     std::fill_n(owner_.begin() + s.first_geom, s.geoms, no_body);
   }
-  set_collidable(spatula_body_, false);
+  if (spatula_pose_) park_spatula();
   placed_.clear();
   held_ = no_body;
   mj_copyData(d, m, pristine_.get());  // a copy costs an eighth of mj_resetData, which computes the parked bodies anew
@@ -114,7 +114,12 @@ void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
 double MujocoWorld::time_step_s() const { return time_step; }
 
 void MujocoWorld::step() {
+  if (spatula_pose_) drive_spatula();
   mj_step(model_.get(), data_.get());
+  if (spatula_pose_) {  // to the digit, whatever it pushed
+    put(*spatula_pose_, data_->qpos + spatula_.qpos, data_->qpos + spatula_.qpos + 3);
+    std::fill_n(data_->qvel + spatula_.dof, 6, 0.0);
+  }
   stale_ = true;
   check();
 }
@@ -188,19 +193,42 @@ void MujocoWorld::release() {
 void MujocoWorld::place_spatula(Vec3 size_m, const Pose& pose) {
   mjModel* m = model_.get();
   const double half[3] = {size_m.x / 2, size_m.y / 2, size_m.z / 2};
-  std::copy(half, half + 3, m->geom_size + 3 * spatula_geom_);
-  std::copy(half, half + 3, m->geom_aabb + 6 * spatula_geom_ + 3);
-  m->geom_rbound[spatula_geom_] = mju_norm3(half);
-  set_collidable(spatula_body_, true);
-  set_mocap(spatula_, pose);
-  keep_awake(true);  // a mocap body does not wake what it pushes
+  const int blade = spatula_.first_geom;
+  std::copy(half, half + 3, m->geom_size + 3 * blade);
+  std::copy(half, half + 3, m->geom_aabb + 6 * blade + 3);
+  m->geom_rbound[blade] = mju_norm3(half);
+  set_collidable(spatula_.body, true);
+  put(pose, data_->qpos + spatula_.qpos, data_->qpos + spatula_.qpos + 3);
+  m->tree_sleep_policy[spatula_.tree] = mjSLEEP_NEVER;
+  spatula_pose_ = pose;
 }
 
-void MujocoWorld::move_spatula(const Pose& pose) { set_mocap(spatula_, pose); }
+void MujocoWorld::move_spatula(const Pose& pose) {
+  if (!spatula_pose_) throw EngineError("MuJoCo: the spatula moves only while it is placed");
+  spatula_pose_ = pose;
+}
 
 void MujocoWorld::remove_spatula() {
-  set_collidable(spatula_body_, false);
-  keep_awake(false);
+  if (!spatula_pose_) return;
+  park_spatula();
+  std::copy_n(pristine_->qpos + spatula_.qpos, 7, data_->qpos + spatula_.qpos);
+}
+
+void MujocoWorld::park_spatula() {
+  set_collidable(spatula_.body, false);
+  model_->tree_sleep_policy[spatula_.tree] = mjSLEEP_ALLOWED;
+  spatula_pose_.reset();
+}
+
+// Gives it the velocity that takes it to its pose within the step.
+void MujocoWorld::drive_spatula() {
+  double position[3], quaternion[4];
+  put(*spatula_pose_, position, quaternion);
+  const double* now = data_->qpos + spatula_.qpos;
+  double* velocity = data_->qvel + spatula_.dof;
+  for (int i = 0; i < 3; ++i) velocity[i] = (position[i] - now[i]) / time_step;
+  mju_subQuat(velocity + 3, quaternion, now + 3);
+  mju_scl3(velocity + 3, velocity + 3, 1 / time_step);
 }
 
 const MujocoWorld::Slot& MujocoWorld::slot(int body) const {
@@ -231,9 +259,15 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
   gripper->mocap = true;
   mjsBody* spatula = mjs_addBody(world, nullptr);
   mjs_setName(spatula->element, "spatula");
-  spatula->mocap = true;
+  mjs_addFreeJoint(spatula);
+  spatula->sleep = mjSLEEP_INIT;
+  spatula->gravcomp = 1;
+  spatula->pos[0] = parking_distance;
+  spatula->pos[1] = -parking_gap;
   mjsGeom* blade = mjs_addGeom(spatula, nullptr);
   blade->type = mjGEOM_BOX;
+  blade->solref[0] = stiffest;
+  blade->mass = 1000;
   std::fill_n(blade->size, 3, 0.01);
   blade->contype = blade->conaffinity = 0;
 
@@ -286,25 +320,29 @@ void MujocoWorld::compile(const std::vector<BodyModel>& models, int copies) {
   mjModel* m = model_.get();
   const auto body_id = [&](const std::string& name) { return mj_name2id(m, mjOBJ_BODY, name.c_str()); };
   gripper_ = m->body_mocapid[body_id("gripper")];
-  spatula_body_ = body_id("spatula");
-  spatula_geom_ = m->body_geomadr[spatula_body_];
-  spatula_ = m->body_mocapid[spatula_body_];
   owner_.assign(static_cast<std::size_t>(m->ngeom), no_body);
   owner_[0] = table_body;
-  owner_[static_cast<std::size_t>(spatula_geom_)] = spatula_body;
 
+  const auto slot_of = [&](const std::string& name) {
+    Slot s;
+    s.body = body_id(name);
+    s.first_geom = m->body_geomadr[s.body];
+    s.geoms = m->body_geomnum[s.body];
+    s.mocap = m->body_mocapid[s.body];
+    if (s.mocap < 0) {
+      s.qpos = m->jnt_qposadr[m->body_jntadr[s.body]];
+      s.dof = m->body_dofadr[s.body];
+      s.tree = m->body_treeid[s.body];
+    }
+    return s;
+  };
+  spatula_ = slot_of("spatula");
+  owner_[static_cast<std::size_t>(spatula_.first_geom)] = spatula_body;
   pool_.assign(models.size(), {});
   for (std::size_t i = 0; i < models.size(); ++i)
     for (int copy = 0; copy < copies; ++copy) {
-      Slot s;
-      s.body = body_id(fmt::format("{}#{}", i, copy));
-      s.first_geom = m->body_geomadr[s.body];
-      s.geoms = m->body_geomnum[s.body];
-      s.mocap = m->body_mocapid[s.body];
+      const Slot s = slot_of(fmt::format("{}#{}", i, copy));
       if (!models[i].fixed) {
-        s.qpos = m->jnt_qposadr[m->body_jntadr[s.body]];
-        s.dof = m->body_dofadr[s.body];
-        s.tree = m->body_treeid[s.body];
         // Compiled with a density of 1000: scaled to the mass that was asked for.
         const double scale = models[i].mass_kg / m->body_mass[s.body];
         m->body_mass[s.body] *= scale;
@@ -335,13 +373,6 @@ void MujocoWorld::lay_to_sleep() {
   mj_step(m, d);
   m->opt.disableflags = disabled;
   d->time = 0;
-}
-
-void MujocoWorld::keep_awake(bool awake) {
-  for (const Slot& s : placed_) {
-    if (s.tree < 0) continue;
-    model_->tree_sleep_policy[s.tree] = awake ? mjSLEEP_NEVER : mjSLEEP_ALLOWED;
-  }
 }
 
 void MujocoWorld::refresh() const {

@@ -2,6 +2,7 @@
 #pragma once
 #include <mujoco/mujoco.h>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <lgabench/core/physics_world.hpp>
@@ -10,7 +11,8 @@ namespace lgabench {
 
 /// The pool holds `copies` bodies of each model. Parked ones lie beside the table without contacts and asleep, so they
 /// cost a step next to nothing; reset() always starts from the same pristine state, so no scene sees an earlier one.
-/// Suction is a weld to a mocap body, the spatula a mocap box.
+/// Suction is a weld to a mocap body. The spatula is a very heavy free body, set on its way before each step: contacts
+/// take a mocap body to stand still, and let what it pushes sink into it.
 class MujocoWorld final : public PhysicsWorld {
  public:
   MujocoWorld();
@@ -41,7 +43,8 @@ class MujocoWorld final : public PhysicsWorld {
   void compile(const std::vector<BodyModel>& models, int copies);
   void set_collidable(int body, bool collidable);
   void set_mocap(int mocap, const Pose& pose);
-  void keep_awake(bool awake);
+  void park_spatula();
+  void drive_spatula();
   /// Bodies are placed at rest: they sleep until something touches them, and cost nothing before.
   void lay_to_sleep();
   void refresh() const;
@@ -51,9 +54,10 @@ class MujocoWorld final : public PhysicsWorld {
   std::unique_ptr<mjData, void (*)(mjData*)> data_, pristine_;  // pristine: everything parked and asleep
   std::vector<std::vector<Slot>> pool_;                         // by model, then copy
   std::vector<Slot> placed_;                                    // by placement
-  std::vector<int> owner_;           // by geom: placement, table_body, spatula_body or no_body
-  int gripper_ = -1, spatula_ = -1;  // mocap ids
-  int spatula_body_ = -1, spatula_geom_ = -1;
+  std::vector<int> owner_;  // by geom: placement, table_body, spatula_body or no_body
+  int gripper_ = -1;        // mocap id
+  Slot spatula_;
+  std::optional<Pose> spatula_pose_;  // where it shall be after the next step; none: parked
   int held_ = no_body;
   mutable bool stale_ = false;  // positions of geoms are one step behind the state
 };

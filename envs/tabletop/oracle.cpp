@@ -1,10 +1,12 @@
 #include <tabletop/oracle.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/predicates.hpp>
+#include <tabletop/zones.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -30,6 +32,21 @@ Vec2 reachable_grasp(const SceneObject& object, const Pose& pose, const PhysicsW
   return grasp;  // wholly covered: the best that is left
 }
 
+/// Straight along y: whatever else a sweep scene holds stands in the other row, or on the obstacle's side.
+Action sweep_action(const Scene& scene, const Pose& pose, const SceneObject& object) {
+  constexpr double behind_m = .03;
+  const SceneObject *target = scene.find(Role::target), *obstacle = scene.find(Role::obstacle);
+  if (!target || !obstacle) throw InputError("scene: expected a target and an obstacle");
+  const double side = obstacle->position_m.y > target->position_m.y ? -1 : 1;  // the free one
+  const Vec2 centre = centre_of(object, pose);
+  double reach = 0;  // from the centre back to the object's last corner
+  for (const ConvexPiece& piece : object_model(object.object_type).body.pieces)
+    for (const Vec3& corner : piece.corners_m)
+      reach = std::max(reach, side * (centre.y - (pose.position_m + rotated(corner, pose.rotation)).y));
+  return {{{centre.x, centre.y - side * (reach + behind_m)}, {}},
+          {{centre.x, side * (GoalZones::aim_m - reach - spatula_size_m.y / 2)}, {}}};
+}
+
 }  // namespace
 
 Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
@@ -50,7 +67,7 @@ Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const P
       turn = std::remainder(target.yaw_rad + scene.angle_rad - yaw_of(poses[object].rotation), 2 * pi);
       break;
     case Task::sweep:
-      throw InputError("task: expected pick_and_place or rotate, got sweep");
+      return sweep_action(scene, poses[object], target);
   }
   const Vec2 grasp = reachable_grasp(target, poses[object], world, static_cast<int>(object));
   return {{grasp, {}}, {goal + rotated(grasp - centre, turn), from_yaw(turn)}};

@@ -1,9 +1,11 @@
 #include <tabletop/predicates.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
+#include <tabletop/zones.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -39,16 +41,21 @@ Failure judge_rotate(const Final& target, const std::vector<Final>& finals, doub
   return std::abs(error) <= angle_tolerance_deg * pi / 180 ? Failure::none : Failure::bad_angle;
 }
 
-Failure judge_task(const Scene& scene, const Final& target, const std::vector<Final>& finals) {
+Failure judge_sweep(const Final& target, const Motion& motion) {
+  if (motion.touched_obstacle) return Failure::touched_obstacle;
+  return GoalZones::contains(target.centre_m) ? Failure::none : Failure::missed_zone;
+}
+
+Failure judge_task(const Scene& scene, const Final& target, const std::vector<Final>& finals, const Motion& motion) {
   switch (scene.task) {
     case Task::pick_and_place:
       return judge_pick_and_place(target, finals);
     case Task::rotate:
       return judge_rotate(target, finals, scene.angle_rad);
     case Task::sweep:
-      break;
+      return judge_sweep(target, motion);
   }
-  throw InputError("task: expected pick_and_place or rotate, got " + to_string(scene.task));
+  throw Error("a Task outside its enumeration");
 }
 
 }  // namespace
@@ -57,6 +64,30 @@ Vec2 centre_of(const SceneObject& object, const Pose& pose) {
   const Vec3 centre =
       pose.position_m + rotated(Vec3{0, 0, object_model(object.object_type).height_m / 2}, pose.rotation);
   return {centre.x, centre.y};
+}
+
+bool touches_obstacle(const Scene& scene, const std::vector<Pose>& poses, const std::vector<Contact>& contacts,
+                      const std::vector<Polygon>& spatula) {
+  const auto index_of = [&](Role role) {
+    const auto has = [role](const SceneObject& o) { return o.role == role; };
+    const auto found = std::find_if(scene.objects.begin(), scene.objects.end(), has);
+    if (found == scene.objects.end()) throw InputError("scene: expected an object to be " + to_string(role));
+    return static_cast<int>(found - scene.objects.begin());
+  };
+  const int target = index_of(Role::target), obstacle = index_of(Role::obstacle);
+  const auto is_touch = [&](const Contact& c) {
+    const int other = c.a == obstacle ? c.b : c.a;
+    return (c.a == obstacle || c.b == obstacle) && (other == target || other == spatula_body);
+  };
+  if (std::any_of(contacts.begin(), contacts.end(), is_touch)) return true;
+
+  const auto outline = [&](int i) {
+    const Pose& pose = poses[static_cast<std::size_t>(i)];
+    const ObjectModel& model = object_model(scene.objects[static_cast<std::size_t>(i)].object_type);
+    return placed_outline(model, {pose.position_m.x, pose.position_m.y}, yaw_of(pose.rotation));
+  };
+  const auto barred = outline(obstacle);
+  return distance(barred, outline(target)) <= 0 || (!spatula.empty() && distance(barred, spatula) <= 0);
 }
 
 Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion) {
@@ -72,8 +103,8 @@ Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& 
   if (!motion.came_to_rest) return Failure::truncated;
   for (const Final& f : finals)
     if (!Workspace::contains(f.centre_m)) return Failure::left_workspace;
-  const Failure failure = judge_task(scene, *target, finals);
-  if (failure == Failure::none) return failure;
+  const Failure failure = judge_task(scene, *target, finals, motion);
+  if (failure == Failure::none || failure == Failure::touched_obstacle) return failure;
   // Why the state is not right: what was taken says more than where it went.
   if (motion.taken == no_body) return Failure::missed_object;
   if (&scene.objects[static_cast<std::size_t>(motion.taken)] != &target->object) return Failure::wrong_object;

@@ -3,13 +3,21 @@
 #include <vector>
 
 #include <lgabench/core/environment.hpp>
+#include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
+#include <tabletop/outline.hpp>
 #include <tabletop/primitives.hpp>
 
 namespace lgabench::tabletop {
 
 /// The object's centre now: the middle of its height over its frame's origin, also when it has toppled.
 Vec2 centre_of(const SceneObject& object, const Pose& pose);
+
+/// Target or spatula touch the obstacle now: in a contact (of the last step), or their outlines overlap seen from
+/// above, since a thin obstacle is passed over without contact. `spatula` is its outline, empty where it is not on the
+/// table.
+bool touches_obstacle(const Scene& scene, const std::vector<Pose>& poses, const std::vector<Contact>& contacts,
+                      const std::vector<Polygon>& spatula);
 
 /// Judges the state that was reached against the scene's beginning. `poses` in the order of `scene.objects`.
 /// Pure. @throws InputError where the scene lacks a target, or a goal that its task needs.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lgabench::tabletop {
 namespace {
@@ -9,7 +10,9 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double lift_m = 0.1;
 constexpr double carry_speed = 3, lower_speed = 0.5, turn_speed = 12;  // greatest ones: m/s, m/s, rad/s
-constexpr double limit_s = 10;                                         // of an action, until all is at rest
+constexpr double push_speed = 0.25;     // m/s: pushed faster, an L-shaped block now and then turns away from the blade
+constexpr double spatula_gap_m = 5e-4;  // to the table, which it need not scrape: less than the thinnest body
+constexpr double limit_s = 10;          // of an action, until all is at rest
 // At rest: for so long within so much of one pose. (Velocities say less: a body stands still at the top of a throw.)
 struct Stillness {
   double for_s, move_m, turn_rad;
@@ -19,16 +22,18 @@ constexpr Stillness stillness[] = {
     {0.5, 5e-4, 17e-3},     // what leans on an edge may tremble by half a degree and creep by .05 mm/s for ever
 };
 
-/// Counts the steps of one action.
+/// Counts the steps of one action, and calls `after_step` after each.
 class Clock {
  public:
-  explicit Clock(PhysicsWorld& world) : world_(world), left_(static_cast<int>(limit_s / world.time_step_s())) {}
+  explicit Clock(PhysicsWorld& world, std::function<void()> after_step = {})
+      : world_(world), after_step_(std::move(after_step)), left_(static_cast<int>(limit_s / world.time_step_s())) {}
 
   /// @return false, and no step, once the limit is reached.
   bool step() {
     if (left_ == 0) return false;
     --left_;
     world_.step();
+    if (after_step_) after_step_();
     return true;
   }
 
@@ -36,25 +41,27 @@ class Clock {
 
  private:
   PhysicsWorld& world_;
+  std::function<void()> after_step_;
   int left_;
 };
 
-/// The gripper's way: straight, the turn at an even share, starting and ending at zero speed (cosine profile).
+/// Of the gripper, or of the spatula.
 struct Stance {
   Vec3 position_m;
   double yaw_rad = 0;
   Pose pose() const { return {position_m, from_yaw(yaw_rad)}; }
 };
 
-bool move(PhysicsWorld& world, Clock& clock, const Stance& from, const Stance& to) {
+/// Straight, the turn at an even share, starting and ending at zero speed (cosine profile). `put` moves the tool.
+template <typename Put>
+bool move(Clock& clock, const Stance& from, const Stance& to, double speed, const Put& put) {
   const Vec3 way = to.position_m - from.position_m;
   const double length = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z), turn = to.yaw_rad - from.yaw_rad;
   const double mean_to_peak = pi / 2;
-  const int n = clock.steps(mean_to_peak * std::max(length / carry_speed, std::abs(turn) / turn_speed));
+  const int n = clock.steps(mean_to_peak * std::max(length / speed, std::abs(turn) / turn_speed));
   for (int i = 1; i <= n; ++i) {
     const double share = (1 - std::cos(pi * i / n)) / 2;
-    const Stance now{from.position_m + share * way, from.yaw_rad + share * turn};
-    world.move_gripper(now.pose());
+    put(Stance{from.position_m + share * way, from.yaw_rad + share * turn});
     if (!clock.step()) return false;
   }
   return true;
@@ -65,11 +72,20 @@ bool touches(const PhysicsWorld& world, int body) {
   return std::any_of(contacts.begin(), contacts.end(), [body](Contact c) { return c.a == body || c.b == body; });
 }
 
-bool lower(PhysicsWorld& world, Clock& clock, Stance stance, int body) {
+/// A body that the spatula touches: no_body if none.
+int under_spatula(const PhysicsWorld& world) {
+  for (const Contact c : world.contacts())
+    if (std::min(c.a, c.b) == spatula_body && std::max(c.a, c.b) >= 0) return std::max(c.a, c.b);
+  return no_body;
+}
+
+/// Lets the tool down until `body`, which it holds or is, touches something or the tool is at `floor_m`.
+template <typename Put>
+bool lower(PhysicsWorld& world, Clock& clock, Stance& stance, int body, double floor_m, const Put& put) {
   const double step_m = lower_speed * world.time_step_s();
-  while (stance.position_m.z > 0 && !touches(world, body)) {
-    stance.position_m.z -= step_m;
-    world.move_gripper(stance.pose());
+  while (stance.position_m.z > floor_m && !touches(world, body)) {
+    stance.position_m.z = std::max(stance.position_m.z - step_m, floor_m);
+    put(stance);
     if (!clock.step()) return false;
   }
   return true;
@@ -134,11 +150,45 @@ Motion pick_and_place(const Bodies& bodies, const Action& action) {
   const Vec2 take = action.pose0.position_m, put = action.pose1.position_m;
   const Stance down{{take.x, take.y, height}, 0};
   const Stance up{{take.x, take.y, height + lift_m}, 0};
-  const Stance over{{put.x, put.y, height + lift_m}, yaw_of(action.pose1.rotation)};
+  Stance over{{put.x, put.y, height + lift_m}, yaw_of(action.pose1.rotation)};
   world.grip(body, down.pose());
-  const bool placed = move(world, clock, down, up) && move(world, clock, up, over) && lower(world, clock, over, body);
+  const auto put_gripper = [&](const Stance& stance) { world.move_gripper(stance.pose()); };
+  const bool placed = move(clock, down, up, carry_speed, put_gripper) &&
+                      move(clock, up, over, carry_speed, put_gripper) &&
+                      lower(world, clock, over, body, 0, put_gripper);
   world.release();
   return {body, placed && settle(bodies, clock)};
+}
+
+Motion sweep(const Bodies& bodies, const Action& action, const Watch& watch) {
+  PhysicsWorld& world = bodies.world;
+  const Vec2 from = action.pose0.position_m, to = action.pose1.position_m, way = to - from;
+  constexpr double on_table = spatula_size_m.z / 2 + spatula_gap_m;
+  Stance stance{{from.x, from.y, on_table + lift_m}, std::atan2(-way.x, way.y)};
+  const Vec2 half{spatula_size_m.x / 2, spatula_size_m.y / 2};
+  const std::vector<Polygon> blade{{{-half.x, -half.y}, {half.x, -half.y}, {half.x, half.y}, {-half.x, half.y}}};
+
+  Motion motion;
+  bool present = true;
+  Clock clock(world, [&] {
+    if (present && motion.taken == no_body) motion.taken = under_spatula(world);
+    const Vec2 at{stance.position_m.x, stance.position_m.y};
+    watch(present ? placed(blade, at, stance.yaw_rad) : std::vector<Polygon>{});
+  });
+  const auto put = [&](const Stance& now) {
+    stance = now;
+    world.move_spatula(now.pose());
+  };
+  world.place_spatula(spatula_size_m, stance.pose());
+  bool done = lower(world, clock, stance, spatula_body, on_table, put);
+  // On top of a body it slides over it, and does not press it into the table.
+  if (motion.taken != no_body) stance.position_m.z += lower_speed * world.time_step_s();
+  const Stance start = stance, end{{to.x, to.y, start.position_m.z}, start.yaw_rad};
+  done = done && move(clock, start, end, push_speed, put);
+  world.remove_spatula();
+  present = false;
+  motion.came_to_rest = done && settle(bodies, clock);
+  return motion;
 }
 
 }  // namespace lgabench::tabletop

@@ -15,6 +15,7 @@
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/textures.hpp>
+#include <tabletop/zones.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -23,7 +24,7 @@ constexpr int rows = Observation::rows, columns = Observation::columns, pixels =
 constexpr double row_m = (Workspace::x_max - Workspace::x_min) / rows;
 constexpr double column_m = (Workspace::y_max - Workspace::y_min) / columns;
 
-constexpr Rgb table_colour{196, 194, 190};
+constexpr Rgb table_colour{196, 194, 190}, zone_colour{168, 184, 176};
 // Towards the light, a unit vector: from above, the picture's upper left. Shadows fall to the lower right.
 constexpr Vec3 light{-0.36, -0.48, 0.8};
 constexpr double climb = 1 / light.z;  // of the way to the light, for each metre of height
@@ -118,7 +119,24 @@ Rgb lit(Rgb colour, int brightness) {
   return colour;
 }
 
+// The pixel's centre is painted.
+bool is_zone(Ground ground, std::size_t pixel) {
+  const double y = Workspace::y_min + (static_cast<double>(pixel % columns) + 0.5) * column_m;
+  return ground == Ground::goal_zones && GoalZones::contains({0, y});
+}
+
+std::vector<std::uint8_t> empty_table(Ground ground) {
+  std::vector<std::uint8_t> rgb;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const Rgb& colour = is_zone(ground, i) ? zone_colour : table_colour;
+    rgb.insert(rgb.end(), colour.begin(), colour.end());
+  }
+  return rgb;
+}
+
 }  // namespace
+
+Ground ground_of(const Scene& scene) { return scene.task == Task::sweep ? Ground::goal_zones : Ground::plain; }
 
 std::vector<VisibleObject> visible_objects(const Scene& scene) {
   std::vector<VisibleObject> objects;
@@ -215,10 +233,12 @@ struct Renderer::Impl {
   }
 
   // Darkens the table where the object keeps the light from it.
-  static void shade_table(const Placed& object, Observation& seen) {
-    const Rgb shaded = lit(table_colour, ambient);
+  static void shade_table(const Placed& object, Ground ground, Observation& seen) {
+    const Rgb shaded = lit(table_colour, ambient), shaded_zone = lit(zone_colour, ambient);
     const auto darken = [&](std::size_t pixel, double, double) {
-      if (seen.ids[pixel] == 0) std::copy(shaded.begin(), shaded.end(), seen.rgb.begin() + 3 * pixel);
+      if (seen.ids[pixel] != 0) return;
+      const Rgb& colour = is_zone(ground, pixel) ? shaded_zone : shaded;
+      std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
     };
     for (const auto& [a, b, c] : object.shape->mesh->triangles)
       fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], darken);
@@ -272,7 +292,7 @@ struct Renderer::Impl {
 Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
 Renderer::~Renderer() = default;
 
-Observation Renderer::render(const std::vector<VisibleObject>& objects) {
+Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground) {
   std::array<bool, 256> taken{true};  // 0 is the table's
   std::vector<Placed> placed;
   for (const VisibleObject& object : objects) {
@@ -282,14 +302,10 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects) {
     placed.push_back(impl_->place(object));
   }
 
-  static const std::vector<std::uint8_t> empty_table = [] {
-    std::vector<std::uint8_t> rgb;
-    for (int i = 0; i < pixels; ++i) rgb.insert(rgb.end(), table_colour.begin(), table_colour.end());
-    return rgb;
-  }();
-  Observation seen{empty_table, std::vector<std::uint8_t>(pixels), {}};
+  static const auto plain = empty_table(Ground::plain), with_zones = empty_table(Ground::goal_zones);
+  Observation seen{ground == Ground::plain ? plain : with_zones, std::vector<std::uint8_t>(pixels), {}};
   for (const Placed& object : placed) impl_->draw(object, seen);
-  for (const Placed& object : placed) Impl::shade_table(object, seen);
+  for (const Placed& object : placed) Impl::shade_table(object, ground, seen);
   for (const Placed& object : placed) impl_->paint(object, placed, seen);
 
   std::array<int, 256> visible{};

@@ -18,8 +18,13 @@ struct VisibleObject {
 /// The scene's objects at rest on the table (z = 0, turned by yaw), before any action; in the scene's order.
 std::vector<VisibleObject> visible_objects(const Scene& scene);
 
-/// One thread at a time. The picture depends on the objects alone: same bytes for the same poses, whatever was drawn
-/// before.
+/// What is painted on the table: no instance, in the colours only.
+enum class Ground { plain, goal_zones };
+/// Goal zones where the task is sweep.
+Ground ground_of(const Scene& scene);
+
+/// One thread at a time. The picture depends on the objects and the ground alone: same bytes for the same poses,
+/// whatever was drawn before.
 class Renderer {
  public:
   /// @throws EngineError if Embree can't be started.
@@ -32,7 +37,7 @@ class Renderer {
   /// surface shows its texture's colour as it is. What lies outside the picture or below the table is not seen.
   /// @throws InputError for an unknown object type or texture, an instance id that is 0 or given twice, or a pose that
   /// is not finite.
-  Observation render(const std::vector<VisibleObject>& objects);
+  Observation render(const std::vector<VisibleObject>& objects, Ground ground = Ground::plain);
 
  private:
   struct Impl;

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include <lgabench/core/random.hpp>
 #include <tabletop/objects.hpp>
@@ -15,43 +17,54 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double margin_m = 0.02;  // between outlines
 const std::string goal_type = "pallet", goal_texture = "wooden";
 
-// Where objects of pick_and_place may stand. Without places: anywhere, at any yaw.
+// Where objects of a task may stand. Without places: anywhere, at any yaw.
 struct Layout {
+  Task task;
   std::string id;
   std::vector<Vec2> target_places, distractor_places;
-  Vec2 pallet;
-  double widest_m = std::numeric_limits<double>::infinity();
+  std::optional<Vec2> pallet = {};
+  double widest_m = unbounded, widest_target_m = unbounded;
+  double shift_m = 0;  // sweep: the target stands up to this far from its place, at any yaw
+  static constexpr double unbounded = std::numeric_limits<double>::infinity();
 };
 
-const std::vector<Layout>& pick_and_place_layouts() {
+// The spatula is .12 wide: wider targets slip off it. Obstacle and distractors stand where the target's place says.
+Layout sweep_layout(const std::string& id, double shift_m) {
+  const std::vector<Vec2> places{{.375, -.05}, {.375, .05}, {.625, -.05}, {.625, .05}};
+  return {Task::sweep, id, places, {}, {}, Layout::unbounded, .145, shift_m};
+}
+
+const std::vector<Layout>& all_layouts() {
+  constexpr Vec2 pallet{.5, .3};
   static const std::vector<Vec2> cells{{.375, -.36}, {.625, -.36}, {.375, -.06}, {.625, -.06}};
-  static const std::vector<Layout> all{
-      {"cells", cells, cells, {.5, .3}},
-      {"continuous", {}, {}, {.5, .3}},
-      {"released", {{.34375, -.265625}, {.34375, .125}}, {{.34375, .125}, {.625, -.265625}}, {.625, .125}, .17}};
+  static const std::vector<Vec2> rotate_cells{{.40, -.35}, {.60, -.115}, {.40, .115}, {.60, .35}};
+  static const std::vector<Layout> all{{Task::pick_and_place, "cells", cells, cells, pallet},
+                                       {Task::pick_and_place, "continuous", {}, {}, pallet},
+                                       {Task::pick_and_place,
+                                        "released",
+                                        {{.34375, -.265625}, {.34375, .125}},
+                                        {{.34375, .125}, {.625, -.265625}},
+                                        Vec2{.625, .125},
+                                        .17},
+                                       {Task::rotate, "cells", rotate_cells, rotate_cells},
+                                       {Task::rotate, "continuous", {}, {}},
+                                       sweep_layout("cells", 0),
+                                       sweep_layout("continuous", .03)};
   return all;
 }
 
 const Layout& find_layout(Task task, const std::string& id) {
-  if (task == Task::pick_and_place)
-    for (const Layout& layout : pick_and_place_layouts())
-      if (layout.id == id) return layout;
+  for (const Layout& layout : all_layouts())
+    if (layout.task == task && layout.id == id) return layout;
   throw InputError(
       fmt::format("layout \"{}\": expected one of {} has: {}", id, to_string(task), fmt::join(layouts(task), ", ")));
 }
 
 // A second pallet would be a second goal.
-bool can_show(const Layout& layout, const std::string& type) {
+bool can_show(const std::string& type, double widest_m) {
   if (type == goal_type) return false;
   const Vec2 size = object_model(type).size_m;
-  return std::max(size.x, size.y) <= layout.widest_m + 1e-9;
-}
-
-std::vector<std::string> shown_types(const Layout& layout, const std::vector<std::string>& types) {
-  std::vector<std::string> shown;
-  std::copy_if(types.begin(), types.end(), std::back_inserter(shown),
-               [&](const auto& t) { return can_show(layout, t); });
-  return shown;
+  return std::max(size.x, size.y) <= widest_m + 1e-9;
 }
 
 const std::string& any_of(const std::vector<std::string>& names, RandomStream& random) {
@@ -62,13 +75,16 @@ struct Features {
   std::string type, texture;
 };
 
-Features sample_target(const Scenario& scenario, const Layout& layout, const FeatureSet& distribution,
-                       RandomStream random) {
-  const auto types = shown_types(layout, distribution.object_types);
+// Uniform over what of the distribution can be shown. `whom` is named in errors.
+Features sample_features(const Scenario& scenario, const Layout& layout, const FeatureSet& distribution,
+                         double widest_m, const char* whom, RandomStream random) {
+  std::vector<std::string> types;
+  std::copy_if(distribution.object_types.begin(), distribution.object_types.end(), std::back_inserter(types),
+               [&](const std::string& type) { return can_show(type, widest_m); });
   if (types.empty() || distribution.textures.empty())
     throw InputError(
-        fmt::format("scenario \"{}\", layout {}: expected a distribution with a target that can be shown, got {}",
-                    scenario.id, layout.id, canonical(to_json(distribution))));
+        fmt::format("scenario \"{}\", layout {}: expected a distribution with {} that can be shown, got {}",
+                    scenario.id, layout.id, whom, canonical(to_json(distribution))));
   const std::string& type = any_of(types, random);
   return {type, any_of(distribution.textures, random)};
 }
@@ -113,7 +129,7 @@ std::vector<Features> sample_distractors(const Scenario& scenario, const Layout&
   std::vector<std::string> later_letters;
   std::vector<bool> allowed;
   for (const std::string& type : space.object_types) {
-    const bool later = is_letter(type) && type > target_type, shown = can_show(layout, type);
+    const bool later = is_letter(type) && type > target_type, shown = can_show(type, layout.widest_m);
     allowed.push_back(shown && (!earliest || !is_letter(type) || later));
     if (earliest && shown && later) later_letters.push_back(type);
   }
@@ -179,19 +195,60 @@ bool place_distractors(std::vector<SceneObject>& objects, std::vector<std::vecto
   return true;
 }
 
+// What must stay free beside the target itself: where a large one reaches beyond the pallet that it is brought to, or
+// the disc that a rotation sweeps.
+std::vector<Polygon> room_for_motion(const Layout& layout, const SceneObject& target) {
+  const ObjectModel& model = object_model(target.object_type);
+  if (layout.pallet) return placed_outline(model, *layout.pallet, target.yaw_rad);
+  constexpr int corners = 32;
+  Polygon disc;
+  for (int i = 0; i < corners; ++i)  // around the disc, not in it
+    disc.push_back(target.position_m + rotated({model.radius_m / std::cos(pi / corners), 0}, 2 * pi * i / corners));
+  return {disc};
+}
+
 void place_freely(const Layout& layout, std::vector<SceneObject>& objects, const Streams& stream) {
   constexpr int tries = 10000;
   RandomStream random = stream("layout"), others = stream("layout of distractors");
-  const auto pallet = placed_outline(object_model(goal_type), layout.pallet, 0);
-  SceneObject& target = objects[0];
+  std::vector<std::vector<Polygon>> standing;
+  if (layout.pallet) standing.push_back(placed_outline(object_model(goal_type), *layout.pallet, 0));
   for (int k = 0; k < tries; ++k) {
-    auto outline = try_place(target, {pallet}, random);
+    auto outline = try_place(objects[0], standing, random);
     if (outline.empty()) continue;
-    // A large target reaches beyond the pallet it is brought to: that room stays free as well.
-    auto delivered = placed_outline(object_model(target.object_type), layout.pallet, target.yaw_rad);
-    if (place_distractors(objects, {pallet, std::move(outline), std::move(delivered)}, others)) return;
+    auto room = room_for_motion(layout, objects[0]);
+    if (!inside_picture(room)) continue;
+    auto with_target = standing;
+    with_target.push_back(std::move(outline));
+    with_target.push_back(std::move(room));
+    if (place_distractors(objects, std::move(with_target), others)) return;
   }
   throw Error(fmt::format("layout {}: no room found for {} objects in {} tries", layout.id, objects.size(), tries));
+}
+
+// PROTOCOL, section 3: the obstacle bars one side of the target's row, distractors stand in the other row.
+void place_for_sweep(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random,
+                     RandomStream others) {
+  constexpr double obstacle_away_m = .21, distractor_y_m = .16;
+  const Vec2 place = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
+  const double blocked_side = random.coin() ? 1 : -1;
+  SceneObject& target = objects[0];
+  target.position_m = place;
+  if (layout.shift_m > 0) {
+    target.position_m.x += random.uniform(-layout.shift_m, layout.shift_m);
+    target.position_m.y += random.uniform(-layout.shift_m, layout.shift_m);
+    target.yaw_rad = random.uniform(-pi, pi);
+  }
+  double distractor_side = others.coin() ? 1 : -1;
+  for (SceneObject& object : objects) {
+    if (object.role == Role::obstacle) {
+      object.position_m = {place.x, target.position_m.y + blocked_side * obstacle_away_m};
+      object.yaw_rad = pi / 2;
+    }
+    if (object.role == Role::distractor) {
+      object.position_m = {Workspace::x_min + Workspace::x_max - place.x, distractor_side * distractor_y_m};
+      distractor_side = -distractor_side;
+    }
+  }
 }
 
 // Ids 1..n in random order, the objects sorted by them: neither tells a role.
@@ -216,8 +273,8 @@ void check(const Scenario& scenario, const SceneRequest& request, int index) {
 
 std::vector<std::string> layouts(Task task) {
   std::vector<std::string> ids;
-  if (task == Task::pick_and_place)
-    for (const Layout& layout : pick_and_place_layouts()) ids.push_back(layout.id);
+  for (const Layout& layout : all_layouts())
+    if (layout.task == task) ids.push_back(layout.id);
   return ids;
 }
 
@@ -232,21 +289,31 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
                                     index, purpose));
   };
 
-  const Features target = sample_target(scenario, layout, distribution.target, stream("target"));
+  const Features target =
+      sample_features(scenario, layout, distribution.target, std::min(layout.widest_m, layout.widest_target_m),
+                      "a target", stream("target"));
   std::vector<SceneObject> objects{{target.type, target.texture, Role::target, {}, 0, 0}};
   for (const Features& d :
        sample_distractors(scenario, layout, distribution, training, target.type, stream("distractors")))
     objects.push_back({d.type, d.texture, Role::distractor, {}, 0, 0});
+  if (scenario.command.task == Task::sweep) {
+    const Features obstacle = sample_features(scenario, layout, distribution.avoid.value_or(FeatureSet{}),
+                                              layout.widest_m, "an obstacle", stream("obstacle"));
+    objects.push_back({obstacle.type, obstacle.texture, Role::obstacle, {}, 0, 0});
+  }
 
-  if (layout.target_places.empty())
+  if (scenario.command.task == Task::sweep)
+    place_for_sweep(layout, objects, stream("layout"), stream("layout of distractors"));
+  else if (layout.target_places.empty())
     place_freely(layout, objects, stream);
   else
     place_on_cells(layout, objects, stream("layout"));
-  objects.push_back({goal_type, goal_texture, Role::goal, layout.pallet, 0, 0});
+  if (layout.pallet) objects.push_back({goal_type, goal_texture, Role::goal, *layout.pallet, 0, 0});
   permute_ids(objects, stream("ids"));
 
   Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.command.task, 0, request.seed,
               index,       {}};
+  scene.angle_rad = scenario.angle_deg * pi / 180;
   scene.objects = std::move(objects);
   return scene;
 }

@@ -47,7 +47,8 @@ class Tabletop final : public Environment {
     scene_ = scene;
     objects_ = std::move(objects);
     fixed_ = std::move(fixed);
-    return renderer_.render(objects_);
+    touched_obstacle_ = false;
+    return renderer_.render(objects_, ground_of(scene_));
   }
 
   StepResult step(const Action& action) override {
@@ -55,7 +56,7 @@ class Tabletop final : public Environment {
     const std::vector<Pose> reached = poses();
     for (std::size_t i = 0; i < reached.size(); ++i) objects_[i].pose = reached[i];
     StepResult result;
-    result.observation = renderer_.render(objects_);
+    result.observation = renderer_.render(objects_, ground_of(scene_));
     result.terminated = true;
     result.truncated = !motion.came_to_rest;
     result.failure = judge(scene_, reached, motion);
@@ -86,9 +87,17 @@ class Tabletop final : public Environment {
       case Task::rotate:
         return pick_and_place({*world_, fixed_}, action);
       case Task::sweep:
-        break;
+        return sweep(action);
     }
-    throw InputError("task: expected pick_and_place or rotate, got " + to_string(scene_.task));
+    throw Error("a Task outside its enumeration");
+  }
+
+  Motion sweep(const Action& action) {
+    Motion motion = tabletop::sweep({*world_, fixed_}, action, [this](const std::vector<Polygon>& spatula) {
+      touched_obstacle_ = touched_obstacle_ || touches_obstacle(scene_, poses(), world_->contacts(), spatula);
+    });
+    motion.touched_obstacle = touched_obstacle_;
+    return motion;
   }
 
   std::vector<Pose> poses() const {
@@ -103,6 +112,7 @@ class Tabletop final : public Environment {
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;
+  bool touched_obstacle_ = false;  // since the scene's beginning
 };
 
 }  // namespace

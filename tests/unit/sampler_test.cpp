@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -42,37 +43,77 @@ bool satisfies(const Scenario& s, const SceneObject& object, const SceneObject& 
   return !s.earliest_letter || object.object_type <= target.object_type;
 }
 
+// What moves during the task, as far as it stays on the table: the target set down at the goal, the disc that it sweeps
+// while it turns, the way of spatula and target to the free zone.
+std::vector<Polygon> swept(const Scene& scene) {
+  SceneObject target = *scene.find(Role::target);
+  const ObjectModel& model = object_model(target.object_type);
+  if (scene.task == Task::pick_and_place) {
+    target.position_m = scene.find(Role::goal)->position_m;
+    return outline(target);
+  }
+  if (scene.task == Task::rotate) {
+    Polygon disc;
+    for (int i = 0; i < 64; ++i)
+      disc.push_back(target.position_m + rotated({model.radius_m, 0}, 2 * 3.14159265358979323846 * i / 64));
+    return {disc};
+  }
+  const double half = std::max(.06, model.radius_m),
+               side = scene.find(Role::obstacle)->position_m.y < target.position_m.y ? 1 : -1;
+  double back = 0;  // of the target, from its centre
+  for (const Polygon& polygon : outline(target))
+    for (const Vec2 p : polygon) back = std::max(back, side * (target.position_m.y - p.y));
+  const double x = target.position_m.x, y0 = target.position_m.y - side * (back + .04), y1 = side * .48;
+  return {{{x - half, std::min(y0, y1)},
+           {x + half, std::min(y0, y1)},
+           {x + half, std::max(y0, y1)},
+           {x - half, std::max(y0, y1)}}};
+}
+
 void check_geometry(const Scene& scene) {
-  const SceneObject& goal = *scene.find(Role::goal);
+  const SceneObject* goal = scene.find(Role::goal);
+  // In fixed places, a few wide pairs are nearer than the margin: a frame and a three-sided rectangle, a line and a
+  // frame.
+  const bool may_be_near = scene.task == Task::sweep || (scene.task == Task::rotate && scene.layout == "cells");
+  const double margin = may_be_near ? .009 : .0199;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto a = outline(scene.objects[i]);
-    for (const Polygon& polygon : a)
-      for (const Vec2 p : polygon) ASSERT_TRUE(Workspace::contains(p)) << canonical(to_json(scene));
+    for (const Polygon& polygon : a)  // a line beside a sweep's target reaches from border to border of its half
+      for (const Vec2 p : polygon) ASSERT_TRUE(Workspace::contains(Vec2{.5, 0} + (1 - 1e-9) * (p - Vec2{.5, 0})));
     for (std::size_t j = 0; j < i; ++j)
-      ASSERT_GE(distance(a, outline(scene.objects[j])), .0199) << canonical(to_json(scene));
-    ASSERT_TRUE(&scene.objects[i] == &goal || norm(scene.objects[i].position_m - goal.position_m) > .1);
+      ASSERT_GE(distance(a, outline(scene.objects[j])), margin) << canonical(to_json(scene));
+    ASSERT_TRUE(!goal || &scene.objects[i] == goal || norm(scene.objects[i].position_m - goal->position_m) > .1);
   }
-  // No distractor where the target is to be set down.
-  SceneObject delivered = *scene.find(Role::target);
-  delivered.position_m = goal.position_m;
-  for (const SceneObject* d : of_role(scene, Role::distractor))
-    ASSERT_GE(distance(outline(delivered), outline(*d)), .0199);
+  const double room = scene.task == Task::sweep ? .005 : margin;
+  const auto moved = swept(scene);
+  for (const SceneObject& o : scene.objects) {
+    if (o.role == Role::target || o.role == Role::goal) continue;
+    ASSERT_GE(distance(moved, outline(o)), room) << canonical(to_json(scene));
+  }
 }
 
 void check_roles(const Scenario& s, const Scene& scene) {
   ASSERT_EQ(of_role(scene, Role::target).size(), 1u);
-  ASSERT_EQ(of_role(scene, Role::goal).size(), 1u);
-  const SceneObject &target = *scene.find(Role::target), &goal = *scene.find(Role::goal);
+  ASSERT_EQ(of_role(scene, Role::goal).size(), s.command.task == Task::pick_and_place ? 1u : 0u);
+  ASSERT_EQ(of_role(scene, Role::obstacle).size(), s.command.task == Task::sweep ? 1u : 0u);
+  const SceneObject &target = *scene.find(Role::target), *goal = scene.find(Role::goal);
   ASSERT_TRUE(s.truth.target.contains(target.object_type, target.texture));
-  ASSERT_EQ(goal.object_type, "pallet");
-  ASSERT_EQ(goal.texture, "wooden");
-  ASSERT_EQ(goal.yaw_rad, 0);
+  if (goal) {
+    ASSERT_EQ(goal->object_type, "pallet");
+    ASSERT_EQ(goal->texture, "wooden");
+    ASSERT_EQ(goal->yaw_rad, 0);
+  }
+  if (const SceneObject* obstacle = scene.find(Role::obstacle)) {
+    ASSERT_TRUE(s.truth.avoid->contains(obstacle->object_type, obstacle->texture));
+  }
+  ASSERT_EQ(scene.angle_rad > 0, s.command.task == Task::rotate);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     ASSERT_EQ(scene.objects[i].instance_id, i + 1);
-    ASSERT_TRUE(&scene.objects[i] == &goal || scene.objects[i].object_type != "pallet");
+    ASSERT_TRUE(&scene.objects[i] == goal || scene.objects[i].object_type != "pallet");
   }
   for (const SceneObject* d : of_role(scene, Role::distractor)) {
     ASSERT_FALSE(satisfies(s, *d, target)) << canonical(to_json(scene));
+    ASSERT_FALSE(s.truth.avoid && s.truth.avoid->contains(d->object_type, d->texture));
     ASSERT_FALSE(scene.arm == "test" && s.never_distractor && s.never_distractor->contains(d->object_type, d->texture));
   }
 }
@@ -145,19 +186,63 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
   }
 }
 
-std::vector<std::string> pick_and_place_scenarios() {
-  std::vector<std::string> ids;
+std::vector<std::tuple<std::string, std::string>> every_scenario_and_layout() {
+  std::vector<std::tuple<std::string, std::string>> all;
   for (const std::string& id : scenario_ids())
-    if (load_scenario(id).command.task == Task::pick_and_place) ids.push_back(id);
-  return ids;
+    for (const std::string& layout : layouts(load_scenario(id).command.task)) all.emplace_back(id, layout);
+  return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Scenes,
-                         testing::Combine(testing::ValuesIn(pick_and_place_scenarios()),
-                                          testing::ValuesIn(layouts(Task::pick_and_place))),
-                         [](const auto& instance) {
-                           return std::get<0>(instance.param) + "_" + std::get<1>(instance.param);
-                         });
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(every_scenario_and_layout()), [](const auto& instance) {
+  return std::get<0>(instance.param) + "_" + std::get<1>(instance.param);
+});
+
+TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
+  const Scenario s = load_scenario("sweep_block_without_touching_pan");
+  for (const std::string layout : {"cells", "continuous"}) {
+    const double shift = layout == "cells" ? 1e-9 : .03;
+    std::map<std::tuple<bool, bool, bool>, int> seen;  // target's row, target's side, obstacle's side
+    for (int i = 0; i < many; ++i) {
+      const Scene scene = sample_scene(s, test_request(layout), i);
+      const SceneObject &target = *scene.find(Role::target), &obstacle = *scene.find(Role::obstacle);
+      const Vec2 at = target.position_m;
+      const bool low_row = at.x < .5, left = at.y < 0, barred_left = obstacle.position_m.y < at.y;
+      const double row = low_row ? .375 : .625;
+      EXPECT_LE(std::abs(at.x - row), shift);
+      EXPECT_LE(std::abs(at.y - (left ? -.05 : .05)), shift);
+      EXPECT_EQ(obstacle.position_m.x, row);
+      EXPECT_NEAR(obstacle.position_m.y, at.y + (barred_left ? -.21 : .21), 1e-12);
+      EXPECT_EQ(layout == "cells", target.yaw_rad == 0);
+      for (const SceneObject* d : of_role(scene, Role::distractor)) {
+        EXPECT_EQ(d->position_m.x, 1 - row);
+        EXPECT_EQ(std::abs(d->position_m.y), .16);
+      }
+      ++seen[{low_row, left, barred_left}];
+    }
+    EXPECT_EQ(seen.size(), 8u);
+    for (const auto& [place, count] : seen) EXPECT_NEAR(count, many / 8.0, 130);
+  }
+}
+
+TEST(Sampler, SweepTakesItsObstacleFromTheSelection) {
+  const Scenario s = load_scenario("sweep_block_without_touching_pan");
+  Selection wrong = s.truth;
+  wrong.avoid = FeatureSet{{"frame", "star"}, {"red"}};
+  std::set<std::string> obstacles;
+  for (int i = 0; i < 200; ++i) {
+    const Scene train = sample_scene(s, train_request(wrong, "cells"), i);
+    obstacles.insert(train.find(Role::obstacle)->object_type);
+    for (const SceneObject* d : of_role(train, Role::distractor))
+      EXPECT_FALSE(wrong.avoid->contains(d->object_type, d->texture));
+    EXPECT_EQ(sample_scene(s, test_request("cells"), i).find(Role::obstacle)->object_type, "pan");
+  }
+  EXPECT_EQ(obstacles, (std::set<std::string>{"frame", "star"}));
+  wrong.avoid.reset();
+  EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
+  wrong = s.truth;
+  wrong.target.object_types = {"frame"};  // wider than the spatula
+  EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
+}
 
 // A Selection that differs from the truth of "heart" in types and textures.
 Selection hearts_and_stars(const Scenario& s) {

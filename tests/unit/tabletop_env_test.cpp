@@ -1,6 +1,7 @@
 // The tabletop over MuJoCo: the oracle succeeds, failures are typed, and an episode depends on its scene alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -122,11 +123,10 @@ struct Case {
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.layout; }
 
-std::vector<Case> pick_and_place_cases() {
+std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::string& id : scenario_ids())
-    if (const Scenario scenario = load_scenario(id); scenario.command.task == Task::pick_and_place)
-      for (const std::string& layout : layouts(scenario.command.task)) cases.push_back({id, layout});
+    for (const std::string& layout : layouts(load_scenario(id).command.task)) cases.push_back({id, layout});
   return cases;
 }
 
@@ -147,7 +147,7 @@ TEST_P(Oracle, Succeeds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, Oracle, testing::ValuesIn(pick_and_place_cases()),
+INSTANTIATE_TEST_SUITE_P(Scenarios, Oracle, testing::ValuesIn(all_cases()),
                          [](const testing::TestParamInfo<Case>& c) { return c.param.scenario + "_" + c.param.layout; });
 
 TEST(Tabletop, TheOracleCarriesEveryTypeFromEveryYawOntoTheGoal) {
@@ -176,8 +176,99 @@ TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
     }
 }
 
-TEST(Tabletop, AnEpisodeDependsOnItsSceneAlone) {
-  const Scenario scenario = load_scenario("something_to_drink_water_out_of");
+// 0: distractor (id 1), 1: obstacle (id 2), 2: target (id 3); the right side, y > 0, is free.
+Scene sweep(const std::string& type = "block", const std::string& obstacle = "pan") {
+  Scene scene;
+  scene.task = Task::sweep;
+  scene.objects = {object("heart", "blue", Role::distractor, {.625, .16}, 1),
+                   object(obstacle, "green", Role::obstacle, {.375, -.16}, 2),
+                   object(type, "red", Role::target, {.375, .05}, 3)};
+  scene.objects[1].yaw_rad = pi / 2;
+  return scene;
+}
+
+TEST(Sweep, TheOracleBringsTheCentreToTheMiddleOfTheFreeZone) {
+  for (const std::string type : {"block", "small block", "shorter block", "L-shaped block"}) {
+    const Episode episode = play(environment(), sweep(type));
+    EXPECT_TRUE(episode.result.is_success) << type << ": " << to_string(episode.result.failure);
+    const Vec2 reached = centre_of(sweep(type).objects[2], bench().world->pose(2));
+    EXPECT_NEAR(reached.y, .41, .03) << type;
+    EXPECT_NEAR(reached.x, .375, .03) << type;
+    EXPECT_NEAR(bench().world->pose(2).position_m.z, 0, 1e-3) << type << " has toppled";
+    EXPECT_LT(norm(centre_of(sweep(type).objects[1], bench().world->pose(1)) - Vec2{.375, -.16}), 1e-6);
+  }
+}
+
+TEST(Sweep, FailuresAreTyped) {
+  const auto outcome = [](const Scene& scene, Vec2 from, Vec2 to) {
+    environment().reset(scene);
+    return environment().step(from_to(from, to)).failure;
+  };
+  EXPECT_EQ(outcome(sweep(), {.375, -.03}, {.375, .2}), Failure::missed_zone);
+  EXPECT_EQ(outcome(sweep(), {.5, -.03}, {.5, .3}), Failure::missed_object);
+  EXPECT_EQ(outcome(sweep(), {.625, .05}, {.625, .37}), Failure::wrong_object);
+  EXPECT_EQ(outcome(sweep(), {.375, -.01}, {.375, .5}), Failure::left_workspace);
+  for (const std::string obstacle : {"pan", "line"}) {
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, -.15}), Failure::touched_obstacle) << obstacle;
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, -.16}, {.375, .37}), Failure::touched_obstacle)
+        << obstacle << ": the spatula comes down on it";
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, .02}), Failure::missed_zone) << obstacle;
+  }
+}
+
+TEST(Sweep, AThinObstacleCountsWithoutContact) {
+  Scene scene = sweep("block", "line");
+  environment().reset(scene);
+  const StepResult result = environment().step(from_to({.375, .13}, {.375, -.37}));
+  EXPECT_EQ(result.failure, Failure::touched_obstacle);
+  // In the zone on the barred side: but for the touch, a success.
+  EXPECT_NEAR(centre_of(scene.objects[2], bench().world->pose(2)).y, -.41, .03);
+}
+
+TEST(Sweep, TheSpatulaComesDownOnAnyObjectWithoutHarm) {
+  for (const std::string& type : object_types()) {
+    Scene scene = sweep();
+    scene.objects[0] = object(type, "blue", Role::distractor, {.6, .25}, 1);
+    for (const Vec2 to : {Vec2{.6, -.2}, Vec2{.65, .45}, Vec2{.6, .25}}) {
+      environment().reset(scene);
+      StepResult result;
+      EXPECT_NO_THROW(result = environment().step(from_to({.6, .25}, to))) << type;
+      EXPECT_FALSE(result.truncated) << type;
+      const Pose reached = bench().world->pose(0);
+      EXPECT_LT(std::abs(reached.position_m.z), .15) << type << " was thrown";
+    }
+  }
+}
+
+TEST(Sweep, ATouchIsRememberedAfterASecondAction) {
+  environment().reset(sweep());
+  EXPECT_EQ(environment().step(from_to({.375, -.16}, {.375, -.16})).failure, Failure::touched_obstacle);
+  EXPECT_EQ(environment().step(environment().expert_action()).failure, Failure::touched_obstacle);
+  environment().reset(sweep());
+  EXPECT_EQ(environment().step(from_to({.375, -.03}, {.375, .1})).failure, Failure::missed_zone);
+  EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
+}
+
+TEST(Sweep, ZonesAreSeenInTheColoursOnly) {
+  Scene scene = sweep();
+  const Observation zones = environment().reset(scene);
+  scene.task = Task::rotate;
+  const Observation plain = environment().reset(scene);
+  EXPECT_EQ(zones.ids, plain.ids);
+  EXPECT_EQ(zones.instances.size(), 3u);
+  for (int column = 0; column < Observation::columns; ++column) {
+    const double y = (column + .5) / Observation::columns - .5;
+    const auto first = static_cast<std::ptrdiff_t>(3 * column);  // of row 0, which holds no object
+    EXPECT_EQ(std::abs(y) >= .34 && std::abs(y) <= .48,
+              !std::equal(zones.rgb.begin() + first, zones.rgb.begin() + first + 3, plain.rgb.begin() + first))
+        << y;
+  }
+}
+
+class AnyTask : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyTask, AnEpisodeDependsOnItsSceneAlone) {
+  const Scenario scenario = load_scenario(GetParam());
   const auto scene = [&](int i) {
     return sample_scene(scenario, {scenario.truth, "continuous", "test", "test", 5}, i);
   };
@@ -187,6 +278,10 @@ TEST(Tabletop, AnEpisodeDependsOnItsSceneAlone) {
   const Bench other = make_bench();
   expect_same(play(*other.environment, scene(3)), first[3]);
 }
+
+INSTANTIATE_TEST_SUITE_P(Tasks, AnyTask,
+                         testing::Values("something_to_drink_water_out_of", "rotate_block",
+                                         "sweep_block_without_touching_pan"));
 
 TEST(Tabletop, ANumberThatIsNotOneIsTheMethodsFault) {
   const Observation before = environment().reset(bring());

@@ -132,5 +132,64 @@ TEST(Rotate, TheTargetStaysAndDistractorsAreNotDisturbed) {
   EXPECT_EQ(judge(scene, poses, took_target), Failure::bad_placement);
 }
 
+// 0: distractor, 1: target, 2: obstacle.
+Scene sweep(const std::string& barred = "pan") {
+  Scene scene;
+  scene.task = Task::sweep;
+  scene.objects = {object("heart", Role::distractor, {.6, .16}, 1), object("block", Role::target, {.375, .05}, 2),
+                   object(barred, Role::obstacle, {.375, -.16}, 3)};
+  scene.objects[2].yaw_rad = pi / 2;
+  return scene;
+}
+
+TEST(Sweep, SucceedsInEitherZone) {
+  const Scene scene = sweep();
+  for (const double side : {-1.0, 1.0}) {
+    const auto at = [&](double y) { return judge_moved(scene, 1, {.3, side * y}, 1, took_target); };
+    EXPECT_EQ(at(.3399), Failure::missed_zone);
+    EXPECT_EQ(at(.3401), Failure::none);
+    EXPECT_EQ(at(.4799), Failure::none);
+    EXPECT_EQ(at(.4801), Failure::missed_zone);
+    EXPECT_EQ(at(.51), Failure::left_workspace);
+  }
+}
+
+TEST(Sweep, SaysWhatWentWrong) {
+  const Scene scene = sweep();
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
+  EXPECT_EQ(judge(scene, start(scene), took_distractor), Failure::wrong_object);
+  EXPECT_EQ(judge(scene, start(scene), {2, true, true}), Failure::touched_obstacle);
+  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, true, true}), Failure::touched_obstacle);
+  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, false, true}), Failure::truncated);
+}
+
+TEST(Sweep, TouchingIsContactOrOverlapSeenFromAbove) {
+  const Scene scene = sweep("line");
+  auto poses = start(scene);
+  const auto touches = [&](const std::vector<Contact>& contacts, const std::vector<Polygon>& spatula = {}) {
+    return touches_obstacle(scene, poses, contacts, spatula);
+  };
+  EXPECT_FALSE(touches({{0, 2}, {2, table_body}, {1, table_body}, {1, spatula_body}, {0, 1}}));
+  EXPECT_TRUE(touches({{1, 2}}));
+  EXPECT_TRUE(touches({{2, 1}}));
+  EXPECT_TRUE(touches({{spatula_body, 2}}));
+  poses[1].position_m = {.375, -.16 + .02 + .035 + 1e-4, 0};
+  EXPECT_FALSE(touches({}));
+  poses[1].position_m.y -= 2e-4;
+  EXPECT_TRUE(touches({}));
+  poses = start(scene);
+  const auto strip = [](double y) {
+    return std::vector<Polygon>{{{.3, y - .01}, {.45, y - .01}, {.45, y + .01}, {.3, y + .01}}};
+  };
+  EXPECT_FALSE(touches({}, strip(-.16 + .0301)));
+  EXPECT_TRUE(touches({}, strip(-.16 + .0299)));
+}
+
+TEST(Sweep, NeedsATargetAndAnObstacle) {
+  Scene scene = sweep();
+  scene.objects[2].role = Role::distractor;
+  EXPECT_THROW(touches_obstacle(scene, start(scene), {}, {}), InputError);
+}
+
 }  // namespace
 }  // namespace lgabench::tabletop
