@@ -221,15 +221,6 @@ TEST(Sweep, FailuresAreTyped) {
   }
 }
 
-TEST(Sweep, AThinObstacleCountsWithoutContact) {
-  Scene scene = sweep("block", "line");
-  environment().reset(scene);
-  const StepResult result = environment().step(from_to({.375, .13}, {.375, -.37}));
-  EXPECT_EQ(result.failure, Failure::touched_obstacle);
-  // In the zone on the barred side: but for the touch, a success.
-  EXPECT_NEAR(centre_of(scene.objects[2], bench().world->pose(2)).y, -.41, .03);
-}
-
 TEST(Sweep, TheSpatulaComesDownOnAnyObjectWithoutHarm) {
   for (const std::string& type : object_types()) {
     Scene scene = sweep();
