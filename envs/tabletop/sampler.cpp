@@ -24,7 +24,7 @@ struct Layout {
   std::vector<Vec2> target_places, distractor_places;
   std::optional<Vec2> pallet = {};
   double widest_m = unbounded, widest_target_m = unbounded;
-  double shift_m = 0;  // sweep: the target stands up to this far from its place, at any yaw
+  double shift_m = 0;  // sweep: the target stands up to this far from its place
   static constexpr double unbounded = std::numeric_limits<double>::infinity();
 };
 
@@ -236,7 +236,6 @@ void place_for_sweep(const Layout& layout, std::vector<SceneObject>& objects, Ra
   if (layout.shift_m > 0) {
     target.position_m.x += random.uniform(-layout.shift_m, layout.shift_m);
     target.position_m.y += random.uniform(-layout.shift_m, layout.shift_m);
-    target.yaw_rad = random.uniform(-pi, pi);
   }
   double distractor_side = others.coin() ? 1 : -1;
   for (SceneObject& object : objects) {

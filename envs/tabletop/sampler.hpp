@@ -19,7 +19,7 @@ struct SceneRequest {
 
 /// Scene number `index`. Layout, target features, distractors and ids come from separate random streams, so that two
 /// distributions share target places. (In `continuous`, where a target's shape does not fit, the next place is tried.
-/// For sweep it shifts and turns the target only.)
+/// For sweep it shifts the target only.)
 /// @throws InputError where layout, split or arm is unknown, or the distribution holds nothing that the layout can
 /// show.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);

@@ -43,7 +43,8 @@ Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario) {
   request.distribution = scenario.truth;
   request.layout = "cells";
   request.split = "test";
-  const Observation seen = renderer.render(tabletop::visible_objects(sample_scene(scenario, request, 0)));
+  const Scene scene = sample_scene(scenario, request, 0);
+  const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
   const auto mask = goal_mask(seen, scenario.truth);
   Tile tile{fmt::format("`{}`: {}", scenario.id, scenario.command.utterance),
             2 * Observation::columns,

@@ -68,7 +68,7 @@ void render(const Arguments& arguments) {
   const Scene scene = sample_scene(scenario, request, arguments.index);
 
   tabletop::Renderer renderer;
-  const Observation seen = renderer.render(tabletop::visible_objects(scene), ground_of(scene));
+  const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
   const std::vector<std::uint8_t> mask = goal_mask(seen, scenario.truth);
 
   Panels panels(3);
