@@ -23,7 +23,7 @@ Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {
 
 TEST(Suite, q1) {
   const Suite suite = load_suite("q1");
-  EXPECT_EQ(suite.grid.scenarios.size(), 9u);
+  EXPECT_EQ(suite.grid.scenarios.size(), 13u);
   EXPECT_EQ(suite.grid.demonstrations, (std::vector<int>{10, 20, 30, 40, 50}));
   const Grid smoke = preset_grid(suite, "smoke");
   EXPECT_TRUE(smoke.smoke);

@@ -223,7 +223,7 @@ TEST(Sweep, FailuresAreTyped) {
 }
 
 TEST(Sweep, TheSpatulaComesDownOnAnyObjectWithoutHarm) {
-  for (const std::string& type : object_types()) {
+  for (const std::string& type : load_feature_space("tabletop").object_types) {
     Scene scene = sweep();
     scene.objects[0] = object(type, "blue", Role::distractor, {.6, .25}, 1);
     for (const Vec2 to : {Vec2{.6, -.2}, Vec2{.65, .45}, Vec2{.6, .25}}) {
