@@ -209,6 +209,13 @@ TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
   EXPECT_SAYS(page, "| cells | mujoco | LGA | 1 | 0.25 | 0.50 | 1.00 | 4.00 | 2.00 | 7.75 |");
 }
 
+TEST(Report, ShortNamesLeaveTheHeadOfTheTableReadable) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.save();
+  EXPECT_SAYS(report::table_text(run.path), "demonstrations  ");
+}
+
 TEST(Report, CsvHoldsTheRows) {
   FabricatedRun run;
   run.add({"lga", 15, "heart, or \"not\""});

@@ -18,7 +18,8 @@ std::string padded(const std::string& text, std::size_t width) {
 
 std::string block(const Table& table) {
   const std::vector<int> columns = table.demonstrations();
-  std::size_t first = 0, wide = 0;
+  const std::string title = "demonstrations";
+  std::size_t first = title.size() - 2, wide = 0;  // the title has no indent
   for (const Row& row : table.rows) {
     first = std::max(first, display_width(display_name(row.method)));
     wide = std::max(wide, display_width(success_text(&row)));
@@ -27,7 +28,7 @@ std::string block(const Table& table) {
 
   std::string text;
   const auto add = [&text](std::string row) { text += row.erase(row.find_last_not_of(' ') + 1) + '\n'; };
-  std::string head = padded("demonstrations", first);
+  std::string head = padded(title, first);
   for (const int n : columns) head += padded(std::to_string(n), wide);
   add(head);
   const auto line = [&](const std::string& scenario, const std::string& id) {
