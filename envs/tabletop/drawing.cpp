@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace lgabench::tabletop {
-namespace {
-
-constexpr double pi = 3.14159265358979323846;
-
-}  // namespace
-
 Vec2 polar(Vec2 centre, double radius, double degrees) {
   return centre + Vec2{radius * std::cos(degrees * pi / 180), radius * std::sin(degrees * pi / 180)};
 }

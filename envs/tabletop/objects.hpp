@@ -30,6 +30,9 @@ struct ObjectModel {
   Vec2 grasp_m;         // where suction takes hold: on material, at least .01 from an edge where the type allows
 };
 
+/// What things are brought to: fixed to the table, and never anything else in a scene.
+constexpr const char* goal_type = "pallet";
+
 /// The model of an object type; lives as long as the program. @throws InputError for an unknown type.
 const ObjectModel& object_model(const std::string& type);
 

@@ -11,8 +11,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Where suction would take this object: its grasp point, else the nearest point around it where it is topmost.
 Vec2 reachable_grasp(const SceneObject& object, const Pose& pose, const PhysicsWorld& world, int body) {
   const ObjectModel& model = object_model(object.object_type);

@@ -11,7 +11,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr Rgb white{255, 255, 255}, black{20, 20, 20};
 
 // --- colours

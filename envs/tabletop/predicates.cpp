@@ -13,7 +13,6 @@ namespace {
 constexpr double near_m = 0.1;          // of the goal's centre, or of where a rotated target was
 constexpr double undisturbed_m = 0.02;  // rotate: how far a distractor may move
 constexpr double angle_tolerance_deg = 15;
-constexpr double pi = 3.14159265358979323846;
 
 struct Final {
   const SceneObject& object;

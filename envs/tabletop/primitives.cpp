@@ -7,7 +7,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double lift_m = 0.1;
 constexpr double carry_speed = 3, lower_speed = 0.5, turn_speed = 12;  // greatest ones: m/s, m/s, rad/s
 constexpr double push_speed = 0.25;     // m/s: pushed faster, an L-shaped block now and then turns away from the blade

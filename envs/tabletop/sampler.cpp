@@ -13,9 +13,8 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double margin_m = 0.02;  // between outlines
-const std::string goal_type = "pallet", goal_texture = "wooden";
+constexpr const char* goal_texture = "wooden";
 
 // Where objects of a task may stand. Without places: anywhere, at any yaw.
 struct Layout {

@@ -6,7 +6,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double thick = 0.036;  // of letters, and of other flat shapes
 constexpr double stroke = 0.03;  // of letters: suction needs .01 on either side
 

@@ -79,8 +79,6 @@ class Tabletop final : public Environment {
   }
 
  private:
-  static constexpr const char* goal_type = "pallet";  // fixed to the table
-
   Motion carry_out(const Action& action) {
     switch (scene_.task) {
       case Task::pick_and_place:

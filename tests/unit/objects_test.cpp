@@ -16,7 +16,7 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double tolerance = 1e-9, pi = 3.14159265358979323846;
+constexpr double tolerance = 1e-9;
 
 double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 Vec2 xy(Vec3 p) { return {p.x, p.y}; }

@@ -13,7 +13,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int rows = Observation::rows, columns = Observation::columns;
 constexpr double pixel_m = 1.0 / 256;
 

@@ -17,8 +17,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// The engine, with an eye kept on the bodies that the environment does not show.
 class WatchedWorld : public PhysicsWorld {
  public:

@@ -11,8 +11,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 SceneObject object(const std::string& type, Role role, Vec2 position, std::uint8_t id) {
   SceneObject o;
   o.object_type = type;

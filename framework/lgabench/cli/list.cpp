@@ -16,16 +16,14 @@ constexpr const char* sections[] = {"methods", "engines", "suites", "scenarios"}
 
 // Shipped suites with what each says it is for, sorted by id.
 Json suites() {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (fs::directory_iterator it(data_directory() / "suites", error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".json") files.push_back(it->path());
-  std::sort(files.begin(), files.end());
+  const fs::path directory = data_directory() / "suites";
+  std::error_code none_to_list;
   Json all = Json::array();
-  for (const fs::path& file : files) {
+  for (const std::string& id : json_names(directory, none_to_list)) {
+    const fs::path file = directory / (id + ".json");
     const Json suite = read_json(file);
     const JsonReader reader(suite, file.string());
-    all.push_back({{"id", file.stem().string()}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
+    all.push_back({{"id", id}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -69,6 +70,14 @@ void write_file(const fs::path& file, std::string_view bytes) {
     errno = reason;
     fail(file, "cannot be written");
   }
+}
+
+std::vector<std::string> json_names(const fs::path& directory, std::error_code& error) {
+  std::vector<std::string> names;
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".json") names.push_back(it->path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 void sync_directory(const fs::path& directory) {

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
+#include <vector>
 
 namespace lgabench {
 
@@ -14,6 +16,10 @@ std::string read_file(const fs::path& file);
 /// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, never a part.
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
 void write_file(const fs::path& file, std::string_view bytes);
+
+/// Names, without their ending, of the .json files in a directory, sorted; as many as could be read where `error` is
+/// set.
+std::vector<std::string> json_names(const fs::path& directory, std::error_code& error);
 
 /// fsync of a directory, so that a rename in it survives a power cut.
 void sync_directory(const fs::path& directory);

@@ -4,6 +4,8 @@
 
 namespace lgabench {
 
+constexpr double pi = 3.14159265358979323846;
+
 struct Vec2 {
   double x = 0, y = 0;
 };

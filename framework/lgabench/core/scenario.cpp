@@ -45,12 +45,8 @@ Scenario read_scenario(const Json& json, const std::string& file) {
 }
 
 std::vector<std::string> scenario_ids() {
-  std::vector<std::string> ids;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(data_directory() / "scenarios", error))
-    if (entry.path().extension() == ".json") ids.push_back(entry.path().stem().string());
-  std::sort(ids.begin(), ids.end());
-  return ids;
+  std::error_code none_to_list;
+  return json_names(data_directory() / "scenarios", none_to_list);
 }
 
 Scenario load_scenario(const std::string& id) {

@@ -13,13 +13,10 @@ namespace {
 
 // SHA-256 over the names and contents of a folder's JSON files.
 std::string folder_hash(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::error_code none_to_hash;
   std::string lines;
-  for (const fs::path& file : files) lines += file.filename().string() + ' ' + sha256_file(file) + '\n';
+  for (const std::string& name : json_names(folder, none_to_hash))
+    lines += fmt::format("{}.json {}\n", name, sha256_file(folder / (name + ".json")));
   return sha256(lines);
 }
 

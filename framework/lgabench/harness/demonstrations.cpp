@@ -13,8 +13,6 @@
 namespace lgabench {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 PlanarPose disturbed(const PlanarPose& pose, double sigma, RandomStream& stream) {
   const double dx = .25 * sigma * stream.gaussian(), dy = .5 * sigma * stream.gaussian();
   const double yaw_rad = pi * sigma * stream.gaussian();

@@ -39,15 +39,6 @@ std::vector<std::string> names(const JsonReader& list, const std::vector<std::st
 const std::vector<std::string> grid_members{"scenarios", "layouts",  "engines",    "methods", "demonstrations",
                                             "seeds",     "episodes", "scene_seed", "smoke"};
 
-std::vector<std::string> suite_ids() {
-  std::vector<std::string> ids;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(data_directory() / "suites", error))
-    if (entry.path().extension() == ".json") ids.push_back(entry.path().stem().string());
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
 }  // namespace
 
 Json to_json(const Grid& grid) {
@@ -78,7 +69,8 @@ Grid apply(const JsonReader& overrides, Grid grid) {
 
 Suite load_suite(const std::string& id) {
   const bool is_file = fs::path(id).extension() == ".json";
-  const auto known = suite_ids();
+  std::error_code none_to_list;
+  const auto known = json_names(data_directory() / "suites", none_to_list);
   if (!is_file && std::find(known.begin(), known.end(), id) == known.end())
     throw InputError(fmt::format("suite \"{}\": expected one of: {}, or a .json file", id, fmt::join(known, ", ")));
   const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");

@@ -13,13 +13,11 @@ namespace lgabench {
 SentenceEmbeddings::SentenceEmbeddings() {
   const fs::path directory = data_directory() / "embeddings";
   std::error_code error;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(directory, error))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  const std::vector<std::string> names = json_names(directory, error);
   if (error) throw InputError(fmt::format("{}: cannot be read: {}", directory.string(), error.message()));
-  std::sort(files.begin(), files.end());
 
-  for (const fs::path& file : files) {
+  for (const std::string& name : names) {
+    const fs::path file = directory / (name + ".json");
     const Json document = read_json(file);
     const JsonReader embeddings = JsonReader(document, file.string()).at("embeddings");
     for (const auto& item : embeddings.json().items()) {
