@@ -67,47 +67,55 @@ Vec2 centre_of(const SceneObject& object, const Pose& pose) {
 
 bool touches_obstacle(const Scene& scene, const std::vector<Pose>& poses, const std::vector<Contact>& contacts,
                       const std::vector<Polygon>& spatula) {
-  const auto index_of = [&](Role role) {
-    const auto has = [role](const SceneObject& o) { return o.role == role; };
-    const auto found = std::find_if(scene.objects.begin(), scene.objects.end(), has);
-    if (found == scene.objects.end()) throw InputError("scene: expected an object to be " + to_string(role));
-    return static_cast<int>(found - scene.objects.begin());
+  for (const Role role : {Role::target, Role::obstacle})
+    if (!scene.find(role)) throw InputError("scene: expected an object to be " + to_string(role));
+  const auto role_of = [&](int body) {
+    return body < 0 ? Role::distractor : scene.objects[static_cast<std::size_t>(body)].role;
   };
-  const int target = index_of(Role::target), obstacle = index_of(Role::obstacle);
+  const auto moves = [&](int body) { return body == spatula_body || role_of(body) == Role::target; };
   const auto is_touch = [&](const Contact& c) {
-    const int other = c.a == obstacle ? c.b : c.a;
-    return (c.a == obstacle || c.b == obstacle) && (other == target || other == spatula_body);
+    return (role_of(c.a) == Role::obstacle && moves(c.b)) || (role_of(c.b) == Role::obstacle && moves(c.a));
   };
   if (std::any_of(contacts.begin(), contacts.end(), is_touch)) return true;
 
-  const auto outline = [&](int i) {
-    const Pose& pose = poses[static_cast<std::size_t>(i)];
-    const ObjectModel& model = object_model(scene.objects[static_cast<std::size_t>(i)].object_type);
-    return placed_outline(model, {pose.position_m.x, pose.position_m.y}, yaw_of(pose.rotation));
-  };
-  const auto barred = outline(obstacle);
-  return distance(barred, outline(target)) <= 0 || (!spatula.empty() && distance(barred, spatula) <= 0);
+  std::vector<std::vector<Polygon>> barred, moving;
+  if (!spatula.empty()) moving.push_back(spatula);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const auto outline = [&] {
+      return placed_outline(object_model(scene.objects[i].object_type), {poses[i].position_m.x, poses[i].position_m.y},
+                            yaw_of(poses[i].rotation));
+    };
+    if (scene.objects[i].role == Role::obstacle) barred.push_back(outline());
+    if (scene.objects[i].role == Role::target) moving.push_back(outline());
+  }
+  for (const auto& a : barred)
+    for (const auto& b : moving)
+      if (distance(a, b) <= 0) return true;
+  return false;
 }
 
 Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& motion) {
   std::vector<Final> finals;
-  const Final* target = nullptr;
   finals.reserve(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+  for (std::size_t i = 0; i < poses.size(); ++i)
     finals.push_back({scene.objects[i], centre_of(scene.objects[i], poses[i]), yaw_of(poses[i].rotation)});
-    if (scene.objects[i].role == Role::target) target = &finals.back();
-  }
-  if (!target) throw InputError("scene: expected a target");
+  if (!scene.find(Role::target)) throw InputError("scene: expected a target");
 
   if (!motion.came_to_rest) return Failure::truncated;
   for (const Final& f : finals)
     if (!Workspace::contains(f.centre_m)) return Failure::left_workspace;
-  const Failure failure = judge_task(scene, *target, finals, motion);
-  if (failure == Failure::none || failure == Failure::touched_obstacle) return failure;
-  // Why the state is not right: what was taken says more than where it went.
-  if (motion.taken == no_body) return Failure::missed_object;
-  if (&scene.objects[static_cast<std::size_t>(motion.taken)] != &target->object) return Failure::wrong_object;
-  return failure;
+  // Any target is right; which one was taken says more of a failure than where the others went.
+  const SceneObject* const taken =
+      motion.taken == no_body ? nullptr : &scene.objects[static_cast<std::size_t>(motion.taken)];
+  Failure of_taken = Failure::none;
+  for (const Final& f : finals) {
+    if (f.object.role != Role::target) continue;
+    const Failure failure = judge_task(scene, f, finals, motion);
+    if (failure == Failure::none || failure == Failure::touched_obstacle) return failure;
+    if (&f.object == taken) of_taken = failure;
+  }
+  if (!taken) return Failure::missed_object;
+  return taken->role == Role::target ? of_taken : Failure::wrong_object;
 }
 
 }  // namespace lgabench::tabletop

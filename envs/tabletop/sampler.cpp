@@ -2,62 +2,16 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <optional>
+#include <iterator>
 
 #include <lgabench/core/random.hpp>
 #include <tabletop/objects.hpp>
+#include <tabletop/placement.hpp>
 
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double margin_m = 0.02;  // between outlines
 constexpr const char* goal_texture = "wooden";
-
-// Where objects of a task may stand. Without places: anywhere, at any yaw.
-struct Layout {
-  Task task;
-  std::string id;
-  std::vector<Vec2> target_places, distractor_places;
-  std::optional<Vec2> pallet = {};
-  double widest_m = unbounded, widest_target_m = unbounded;
-  double shift_m = 0;  // sweep: the target stands up to this far from its place
-  static constexpr double unbounded = std::numeric_limits<double>::infinity();
-};
-
-// The spatula is .12 wide: wider targets slip off it. Obstacle and distractors stand where the target's place says.
-Layout sweep_layout(const std::string& id, double shift_m) {
-  const std::vector<Vec2> places{{.375, -.05}, {.375, .05}, {.625, -.05}, {.625, .05}};
-  return {Task::sweep, id, places, {}, {}, Layout::unbounded, .145, shift_m};
-}
-
-const std::vector<Layout>& all_layouts() {
-  constexpr Vec2 pallet{.5, .3};
-  static const std::vector<Vec2> cells{{.375, -.36}, {.625, -.36}, {.375, -.06}, {.625, -.06}};
-  static const std::vector<Vec2> rotate_cells{{.40, -.35}, {.60, -.115}, {.40, .115}, {.60, .35}};
-  static const std::vector<Layout> all{{Task::pick_and_place, "cells", cells, cells, pallet},
-                                       {Task::pick_and_place, "continuous", {}, {}, pallet},
-                                       {Task::pick_and_place,
-                                        "released",
-                                        {{.34375, -.265625}, {.34375, .125}},
-                                        {{.34375, .125}, {.625, -.265625}},
-                                        Vec2{.625, .125},
-                                        .17},
-                                       {Task::rotate, "cells", rotate_cells, rotate_cells},
-                                       {Task::rotate, "continuous", {}, {}},
-                                       sweep_layout("cells", 0),
-                                       sweep_layout("continuous", .03)};
-  return all;
-}
-
-const Layout& find_layout(Task task, const std::string& id) {
-  for (const Layout& layout : all_layouts())
-    if (layout.task == task && layout.id == id) return layout;
-  throw InputError(
-      fmt::format("layout \"{}\": expected one of {} has: {}", id, to_string(task), fmt::join(layouts(task), ", ")));
-}
 
 // A second pallet would be a second goal.
 bool can_show(const std::string& type, double widest_m) {
@@ -115,138 +69,101 @@ std::vector<std::pair<std::size_t, std::size_t>> outside(const FeatureSpace& spa
   return pairs;
 }
 
+// What a scene holds, and what is meant by the command that it is for.
+struct Request {
+  const Scenario& scenario;
+  const Layout& layout;
+  const SceneContent& content;
+  bool training;
+  Selection meant;  // distractors stay out of it
+};
+
 // PROTOCOL, section 3: objects that don't satisfy the command.
-std::vector<Features> sample_distractors(const Scenario& scenario, const Layout& layout, const Selection& distribution,
-                                         bool training, const std::string& target_type, RandomStream random) {
-  const FeatureSpace& space = scenario.space;
-  std::vector<const FeatureSet*> excluded{&distribution.target};
-  if (distribution.avoid) excluded.push_back(&*distribution.avoid);
-  if (!training && scenario.never_distractor) excluded.push_back(&*scenario.never_distractor);
+std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
+  const FeatureSpace& space = request.scenario.space;
+  const SceneContent& content = request.content;
+  std::vector<const FeatureSet*> excluded{&request.meant.target};
+  if (request.meant.avoid) excluded.push_back(&*request.meant.avoid);
+  if (!request.training && request.scenario.never_distractor) excluded.push_back(&*request.scenario.never_distractor);
 
   // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
-  const bool earliest = scenario.earliest_letter && is_letter(target_type);
+  const bool earliest = content.later_letters && is_letter(target.type);
   std::vector<std::string> later_letters;
   std::vector<bool> allowed;
   for (const std::string& type : space.object_types) {
-    const bool later = is_letter(type) && type > target_type, shown = can_show(type, layout.widest_m);
+    const bool later = is_letter(type) && type > target.type, shown = can_show(type, request.layout.widest_m);
     allowed.push_back(shown && (!earliest || !is_letter(type) || later));
     if (earliest && shown && later) later_letters.push_back(type);
   }
   const auto others = outside(space, excluded, allowed);
+  std::vector<std::pair<std::size_t, std::size_t>> same_type, same_texture;
+  if (content.hard)
+    for (const auto& pair : others) {
+      if (space.object_types[pair.first] == target.type) same_type.push_back(pair);
+      if (space.textures[pair.second] == target.texture) same_texture.push_back(pair);
+    }
 
-  const std::uint32_t count = training ? 1 : 1 + random.below(2);
+  const auto [fewest, most] = content.distractors;
+  const int count =
+      fewest == most ? most : fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<Features> distractors;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (int i = 0; i < count; ++i) {
     if (!later_letters.empty() && random.coin()) {
       const std::string& type = any_of(later_letters, random);
-      distractors.push_back({type, any_of(space.textures, random)});
-    } else if (!others.empty()) {
-      const auto [type, texture] = others[random.below(static_cast<std::uint32_t>(others.size()))];
-      distractors.push_back({space.object_types[type], space.textures[texture]});
+      distractors.push_back({type, content.hard ? target.texture : any_of(space.textures, random)});
+      continue;
     }
+    const auto* from = &others;
+    if (content.hard) {
+      from = random.coin() ? &same_type : &same_texture;
+      if (from->empty()) from = from == &same_type ? &same_texture : &same_type;
+    }
+    if (from->empty()) continue;
+    const auto [type, texture] = (*from)[random.below(static_cast<std::uint32_t>(from->size()))];
+    distractors.push_back({space.object_types[type], space.textures[texture]});
   }
   return distractors;
 }
 
-using Streams = std::function<RandomStream(const std::string& purpose)>;
-
-// The target's place first, then the distractors' without repetition; a distractor that finds no place is left out.
-void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random) {
-  const Vec2 target = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
-  std::vector<Vec2> free;
-  for (const int i : random.permutation(static_cast<int>(layout.distractor_places.size()))) {
-    const Vec2 place = layout.distractor_places[static_cast<std::size_t>(i)];
-    if (norm(place - target) > 0) free.push_back(place);
+// PROTOCOL, section 4 (q3): all types of the choice, in random order, but a target first.
+std::vector<SceneObject> sample_choice(const Request& request, RandomStream random) {
+  const bool sweep = request.layout.task == Task::sweep;
+  const FeatureSet& right = sweep ? *request.meant.avoid : request.meant.target;
+  std::vector<SceneObject> objects;
+  for (const int i : random.permutation(static_cast<int>(request.content.choice.size()))) {
+    const std::string& type = request.content.choice[static_cast<std::size_t>(i)];
+    const std::string& texture = any_of(request.scenario.space.textures, random);
+    const Role if_right = sweep ? Role::obstacle : Role::target;
+    objects.push_back({type, texture, right.contains(type, texture) ? if_right : Role::distractor, {}, 0, 0});
   }
-  objects[0].position_m = target;
-  objects.resize(std::min(objects.size(), 1 + free.size()));
-  for (std::size_t i = 1; i < objects.size(); ++i) objects[i].position_m = free[i - 1];
+  std::stable_partition(objects.begin(), objects.end(), [](const auto& o) { return o.role == Role::target; });
+  return objects;
 }
 
-bool inside_picture(const std::vector<Polygon>& outline) {
-  for (const Polygon& polygon : outline)
-    if (!std::all_of(polygon.begin(), polygon.end(), Workspace::contains)) return false;
-  return true;
-}
+std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream) {
+  const auto& [scenario, layout, content, training, meant] = request;
+  const bool sweep = layout.task == Task::sweep;
+  std::vector<SceneObject> chosen;
+  if (!content.choice.empty()) chosen = sample_choice(request, stream("choice"));
+  if (!chosen.empty() && !sweep) return chosen;
 
-// Uniform place and yaw, kept where it leaves the margin to all that stands: gives the outline there, or nothing.
-std::vector<Polygon> try_place(SceneObject& object, const std::vector<std::vector<Polygon>>& standing,
-                               RandomStream& random) {
-  object.position_m.x = random.uniform(Workspace::x_min, Workspace::x_max);
-  object.position_m.y = random.uniform(Workspace::y_min, Workspace::y_max);
-  object.yaw_rad = random.uniform(-pi, pi);
-  auto outline = placed_outline(object_model(object.object_type), object.position_m, object.yaw_rad);
-  if (!inside_picture(outline)) return {};
-  for (const auto& other : standing)
-    if (distance(outline, other) < margin_m) return {};
-  return outline;
-}
-
-bool place_distractors(std::vector<SceneObject>& objects, std::vector<std::vector<Polygon>> standing,
-                       RandomStream& random) {
-  constexpr int tries = 200;
-  for (std::size_t i = 1; i < objects.size(); ++i) {
-    std::vector<Polygon> outline;
-    for (int k = 0; k < tries && outline.empty(); ++k) outline = try_place(objects[i], standing, random);
-    if (outline.empty()) return false;
-    standing.push_back(std::move(outline));
+  const Features target =
+      sample_features(scenario, layout, content.target.value_or(meant.target),
+                      std::min(layout.widest_m, layout.widest_target_m), "a target", stream("target"));
+  std::vector<SceneObject> objects{{target.type, target.texture, Role::target, {}, 0, 0}};
+  if (!chosen.empty()) {
+    objects.insert(objects.end(), chosen.begin(), chosen.end());
+    return objects;
   }
-  return true;
-}
-
-// What must stay free beside the target itself: where a large one reaches beyond the pallet that it is brought to, or
-// the disc that a rotation sweeps.
-std::vector<Polygon> room_for_motion(const Layout& layout, const SceneObject& target) {
-  const ObjectModel& model = object_model(target.object_type);
-  if (layout.pallet) return placed_outline(model, *layout.pallet, target.yaw_rad);
-  constexpr int corners = 32;
-  Polygon disc;
-  for (int i = 0; i < corners; ++i)  // around the disc, not in it
-    disc.push_back(target.position_m + rotated({model.radius_m / std::cos(pi / corners), 0}, 2 * pi * i / corners));
-  return {disc};
-}
-
-void place_freely(const Layout& layout, std::vector<SceneObject>& objects, const Streams& stream) {
-  constexpr int tries = 10000;
-  RandomStream random = stream("layout"), others = stream("layout of distractors");
-  std::vector<std::vector<Polygon>> standing;
-  if (layout.pallet) standing.push_back(placed_outline(object_model(goal_type), *layout.pallet, 0));
-  for (int k = 0; k < tries; ++k) {
-    auto outline = try_place(objects[0], standing, random);
-    if (outline.empty()) continue;
-    auto room = room_for_motion(layout, objects[0]);
-    if (!inside_picture(room)) continue;
-    auto with_target = standing;
-    with_target.push_back(std::move(outline));
-    with_target.push_back(std::move(room));
-    if (place_distractors(objects, std::move(with_target), others)) return;
+  for (const Features& d : sample_distractors(request, target, stream("distractors")))
+    objects.push_back({d.type, d.texture, Role::distractor, {}, 0, 0});
+  if (sweep) {
+    const Features obstacle =
+        sample_features(scenario, layout, content.avoid ? *content.avoid : meant.avoid.value_or(FeatureSet{}),
+                        layout.widest_m, "an obstacle", stream("obstacle"));
+    objects.push_back({obstacle.type, obstacle.texture, Role::obstacle, {}, 0, 0});
   }
-  throw Error(fmt::format("layout {}: no room found for {} objects in {} tries", layout.id, objects.size(), tries));
-}
-
-// PROTOCOL, section 3: the obstacle bars one side of the target's row, distractors stand in the other row.
-void place_for_sweep(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random,
-                     RandomStream others) {
-  constexpr double obstacle_away_m = .21, distractor_y_m = .16;
-  const Vec2 place = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
-  const double blocked_side = random.coin() ? 1 : -1;
-  SceneObject& target = objects[0];
-  target.position_m = place;
-  if (layout.shift_m > 0) {
-    target.position_m.x += random.uniform(-layout.shift_m, layout.shift_m);
-    target.position_m.y += random.uniform(-layout.shift_m, layout.shift_m);
-  }
-  double distractor_side = others.coin() ? 1 : -1;
-  for (SceneObject& object : objects) {
-    if (object.role == Role::obstacle) {
-      object.position_m = {place.x, target.position_m.y + blocked_side * obstacle_away_m};
-      object.yaw_rad = pi / 2;
-    }
-    if (object.role == Role::distractor) {
-      object.position_m = {Workspace::x_min + Workspace::x_max - place.x, distractor_side * distractor_y_m};
-      distractor_side = -distractor_side;
-    }
-  }
+  return objects;
 }
 
 // Ids 1..n in random order, the objects sorted by them: neither tells a role.
@@ -256,63 +173,42 @@ void permute_ids(std::vector<SceneObject>& objects, RandomStream random) {
   std::sort(objects.begin(), objects.end(), [](const auto& a, const auto& b) { return a.instance_id < b.instance_id; });
 }
 
-void check(const Scenario& scenario, const SceneRequest& request, int index) {
+void check(const SceneRequest& request, int index) {
   const auto& split = request.split;
   if (split != "train" && split != "dev" && split != "test")
     throw InputError(fmt::format("split \"{}\": expected train, dev or test", split));
-  const auto is_asked = [&](const Arm& arm) { return arm.id == request.arm; };
-  if (request.arm != "train" && std::none_of(scenario.tests.begin(), scenario.tests.end(), is_asked))
-    throw InputError(
-        fmt::format("arm \"{}\": expected train or a test arm of scenario \"{}\"", request.arm, scenario.id));
   if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
+}
+
+const SceneContent& content_of(const Scenario& scenario, const std::string& arm) {
+  for (const Arm& test : scenario.tests)
+    if (test.id == arm) return test.scenes;
+  return scenario.train;
 }
 
 }  // namespace
 
-std::vector<std::string> layouts(Task task) {
-  std::vector<std::string> ids;
-  for (const Layout& layout : all_layouts())
-    if (layout.task == task) ids.push_back(layout.id);
-  return ids;
-}
-
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
-  check(scenario, request, index);
-  const Layout& layout = find_layout(scenario.command.task, request.layout);
-  const bool training = request.arm == "train";
-  const Selection& distribution = training ? request.distribution : scenario.truth;
+  check(request, index);
+  const std::vector<int> commands = scenario.commands_of(request.arm);
+  const auto command = static_cast<std::size_t>(commands[static_cast<std::size_t>(index) % commands.size()]);
+  const SceneContent& content = content_of(scenario, request.arm);
+  const bool asked = content.as_method_asks && !request.selections.empty();
+  const Request what{scenario, find_layout(scenario.task, request.layout), content, request.arm == "train",
+                     asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
   const Streams stream = [&](const std::string& purpose) {
     return RandomStream(fmt::format("scene/{}/{}/{}/{}/{}/{}", scenario.id, request.layout, request.split, request.seed,
                                     index, purpose));
   };
 
-  const Features target =
-      sample_features(scenario, layout, distribution.target, std::min(layout.widest_m, layout.widest_target_m),
-                      "a target", stream("target"));
-  std::vector<SceneObject> objects{{target.type, target.texture, Role::target, {}, 0, 0}};
-  for (const Features& d :
-       sample_distractors(scenario, layout, distribution, training, target.type, stream("distractors")))
-    objects.push_back({d.type, d.texture, Role::distractor, {}, 0, 0});
-  if (scenario.command.task == Task::sweep) {
-    const Features obstacle = sample_features(scenario, layout, distribution.avoid.value_or(FeatureSet{}),
-                                              layout.widest_m, "an obstacle", stream("obstacle"));
-    objects.push_back({obstacle.type, obstacle.texture, Role::obstacle, {}, 0, 0});
-  }
-
-  if (scenario.command.task == Task::sweep)
-    place_for_sweep(layout, objects, stream("layout"), stream("layout of distractors"));
-  else if (layout.target_places.empty())
-    place_freely(layout, objects, stream);
-  else
-    place_on_cells(layout, objects, stream("layout"));
-  if (layout.pallet) objects.push_back({goal_type, goal_texture, Role::goal, *layout.pallet, 0, 0});
-  permute_ids(objects, stream("ids"));
-
-  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.command.task, 0, request.seed,
-              index,       {}};
+  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, 0, request.seed, index, 0, {}};
   scene.angle_rad = scenario.angle_deg * pi / 180;
-  scene.objects = std::move(objects);
+  scene.command = static_cast<int>(command);
+  scene.objects = sample_objects(what, stream);
+  place(what.layout, scene.objects, !content.choice.empty(), stream);
+  if (what.layout.pallet) scene.objects.push_back({goal_type, goal_texture, Role::goal, *what.layout.pallet, 0, 0});
+  permute_ids(scene.objects, stream("ids"));
   return scene;
 }
 

@@ -10,16 +10,18 @@ namespace lgabench::tabletop {
 
 /// All that a scene depends on (PROTOCOL, section 3): not engine, method, thread or host.
 struct SceneRequest {
-  Selection distribution;    // of training targets: a Selection, or the truth; only target and avoid count
-  std::string layout;        // one of layouts(task)
-  std::string split;         // train, dev or test
-  std::string arm = "test";  // of the scenario's tests, which stand on the truth; "train" for training scenes
+  std::string layout;  // one of layouts(task)
+  std::string split;   // train, dev or test
+  std::string arm;     // of the scenario's tests, or "train" for training scenes
   std::uint64_t seed = 0;
+  /// Of training targets and obstacles where the scenario leaves them to the method: one a command, only target and
+  /// avoid count. Empty: the truth.
+  std::vector<Selection> selections = {};
 };
 
 /// Scene number `index`. Layout, target features, distractors and ids come from separate random streams, so that two
-/// distributions share target places. (In `continuous`, where a target's shape does not fit, the next place is tried.
-/// For sweep it shifts the target only.)
+/// distributions, and a scenario's arms, share target places. (In `continuous`, where a target's shape does not fit,
+/// the next place is tried. For sweep it shifts the target only.)
 /// @throws InputError where layout, split or arm is unknown, or the distribution holds nothing that the layout can
 /// show.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);

@@ -14,18 +14,20 @@ namespace {
 
 constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
 
-Scenario scenario(const std::string& id, const std::string& utterance, Task task = Task::pick_and_place,
-                  const std::string& space = "tabletop") {
-  Scenario s;
-  s.id = id;
-  s.command = {utterance, task};
-  s.space = load_feature_space(space);
-  return s;
+struct Asked {
+  std::string id;
+  Command command;
+  FeatureSpace space;
+};
+
+Asked scenario(const std::string& id, const std::string& utterance, Task task = Task::pick_and_place,
+               const std::string& space = "tabletop") {
+  return {id, {utterance, task}, load_feature_space(space)};
 }
 
-Selection ask(const Scenario& s, const std::string& answers = "recorded") {
-  RecordedLanguageModel model(s, answers);
-  return select_features(s.command, s.space, model);
+Selection ask(const Asked& asked, const std::string& answers = "recorded") {
+  RecordedLanguageModel model(asked.space, asked.id, answers);
+  return select_features(asked.command, asked.space, model);
 }
 
 bool has(const std::vector<std::string>& names, const std::string& name) {
@@ -140,7 +142,7 @@ TEST(RecordedAnswers, AreClaudesWhereGpt4WasNotAskedOrByChoice) {
   EXPECT_EQ(block.source, "Claude (Anthropic, 2026)");
   EXPECT_EQ(block.target.object_types,
             (std::vector<std::string>{"L-shaped block", "block", "shorter block", "small block"}));
-  const Scenario letter = scenario("letter", study[6].utterance);
+  const Asked letter = scenario("letter", study[6].utterance);
   EXPECT_FALSE(has(ask(letter, "gpt4").target.object_types, "letter V"));
   EXPECT_TRUE(has(ask(letter, "claude").target.object_types, "letter V"));
 }
@@ -157,24 +159,22 @@ TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
 
 TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   // GPT-4 was not asked about rotate_block.
-  EXPECT_SAYS(
-      message_of<InputError>([] { RecordedLanguageModel(scenario("rotate_block", "Rotate the block."), "gpt4"); }),
-      "vowel_with_multiple_colors");
-  EXPECT_THROW(RecordedLanguageModel(scenario("x", "Bring me the moon."), "recorded"), InputError);
-  EXPECT_THROW(RecordedLanguageModel(scenario("heart", "Bring me the heart."), "gpt5"), InputError);
+  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4"); }),
+              "vowel_with_multiple_colors");
+  EXPECT_THROW(ask(scenario("x", "Bring me the moon.")), InputError);
+  EXPECT_THROW(ask(scenario("heart", "Bring me the heart."), "gpt5"), InputError);
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", Task::sweep)), MethodError);
 
-  const Scenario heart = scenario("heart", "Bring me the heart.");
-  RecordedLanguageModel model(heart, "recorded");
+  const Asked heart = scenario("heart", "Bring me the heart.");
+  RecordedLanguageModel model(heart.space, heart.id, "recorded");
   const Question unknown{Question::About::target, Question::Group::texture, "plaid"};
   EXPECT_THROW(model.answer(heart.command, heart.space, {unknown}), MethodError);
-  EXPECT_THROW(model.answer({"Bring me the star."}, heart.space, {}), MethodError);
 }
 
 TEST(SelectFeatures, CountsOnlyItsOwnQueriesAndWantsEveryAnswer) {
-  const Scenario heart = scenario("heart", "Bring me the heart.");
-  RecordedLanguageModel model(heart, "recorded");
+  const Asked heart = scenario("heart", "Bring me the heart.");
+  RecordedLanguageModel model(heart.space, heart.id, "recorded");
   select_features(heart.command, heart.space, model);
   EXPECT_EQ(select_features(heart.command, heart.space, model).cost.lm_queries, 112);
   EXPECT_EQ(model.cost().lm_queries, 224);
@@ -184,7 +184,7 @@ TEST(SelectFeatures, CountsOnlyItsOwnQueriesAndWantsEveryAnswer) {
     std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override {
       return {true};
     }
-  } silent(heart, "recorded");
+  } silent(heart.space, heart.id, "recorded");
   EXPECT_THROW(select_features(heart.command, heart.space, silent), MethodError);
 }
 
@@ -196,7 +196,9 @@ Selection selection_of(FeatureSet target, Provenance provenance = Provenance::tr
 }
 
 TEST(Human, SpecifiesTheTruthAndEditsObjectTypesOnly) {
-  TruthAsHuman human(selection_of({{"letter G", "letter V"}, {"brick"}}, Provenance::none));
+  TruthAsHuman human({{"other words", selection_of({{"pan"}, {"red"}})},
+                      {"words", selection_of({{"letter G", "letter V"}, {"brick"}})}});
+  EXPECT_THROW(human.specify({"no such words"}), MethodError);
   const Selection specified = human.specify({"words"});
   EXPECT_EQ(specified.provenance, Provenance::truth);
   EXPECT_EQ(specified.target, (FeatureSet{{"letter G", "letter V"}, {"brick"}}));

@@ -111,14 +111,14 @@ std::string refusal(const Json& json) {
   return message_of<Error>([&] { read_scenario(json, "mine.json"); });
 }
 
-TEST(Scenario, NineOfPickAndPlace) {
+TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
-  for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).command.task == Task::pick_and_place;
-  EXPECT_EQ(pick_and_place, 9);
+  for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == Task::pick_and_place;
+  EXPECT_EQ(pick_and_place, 12);  // q1 has 9, q2 two, q3 one
   const Scenario s = load_scenario("heart");
-  EXPECT_EQ(s.truth.target.object_types, std::vector<std::string>{"heart"});
-  EXPECT_EQ(s.truth.target.textures.size(), 83u);  // ALL
-  EXPECT_EQ(s.truth.provenance, Provenance::truth);
+  EXPECT_EQ(s.commands[0].truth.target.object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(s.commands[0].truth.target.textures.size(), 83u);  // ALL
+  EXPECT_EQ(s.commands[0].truth.provenance, Provenance::truth);
 }
 
 TEST(Scenario, WarmColoursAreNeverDistractors) {
@@ -137,10 +137,10 @@ TEST(Scenario, RefusesBadInput) {
   json["colour"] = "red";
   EXPECT_SAYS(refusal(json), "mine.json: /: unknown member \"colour\"");
   json = heart();
-  json["truth"]["target"]["textures"] = {"red", "reddish"};
+  json["commands"][0]["truth"]["target"]["textures"] = {"red", "reddish"};
   EXPECT_SAYS(refusal(json),
-              "mine.json: /truth/target/textures/1: expected a name of the feature space, got \"reddish\"");
-  json["truth"]["target"]["textures"] = {"red", "red"};
+              "mine.json: /commands/0/truth/target/textures/1: expected a name of the feature space, got \"reddish\"");
+  json["commands"][0]["truth"]["target"]["textures"] = {"red", "red"};
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
   json["task"] = "juggle";
@@ -149,11 +149,30 @@ TEST(Scenario, RefusesBadInput) {
   json["tests"] = Json::array();
   EXPECT_SAYS(refusal(json), "mine.json: /tests: expected at least one arm");
   json = heart();
-  json.erase("utterance");
+  json["commands"][0].erase("utterance");
   EXPECT_SAYS(refusal(json), "expected a member \"utterance\"");
   json = heart();
-  json["truth"]["avoid"] = json["truth"]["target"];
-  EXPECT_SAYS(refusal(json), "mine.json: /truth: expected \"avoid\" for sweep");
+  json["commands"][0]["truth"]["avoid"] = json["commands"][0]["truth"]["target"];
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/0/truth: expected \"avoid\" for sweep");
+  json = heart();
+  json["commands"][0]["seen"] = false;
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/0: expected a scenario with commands for this arm");
+  json = heart();
+  json["tests"].push_back({{"arm", "test"}});
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected each arm once");
+  json["tests"][1] = {{"arm", "second"}, {"unseen", true}};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1: expected a scenario with commands for this arm");
+  json["tests"][1] = {{"arm", "second"}, {"distractors", {2, 1}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/distractors/1: expected");
+  json["tests"][1] = {{"arm", "second"}, {"label_noise", 1.5}};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/label_noise: expected a probability");
+  json["tests"][1] = {{"arm", "second"}, {"choice", {"heart", "hart"}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice/1: expected an object type");
+  json["tests"][1] = {{"arm", "train"}};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected another name");
+  json = heart();
+  json["train"] = {{"target", json["commands"][0]["truth"]["target"]}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train: expected \"as_method_asks\": false");
   EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
 }
 
@@ -189,8 +208,8 @@ TEST(Action, RefusesWhatCannotBeCarriedOut) {
 }
 
 TEST(Scene, HashCoversEveryField) {
-  Scene scene{
-      "heart", "test", "cells", "test", Task::pick_and_place, 0, 1, 2, {{"heart", "red", Role::target, {.4, 0}, 0, 1}}};
+  Scene scene{"heart", "test", "cells", "test", Task::pick_and_place,
+              0,       1,      2,       0,      {{"heart", "red", Role::target, {.4, 0}, 0, 1}}};
   std::set<std::uint64_t> hashes{scene.hash()};
   const auto expect_new = [&](const std::function<void(Scene&)>& change) {
     Scene changed = scene;
@@ -204,6 +223,7 @@ TEST(Scene, HashCoversEveryField) {
   expect_new([](Scene& s) { s.task = Task::rotate; });
   expect_new([](Scene& s) { s.angle_rad = 1; });
   expect_new([](Scene& s) { s.seed = 7; });
+  expect_new([](Scene& s) { s.command = 1; });
   expect_new([](Scene& s) { s.index = 3; });
   expect_new([](Scene& s) { s.objects[0].object_type = "star"; });
   expect_new([](Scene& s) { s.objects[0].texture = "blue"; });

@@ -29,11 +29,11 @@ class Play : public ::testing::Test, public TemporaryDirectory {
   }
   static std::vector<Scene> scenes(int n, std::uint64_t seed = 0) {
     std::vector<Scene> all;
-    for (int i = 0; i < n; ++i) all.push_back(training_scene(*scenario, "cells", scenario->truth, seed, i));
+    for (int i = 0; i < n; ++i) all.push_back(training_scene(*scenario, "cells", {}, seed, i));
     return all;
   }
   static std::vector<Demonstration> demonstrations(int n, int noisy = 0) {
-    return demonstrate(*environment, scenes(n), {Needs::Targets::truth, noisy, .2}, scenario->command.utterance);
+    return demonstrate(*environment, scenes(n), {Needs::Targets::truth, noisy, .2}, {"Bring me the heart."});
   }
 
   static std::unique_ptr<Scenario> scenario;
@@ -50,7 +50,7 @@ TEST_F(Play, TenDemonstrationsAreAPrefixOfFifty) {
   auto fifty = demonstrations(50, 1);
   fifty.resize(10);
   EXPECT_EQ(bytes(fifty), bytes(demonstrations(10, 1)));
-  EXPECT_NE(bytes(fifty), bytes(demonstrate(*environment, scenes(10, 1), {Needs::Targets::truth, 1, .2}, "")));
+  EXPECT_NE(bytes(fifty), bytes(demonstrate(*environment, scenes(10, 1), {Needs::Targets::truth, 1, .2}, {""})));
 }
 
 TEST_F(Play, TheFirstStepIsTheOraclesOnTheUntouchedScene) {
@@ -79,7 +79,7 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
   EXPECT_GT(added, 40u) << "most rollouts stay in the workspace";
   EXPECT_GT(moved, added / 4) << "some rollouts take hold of something and move it";
   // Without noise the action succeeds: the state after it has the target on the goal, and the oracle goes there.
-  const auto still = demonstrate(*environment, scenes(1), {Needs::Targets::truth, 1, 0.0}, "");
+  const auto still = demonstrate(*environment, scenes(1), {Needs::Targets::truth, 1, 0.0}, {""});
   ASSERT_EQ(still[0].steps.size(), 2u);
   EXPECT_NEAR(still[0].steps[1].label.pose0.position_m.y, still[0].steps[0].label.pose1.position_m.y, .02);
 }
@@ -132,12 +132,12 @@ TEST_F(Play, CacheIsTheSameAsNoCache) {
   const auto cached = [&](int n, const Json& builds) {
     std::vector<int> done;
     const DemonstrationCache with{cache.directory, builds, "test"};
-    auto all = cached_demonstrations(with, *environment, scenes(n), needs, "u", [&](int k) { done.push_back(k); });
+    auto all = cached_demonstrations(with, *environment, scenes(n), needs, {"u"}, [&](int k) { done.push_back(k); });
     EXPECT_EQ(done.back(), n);
     return bytes(all);
   };
   const auto files = [&] { return std::distance(fs::directory_iterator(cache.directory), fs::directory_iterator()); };
-  const std::string fresh = bytes(demonstrate(*environment, scenes(15), needs, "u"));
+  const std::string fresh = bytes(demonstrate(*environment, scenes(15), needs, {"u"}));
   EXPECT_EQ(cached(15, cache.builds), fresh);
   EXPECT_EQ(files(), 2);
   EXPECT_EQ(cached(15, cache.builds), fresh);
@@ -152,7 +152,7 @@ TEST_F(Play, CacheIsTheSameAsNoCache) {
 
 std::vector<TestScene> tests(const Scenario& scenario, int n) {
   std::vector<TestScene> all;
-  for (int i = 0; i < n; ++i) all.push_back({"test", i, test_scene(scenario, "cells", "test", 0, i)});
+  for (int i = 0; i < n; ++i) all.push_back({test_scene(scenario, "cells", "test", 0, i)});
   return all;
 }
 
@@ -163,8 +163,8 @@ int successes(const std::vector<Episode>& episodes) {
 
 TEST_F(Play, ReferenceRows) {
   const auto scenes = tests(*scenario, 60);
-  EXPECT_EQ(successes(evaluate(*environment, scenes, reference_actor("oracle"), [](int) {})), 60);
-  const auto random = evaluate(*environment, scenes, reference_actor("random_object"), [](int) {});
+  EXPECT_EQ(successes(evaluate(*environment, scenario->space, scenes, reference_actor("oracle"), [](int) {})), 60);
+  const auto random = evaluate(*environment, scenario->space, scenes, reference_actor("random_object"), [](int) {});
   // One or two distractors with equal odds: 5/12 expected; 4 sigma of 60 is 15.
   EXPECT_NEAR(successes(random), 25, 15);
   std::set<Failure> kinds;
@@ -195,11 +195,11 @@ class Sometimes : public Policy {
 };
 
 TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
-  const Instruction instruction{"u", {}};
+  const std::vector<Instruction> instructions{{"u", {}}};
   for (int way = 0; way < 5; ++way) {
     Sometimes policy(way);
-    const auto episodes =
-        evaluate(*environment, tests(*scenario, 6), policy_actor(policy, instruction, "p"), [](int) {});
+    const auto episodes = evaluate(*environment, scenario->space, tests(*scenario, 6),
+                                   policy_actor(policy, instructions, "p"), [](int) {});
     ASSERT_EQ(episodes.size(), 6u);
     EXPECT_EQ(policy.resets, 6);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -211,11 +211,83 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
   }
 }
 
-TEST_F(Play, AnEmptySelectionFailsEveryEpisodeUnplayed) {
-  const auto episodes = without_abstraction(tests(*scenario, 4));
+TEST_F(Play, WithoutAnAbstractionAnEpisodeIsNotPlayed) {
+  auto scenes = tests(*scenario, 4);
+  scenes[2].abstraction_empty = true;
+  const auto episodes = evaluate(*environment, scenario->space, scenes, reference_actor("oracle"), [](int) {});
   ASSERT_EQ(episodes.size(), 4u);
-  for (const Episode& e : episodes) EXPECT_EQ(e.failure, Failure::abstraction_empty);
-  EXPECT_EQ(episodes[2].scene, tests(*scenario, 4)[2].scene.hash());
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(episodes[i].failure, i == 2 ? Failure::abstraction_empty : Failure::none);
+  EXPECT_EQ(episodes[2].scene, scenes[2].scene.hash());
+  EXPECT_FALSE(episodes[2].action);
+}
+
+// Takes note of what it is given.
+class Witness : public Policy {
+ public:
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    utterances.push_back(instruction.utterance);
+    observations.push_back(observation);
+    return {};
+  }
+  std::vector<std::string> utterances;
+  std::vector<Observation> observations;
+};
+
+TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
+  const Scenario fruit = load_scenario("q3_fruit");
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const auto household = make_environment(fruit, load_engine(catalogue.find("engine", "mujoco")));
+  std::vector<Instruction> instructions;
+  for (const ScenarioCommand& command : fruit.commands) instructions.push_back({command.utterance, {}});
+  std::vector<TestScene> scenes;
+  for (const char* arm : {"seen", "unseen"})
+    for (int i = 0; i < 3; ++i) scenes.push_back({test_scene(fruit, "cells", arm, 0, i)});
+  Witness policy;
+  const auto episodes = evaluate(*household, fruit.space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+  const std::string tomato = "Bring me a tomato.", apple = "Bring me an apple.", any = "Bring me a fruit.";
+  EXPECT_EQ(policy.utterances, (std::vector<std::string>{tomato, apple, tomato, any, any, any}));
+  EXPECT_EQ(to_json(episodes[1]).at("command"), 1);
+  EXPECT_EQ(to_json(episodes[3]).at("command"), 2);
+
+  std::vector<Scene> shown;
+  for (int i = 0; i < 4; ++i) shown.push_back(training_scene(fruit, "cells", {}, 0, i));
+  const auto demonstrations = demonstrate(*household, shown, {}, {tomato, apple, any});
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(demonstrations[i].instruction.utterance, i % 2 ? apple : tomato);
+    EXPECT_EQ(shown[i].objects.size(), 2u) << "the named one and the pallet";
+    EXPECT_EQ(shown[i].find(Role::target)->object_type, i % 2 ? "apple" : "tomato");
+  }
+}
+
+TEST_F(Play, ImperfectTextualizationChangesWhatAPolicySeesAndNothingElse) {
+  const auto seen_with = [&](const TextualizationNoise& noise) {
+    std::vector<TestScene> scenes = tests(*scenario, 20);
+    for (TestScene& scene : scenes) scene.noise = noise;
+    Witness policy;
+    const std::vector<Instruction> instructions{{"u", {}}};
+    const auto episodes =
+        evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    for (std::size_t i = 0; i < episodes.size(); ++i) EXPECT_EQ(episodes[i].scene, scenes[i].scene.hash());
+    return policy.observations;
+  };
+  const auto differing = [](const std::vector<Observation>& a, const std::vector<Observation>& b) {
+    int labels = 0, pixels = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      EXPECT_EQ(a[i].rgb, b[i].rgb);
+      pixels += a[i].ids != b[i].ids;
+      for (std::size_t k = 0; k < std::min(a[i].instances.size(), b[i].instances.size()); ++k)
+        labels += a[i].instances[k].object_type != b[i].instances[k].object_type ||
+                  a[i].instances[k].texture != b[i].instances[k].texture;
+    }
+    return std::pair{labels, pixels};
+  };
+  const auto clean = seen_with({});
+  EXPECT_EQ(differing(clean, seen_with({})), (std::pair{0, 0}));
+  const auto [labels, no_pixels] = differing(clean, seen_with({.5, 0}));
+  EXPECT_GT(labels, 20);
+  EXPECT_EQ(no_pixels, 0);
+  EXPECT_GT(differing(clean, seen_with({0, .5})).second, 10);
 }
 
 TEST(Constant, IsTheMedoidOfTheLabels) {

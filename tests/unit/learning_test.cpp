@@ -142,7 +142,7 @@ TEST(SentenceEmbeddings, CoverTheShippedCommandsWithUnitVectors) {
     return sum;
   };
   for (const std::string& id : scenario_ids()) {
-    const std::string utterance = load_scenario(id).command.utterance;
+    const std::string utterance = load_scenario(id).commands[0].utterance;
     ASSERT_EQ(embeddings.of(utterance).size(), 384u);
     EXPECT_NEAR(dot(utterance, utterance), 1, 1e-6) << utterance;
   }
@@ -225,8 +225,8 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
       {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
   options.update(changes);
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario, "recorded");
-  TruthAsHuman human(scenario.truth);
+  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, seed, log};
   auto policy = Cloner(seen).learn(data, services);
@@ -350,12 +350,12 @@ TEST(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   for (const char* id : {"lga", "gcbc_dart"}) {
     const PluginInfo& plugin = catalogue.find("method", id);
     const Json options = resolve_options(plugin, {{"epochs", 3}});
-    RecordedLanguageModel lm(scenario, "recorded");
-    TruthAsHuman human(scenario.truth);
+    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+    TruthAsHuman human(scenario.commands);
     Lines log;
     Services services{lm, human, options, 0, log};
     const auto method = load_method(plugin);
-    const Selection selection = method->select(scenario.command, scenario.space, services);
+    const Selection selection = method->select(scenario.command(0), scenario.space, services);
     EXPECT_EQ(selection.cost.lm_queries, id == std::string("lga") ? 112 : 0);
     EXPECT_EQ(selection.provenance, id == std::string("lga") ? Provenance::recorded : Provenance::none);
     const auto policy = method->learn(demonstrations(10), services);

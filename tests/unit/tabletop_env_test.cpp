@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
@@ -62,9 +63,10 @@ Bench make_bench(const std::string& space = "tabletop") {
   return {watched, make_environment(std::move(world), load_feature_space(space))};
 }
 
-Bench& bench() {
-  static Bench shared = make_bench();
-  return shared;
+Bench& bench(const std::string& space = "tabletop") {
+  static std::map<std::string, Bench> shared;
+  const auto found = shared.find(space);
+  return found != shared.end() ? found->second : shared.emplace(space, make_bench(space)).first->second;
 }
 Environment& environment() { return *bench().environment; }
 
@@ -124,7 +126,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::string& id : scenario_ids())
-    for (const std::string& layout : layouts(load_scenario(id).command.task)) cases.push_back({id, layout});
+    for (const std::string& layout : layouts(load_scenario(id).task)) cases.push_back({id, layout});
   return cases;
 }
 
@@ -134,11 +136,14 @@ class Oracle : public testing::TestWithParam<Case> {};
 TEST_P(Oracle, Succeeds) {
   const Scenario scenario = load_scenario(GetParam().scenario);
   const int scenes = scenes_per_case();
+  std::vector<std::string> arms{"train"};
+  for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   int turned_away = 0;
   for (int i = 0; i < scenes; ++i) {
-    const std::string split = i % 2 ? "train" : "test";  // one distractor, or one or two
-    const Scene scene = sample_scene(scenario, {scenario.truth, GetParam().layout, split, split, 3}, i);
-    const StepResult result = play(environment(), scene).result;
+    const std::string& arm = arms[static_cast<std::size_t>(i) % arms.size()];
+    const std::string split = arm == "train" ? "train" : "test";
+    const Scene scene = sample_scene(scenario, {GetParam().layout, split, arm, 3}, i);
+    const StepResult result = play(*bench(scenario.space.id).environment, scene).result;
     const std::string& type = scene.find(Role::target)->object_type;
     EXPECT_TRUE(result.terminated);
     EXPECT_FALSE(result.truncated);
@@ -146,7 +151,7 @@ TEST_P(Oracle, Succeeds) {
       ++turned_away;
     else
       EXPECT_EQ(result.failure, Failure::none)
-          << "scene " << i << ", " << split << ", " << type << ": " << to_string(result.failure);
+          << "scene " << i << ", " << arm << ", " << type << ": " << to_string(result.failure);
   }
   EXPECT_LE(turned_away, scenes * 3 / 100 + 1);
 }
@@ -264,9 +269,7 @@ class AnyTask : public testing::TestWithParam<const char*> {};
 
 TEST_P(AnyTask, AnEpisodeDependsOnItsSceneAlone) {
   const Scenario scenario = load_scenario(GetParam());
-  const auto scene = [&](int i) {
-    return sample_scene(scenario, {scenario.truth, "continuous", "test", "test", 5}, i);
-  };
+  const auto scene = [&](int i) { return sample_scene(scenario, {"continuous", "test", "test", 5}, i); };
   std::vector<Episode> first;
   for (int i = 0; i < 5; ++i) first.push_back(play(environment(), scene(i)));
   for (int i = 4; i >= 0; --i) expect_same(play(environment(), scene(i)), first[static_cast<std::size_t>(i)]);
@@ -364,7 +367,7 @@ TEST(Tabletop, TheOracleRecoversFromWhateverANoisyActionLeaves) {
   const Scenario scenario = load_scenario("something_from_a_typical_kitchen");
   int recovered = 0, played = 0;
   for (int i = 0; i < 40; ++i) {
-    const Scene scene = sample_scene(scenario, {scenario.truth, "cells", "train", "train", 9}, i);
+    const Scene scene = sample_scene(scenario, {"cells", "train", "train", 9}, i);
     environment().reset(scene);
     Action noisy = environment().expert_action();
     noisy.pose1.position_m = noisy.pose1.position_m + Vec2{.05 * std::sin(i), .2 * std::cos(2 * i)};

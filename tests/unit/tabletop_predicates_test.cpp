@@ -103,6 +103,28 @@ TEST(PickAndPlace, ACentreIsTheMiddleAlsoOfAToppledObject) {
   EXPECT_NEAR(centre_of(block, on_its_side).y, .3, 1e-12);
 }
 
+// Paper, Q3: "a fruit" is right with the apple and with the tomato.
+TEST(PickAndPlace, AnyOfSeveralTargetsIsRight) {
+  Scene scene = bring();
+  scene.objects.push_back(object("star", Role::target, {.4, 0}, 4));
+  const Motion took_star{3, true};
+  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, took_target), Failure::none);
+  EXPECT_EQ(judge_moved(scene, 3, {.5, .3}, 0, took_star), Failure::none);
+  EXPECT_EQ(judge_moved(scene, 3, {.7, .3}, 0, took_star), Failure::bad_placement);
+  EXPECT_EQ(judge_moved(scene, 0, {.5, .1}, 0, took_distractor), Failure::wrong_object);
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
+}
+
+TEST(Rotate, AnyOfSeveralTargetsIsRight) {
+  Scene scene = turn(120);
+  scene.objects.push_back(object("bowl", Role::target, {.4, .2}, 3));
+  const double turned = 120 * pi / 180;
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned, {2, true}), Failure::none);
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1}, 1 + turned, took_target), Failure::none);
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned + 1, {2, true}), Failure::bad_angle);
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .35}, turned, {2, true}), Failure::bad_placement);
+}
+
 TEST(Rotate, SucceedsWithin15DegreesOfTheTrueAngle) {
   for (const double degrees : {120.0, 135.0, -120.0, 180.0}) {
     const Scene scene = turn(degrees);
@@ -181,6 +203,21 @@ TEST(Sweep, TouchingIsContactOrOverlapSeenFromAbove) {
   };
   EXPECT_FALSE(touches({}, strip(-.16 + .0301)));
   EXPECT_TRUE(touches({}, strip(-.16 + .0299)));
+}
+
+TEST(Sweep, NoneOfSeveralObstaclesMayBeTouchedAndADistractorMay) {
+  Scene scene = sweep("fork");
+  scene.objects.push_back(object("spoon", Role::obstacle, {.375, -.24}, 4));
+  scene.objects[3].yaw_rad = pi / 2;
+  const auto poses = start(scene);
+  const auto touches = [&](const std::vector<Contact>& contacts, const std::vector<Polygon>& spatula = {}) {
+    return touches_obstacle(scene, poses, contacts, spatula);
+  };
+  EXPECT_TRUE(touches({{1, 2}}));
+  EXPECT_TRUE(touches({{3, 1}}));
+  EXPECT_TRUE(touches({{spatula_body, 3}}));
+  EXPECT_FALSE(touches({{2, 3}, {1, 0}, {spatula_body, 0}, {spatula_body, table_body}, {3, table_body}}));
+  EXPECT_TRUE(touches({}, {{{.3, -.25}, {.45, -.25}, {.45, -.23}, {.3, -.23}}}));
 }
 
 TEST(Sweep, NeedsATargetAndAnObstacle) {

@@ -1,20 +1,26 @@
 #include <lgabench/abstraction/human.hpp>
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace lgabench {
 
-TruthAsHuman::TruthAsHuman(Selection truth) : truth_(std::move(truth)) {
-  truth_.provenance = Provenance::truth;
-  truth_.source = "true distribution";
+TruthAsHuman::TruthAsHuman(std::vector<ScenarioCommand> commands) : commands_(std::move(commands)) {}
+
+const Selection& TruthAsHuman::truth_of(const Command& command) const {
+  for (const ScenarioCommand& known : commands_)
+    if (known.utterance == command.utterance) return known.truth;
+  throw MethodError(fmt::format("human answers: expected a command of the scenario, got \"{}\"", command.utterance));
 }
 
-Selection TruthAsHuman::specify(const Command&) { return truth_; }
+Selection TruthAsHuman::specify(const Command& command) { return truth_of(command); }
 
-Selection TruthAsHuman::edit(const Command&, const Selection& proposal) {
+Selection TruthAsHuman::edit(const Command& command, const Selection& proposal) {
+  const Selection& truth = truth_of(command);
   Selection edited = proposal;
-  edited.target.object_types = truth_.target.object_types;
-  if (edited.avoid && truth_.avoid) edited.avoid->object_types = truth_.avoid->object_types;
+  edited.target.object_types = truth.target.object_types;
+  if (edited.avoid && truth.avoid) edited.avoid->object_types = truth.avoid->object_types;
   edited.provenance = Provenance::simulated_edit;
   edited.source += ", object types corrected to the true ones";
   return edited;

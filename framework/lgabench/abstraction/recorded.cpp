@@ -27,77 +27,72 @@ std::string known(const fs::path& file, const char* member, const std::string& s
 
 }  // namespace
 
-RecordedLanguageModel::RecordedLanguageModel(const Scenario& scenario, const std::string& answers)
-    : utterance_(scenario.command.utterance), space_(scenario.space) {
-  if (answers != "recorded" && answers != "gpt4" && answers != "claude")
-    throw InputError(fmt::format("answers: expected recorded, gpt4 or claude, got \"{}\"", answers));
-  if (answers != "claude" && find_gpt4(scenario)) return;
-  if (answers != "gpt4" && find_claude(scenario)) return;
-  const fs::path gpt4 = answers_file("gpt4.json"), claude = answers_file("claude.json");
-  const std::string name = scenario.id.empty() ? "" : fmt::format("scenario {}, ", scenario.id);
-  throw InputError(fmt::format(
-      "answers={}: expected recorded answers for {}\"{}\" in the space {}; {}", answers, name, utterance_, space_.id,
-      answers == "gpt4" ? known(gpt4, "scenario", space_.id) : known(claude, "command", space_.id)));
+RecordedLanguageModel::RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string answers)
+    : space_(std::move(space)), scenario_(std::move(scenario)), answers_(std::move(answers)) {
+  if (answers_ != "recorded" && answers_ != "gpt4" && answers_ != "claude")
+    throw InputError(fmt::format("answers: expected recorded, gpt4 or claude, got \"{}\"", answers_));
 }
 
-bool RecordedLanguageModel::find_gpt4(const Scenario& scenario) {
+RecordedLanguageModel::Recorded RecordedLanguageModel::find(const std::string& utterance) const {
+  std::optional<Recorded> found;
+  if (answers_ != "claude") found = find_gpt4();
+  if (!found && answers_ != "gpt4") found = find_claude(utterance);
+  if (found) return *found;
+  const fs::path gpt4 = answers_file("gpt4.json"), claude = answers_file("claude.json");
+  const std::string name = scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_);
+  throw InputError(fmt::format(
+      "answers={}: expected recorded answers for {}\"{}\" in the space {}; {}", answers_, name, utterance, space_.id,
+      answers_ == "gpt4" ? known(gpt4, "scenario", space_.id) : known(claude, "command", space_.id)));
+}
+
+std::optional<RecordedLanguageModel::Recorded> RecordedLanguageModel::find_gpt4() const {
   const fs::path file = answers_file("gpt4.json");
   const Json document = read_json(file);
   const JsonReader reader(document, file.string());
-  if (reader.at("space").string() != space_.id) return false;
+  if (reader.at("space").string() != space_.id) return std::nullopt;
   for (const JsonReader& entry : reader.at("answers").elements()) {
-    if (entry.at("scenario").string() != scenario.id) continue;
+    if (entry.at("scenario").string() != scenario_) continue;
     const Json sets{{"object_types", entry.at("object_types").json()}, {"textures", entry.at("textures").json()}};
-    yes_.target = read_feature_set(JsonReader(sets, file.string(), "/answers: " + scenario.id), space_);
-    asked_as_ = entry.at("utterance").string();
-    model_ = reader.at("model").string();
-    return true;
+    Recorded recorded{{}, entry.at("utterance").string(), reader.at("model").string()};
+    recorded.yes.target = read_feature_set(JsonReader(sets, file.string(), "/answers: " + scenario_), space_);
+    return recorded;
   }
-  return false;
+  return std::nullopt;
 }
 
-bool RecordedLanguageModel::find_claude(const Scenario& scenario) {
+std::optional<RecordedLanguageModel::Recorded> RecordedLanguageModel::find_claude(const std::string& utterance) const {
   const fs::path file = answers_file("claude.json");
   const Json document = read_json(file);
   const JsonReader reader(document, file.string());
   for (const JsonReader& entry : reader.at("answers").elements()) {
-    if (entry.at("space").string() != space_.id || entry.at("command").string() != scenario.command.utterance) continue;
-    yes_.target = read_feature_set(entry.at("target"), space_);
-    if (entry.has("avoid")) yes_.avoid = read_feature_set(entry.at("avoid"), space_);
-    asked_as_ = entry.at("command").string();
-    model_ = reader.at("model").string();
-    return true;
+    if (entry.at("space").string() != space_.id || entry.at("command").string() != utterance) continue;
+    Recorded recorded{{}, utterance, reader.at("model").string()};
+    recorded.yes.target = read_feature_set(entry.at("target"), space_);
+    if (entry.has("avoid")) recorded.yes.avoid = read_feature_set(entry.at("avoid"), space_);
+    return recorded;
   }
-  return false;
+  return std::nullopt;
 }
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,
                                                 const std::vector<Question>& questions) {
-  expect_own(command);
+  const Recorded recorded = find(command.utterance);
+  model_ = recorded.model;
   std::vector<bool> answers;
   for (const Question& q : questions) {
     const bool is_type = q.group == Question::Group::object_type;
     if (!contains(is_type ? space_.object_types : space_.textures, q.candidate))
       throw MethodError(fmt::format("{}: \"{}\" is not in the space {}", model_, q.candidate, space_.id));
     const bool is_target = q.about == Question::About::target;
-    if (!is_target && !yes_.avoid)
-      throw MethodError(fmt::format("{}: no recorded answer on what to avoid in \"{}\"", model_, asked_as_));
-    const FeatureSet& set = is_target ? yes_.target : *yes_.avoid;
+    if (!is_target && !recorded.yes.avoid)
+      throw MethodError(fmt::format("{}: no recorded answer on what to avoid in \"{}\"", model_, recorded.asked_as));
+    const FeatureSet& set = is_target ? recorded.yes.target : *recorded.yes.avoid;
     answers.push_back(contains(is_type ? set.object_types : set.textures, q.candidate));
   }
   cost_.lm_queries += static_cast<int>(questions.size());
   return answers;
 }
 
-std::string RecordedLanguageModel::asked_as(const Command& command) const {
-  expect_own(command);
-  return asked_as_;
-}
-
-void RecordedLanguageModel::expect_own(const Command& command) const {
-  if (command.utterance != utterance_)
-    throw MethodError(
-        fmt::format("{}: answers are recorded for \"{}\", asked \"{}\"", model_, utterance_, command.utterance));
-}
+std::string RecordedLanguageModel::asked_as(const Command& command) const { return find(command.utterance).asked_as; }
 
 }  // namespace lgabench

@@ -28,9 +28,11 @@ void write(const Arguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
   std::vector<Scene> scenes;
-  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, scenario.truth, a.seed, i));
+  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, {}, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
-  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.command.utterance);
+  std::vector<std::string> utterances;
+  for (const ScenarioCommand& command : scenario.commands) utterances.push_back(command.utterance);
+  const auto demonstrations = demonstrate(*environment, scenes, needs, utterances);
   write_file(a.out,
              demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, a.engine)));
   fmt::print("{}\n", a.out);

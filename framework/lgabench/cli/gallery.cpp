@@ -38,15 +38,12 @@ Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::
   return tile;
 }
 
-Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario) {
-  tabletop::SceneRequest request;
-  request.distribution = scenario.truth;
-  request.layout = "cells";
-  request.split = "test";
-  const Scene scene = sample_scene(scenario, request, 0);
+Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario, const std::string& arm) {
+  const Scene scene = tabletop::sample_scene(scenario, {"cells", "test", arm, 0}, 0);
+  const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
   const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
-  const auto mask = goal_mask(seen, scenario.truth);
-  Tile tile{fmt::format("`{}`: {}", scenario.id, scenario.command.utterance),
+  const auto mask = goal_mask(seen, command.truth);
+  Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance),
             2 * Observation::columns,
             Observation::rows,
             {}};
@@ -97,8 +94,11 @@ Sheet gallery(const std::string& what) {
     return sheet(tiles, 7);
   }
   if (what == "scenes") {
-    for (const std::string& id : scenario_ids()) tiles.push_back(scene_and_mask(renderer, load_scenario(id)));
-    return sheet(tiles, 1);
+    for (const std::string& id : scenario_ids()) {
+      const Scenario scenario = load_scenario(id);
+      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(renderer, scenario, arm.id));
+    }
+    return sheet(tiles, 2);
   }
   throw InputError(fmt::format("--gallery {}: expected objects, textures or scenes", what));
 }

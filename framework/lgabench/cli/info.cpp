@@ -33,14 +33,16 @@ std::string names(const std::vector<std::string>& chosen, const std::vector<std:
 }
 
 void print(const Scenario& scenario) {
-  fmt::print("{}, a scenario in {}\n  command     {}\n  task        {}\n", scenario.id, scenario.environment,
-             scenario.command.utterance, to_string(scenario.command.task));
+  fmt::print("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, to_string(scenario.task));
   const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
     fmt::print("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
                names(set.textures, scenario.space.textures));
   };
-  print_set("target", scenario.truth.target);
-  if (scenario.truth.avoid) print_set("to avoid", *scenario.truth.avoid);
+  for (const ScenarioCommand& command : scenario.commands) {
+    fmt::print("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
+    print_set("target", command.truth.target);
+    if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
+  }
   std::vector<std::string> arms;
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   fmt::print("  tests       {}\n", fmt::join(arms, ", "));

@@ -18,7 +18,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, layout = "cells", split = "test", out;
+  std::string scenario, gallery, layout = "cells", split = "test", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -59,17 +59,15 @@ void render_gallery(const Arguments& arguments) {
 
 void render(const Arguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario);
-  tabletop::SceneRequest request;
-  request.distribution = scenario.truth;
-  request.layout = arguments.layout;
-  request.split = arguments.split;
-  request.arm = arguments.split == "train" ? "train" : "test";
-  request.seed = arguments.seed;
-  const Scene scene = sample_scene(scenario, request, arguments.index);
+  const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
+  const Scene scene = tabletop::sample_scene(
+      scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+      arguments.index);
+  const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
   tabletop::Renderer renderer;
   const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
-  const std::vector<std::uint8_t> mask = goal_mask(seen, scenario.truth);
+  const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3);
   panels.fill(0, [&](std::size_t i) { return Rgb{seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]}; });
@@ -79,7 +77,7 @@ void render(const Arguments& arguments) {
   write_file(file, panels.picture.png());
 
   fmt::print("{}\n", file.string());
-  fmt::print("{}: {}\n", scenario.id, scenario.command.utterance);
+  fmt::print("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
   for (const SceneObject& object : scene.objects)
     fmt::print("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture,
                object.object_type);
@@ -100,10 +98,12 @@ void add_render(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--layout", arguments->layout, "cells, continuous or released")->capture_default_str();
   verb->add_option("--split", arguments->split, "train, dev or test")->capture_default_str();
+  verb->add_option("--arm", arguments->arm,
+                   "One of the scenario's tests (lgabench info SCENARIO), or train; its first");
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   verb->footer(
-      "Draws the scene before the first action; the mask is the one of the true Selection.\n"
+      "Draws the scene before the first action; the mask is the one of the command's true Selection.\n"
       "Example: lgabench render red_heart --index 3 --out scene.png\n"
       "         lgabench render --gallery objects --out objects.png");
   verb->callback([arguments] { arguments->gallery.empty() ? render(*arguments) : render_gallery(*arguments); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/recorded.hpp>
@@ -16,20 +17,29 @@ struct Arguments {
   bool json = false;
 };
 
-// The scenario of that id, or with that utterance; else one made of the words alone, which has no truth.
-Scenario find_scenario(const Arguments& arguments) {
+// What is asked: the words, and the truth where a scenario has one for them.
+struct Asked {
+  std::string answers_of;
+  FeatureSpace space;
+  Command command;
+  std::optional<Selection> truth;
+};
+
+// All commands of the scenario of that id, or the one with that utterance; else the words alone, which have no truth.
+std::vector<Asked> find_commands(const Arguments& arguments) {
   for (const std::string& id : scenario_ids()) {
-    Scenario scenario = load_scenario(id);
-    if (id == arguments.command || scenario.command.utterance == arguments.command) return scenario;
+    const Scenario scenario = load_scenario(id);
+    std::vector<Asked> asked;
+    for (const ScenarioCommand& c : scenario.commands)
+      if (id == arguments.command || c.utterance == arguments.command)
+        asked.push_back({scenario.answers_of, scenario.space, {c.utterance, scenario.task}, c.truth});
+    if (!asked.empty()) return asked;
   }
-  if (arguments.command.find(' ') == std::string::npos)
-    return load_scenario(arguments.command);  // says which there are
-  Scenario scenario;
-  scenario.command.utterance = arguments.command;
+  if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
+  Asked asked{"", load_feature_space(arguments.space), {arguments.command, Task::pick_and_place}, std::nullopt};
   for (const Task task : {Task::pick_and_place, Task::rotate, Task::sweep})
-    if (to_string(task) == arguments.task) scenario.command.task = task;
-  scenario.space = load_feature_space(arguments.space);
-  return scenario;
+    if (to_string(task) == arguments.task) asked.command.task = task;
+  return {asked};
 }
 
 std::string list(const std::vector<std::string>& names, const std::vector<std::string>& all) {
@@ -53,22 +63,22 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("textures")));
 }
 
-void select(const Arguments& arguments) {
-  const Scenario scenario = find_scenario(arguments);
-  RecordedLanguageModel model(scenario, arguments.answers);
-  const Selection selection = select_features(scenario.command, scenario.space, model);
-  const bool has_truth = scenario.truth.provenance == Provenance::truth;
-  const Json judged = has_truth ? quality(selection, scenario.truth) : Json();
+void select(const Asked& asked, const Arguments& arguments) {
+  RecordedLanguageModel model(asked.space, asked.answers_of, arguments.answers);
+  const Selection selection = select_features(asked.command, asked.space, model);
+  const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   if (arguments.json) {
-    fmt::print("{}\n", canonical({{"selection", to_json(selection)}, {"quality", judged}}));
+    fmt::print(
+        "{}\n",
+        canonical({{"utterance", asked.command.utterance}, {"selection", to_json(selection)}, {"quality", judged}}));
     return;
   }
-  fmt::print("command     {}\n", scenario.command.utterance);
-  if (selection.asked_as != scenario.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
+  fmt::print("command     {}\n", asked.command.utterance);
+  if (selection.asked_as != asked.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
   fmt::print("answers     {} ({})\n", selection.source, to_string(selection.provenance));
   fmt::print("cost        {} queries\n", selection.cost.lm_queries);
-  print_set("target", selection.target, scenario.space, has_truth ? judged.at("target") : Json());
-  if (selection.avoid) print_set("avoid", *selection.avoid, scenario.space, has_truth ? judged.at("avoid") : Json());
+  print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
+  if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
 }
 
 }  // namespace
@@ -86,9 +96,11 @@ void add_select(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "Feature space of a command that is no scenario's")
       ->capture_default_str();
-  verb->add_flag("--json", arguments->json, "Print one line of JSON, as in a cell's selection.json");
+  verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
   verb->footer("Example: lgabench select red_heart");
-  verb->callback([arguments] { select(*arguments); });
+  verb->callback([arguments] {
+    for (const Asked& asked : find_commands(*arguments)) select(asked, *arguments);
+  });
 }
 
 }  // namespace lgabench::cli

@@ -14,34 +14,120 @@ Task read_task(const JsonReader& reader) {
   reader.fail("pick_and_place, rotate or sweep");
 }
 
+ScenarioCommand read_command(const JsonReader& reader, Task task, const FeatureSpace& space) {
+  reader.only({"utterance", "truth", "seen"});
+  ScenarioCommand command{reader.at("utterance").string(), read_distribution(reader.at("truth"), space), true};
+  command.truth.provenance = Provenance::truth;
+  command.truth.source = "true distribution";
+  command.truth.asked_as = command.utterance;
+  if (command.truth.target.empty()) reader.at("truth").fail("at least one object type and one texture");
+  if ((task == Task::sweep) != command.truth.avoid.has_value())
+    reader.at("truth").fail("\"avoid\" for sweep, and only there");
+  if (reader.has("seen")) command.seen = reader.at("seen").boolean();
+  return command;
+}
+
+const std::vector<std::string> content_members{"target", "avoid", "distractors", "hard", "later_letters", "choice"};
+
+// Members of the content that the reader gives, over those of `content`.
+SceneContent read_content(const JsonReader& reader, SceneContent content, const FeatureSpace& space) {
+  constexpr int most = 2;  // more than that do not fit beside the widest target
+  if (reader.has("target")) content.target = read_feature_set(reader.at("target"), space);
+  if (reader.has("avoid")) content.avoid = read_feature_set(reader.at("avoid"), space);
+  if (reader.has("distractors")) {
+    const auto range = reader.at("distractors").elements();
+    if (range.size() != 2) reader.at("distractors").fail("[fewest, most]");
+    content.distractors.first = static_cast<int>(range[0].integer(0, most));
+    content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
+  }
+  if (reader.has("hard")) content.hard = reader.at("hard").boolean();
+  if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
+  if (reader.has("choice")) {
+    content.choice = reader.at("choice").strings();
+    for (const JsonReader& type : reader.at("choice").elements())
+      if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
+        type.fail("an object type of the feature space");
+  }
+  return content;
+}
+
+double read_probability(const JsonReader& reader) {
+  const double p = reader.number();
+  if (!(p >= 0 && p <= 1)) reader.fail("a probability");
+  return p;
+}
+
+Arm read_arm(const JsonReader& reader, const FeatureSpace& space) {
+  std::vector<std::string> members = content_members;
+  members.insert(members.end(), {"arm", "unseen", "label_noise", "missed_segment"});
+  reader.only(members);
+  Arm arm;
+  arm.id = reader.at("arm").string();
+  if (arm.id == "train") reader.at("arm").fail("another name than train");
+  arm.scenes = read_content(reader, {}, space);
+  if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();
+  if (reader.has("label_noise")) arm.label_noise = read_probability(reader.at("label_noise"));
+  if (reader.has("missed_segment")) arm.missed_segment = read_probability(reader.at("missed_segment"));
+  return arm;
+}
+
+SceneContent read_train(const JsonReader& scenario, const FeatureSpace& space) {
+  SceneContent content;
+  content.distractors = {1, 1};
+  content.as_method_asks = true;
+  if (!scenario.has("train")) return content;
+  std::vector<std::string> members = content_members;
+  members.emplace_back("as_method_asks");
+  const JsonReader reader = scenario.at("train");
+  reader.only(members);
+  content = read_content(reader, content, space);
+  if (reader.has("as_method_asks")) content.as_method_asks = reader.at("as_method_asks").boolean();
+  if (content.as_method_asks && (content.target || content.avoid))
+    reader.fail("\"as_method_asks\": false beside \"target\" or \"avoid\"");
+  return content;
+}
+
 }  // namespace
 
 Scenario read_scenario(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
-  reader.only({"id", "environment", "task", "utterance", "angle_deg", "feature_space", "truth", "never_distractor",
-               "earliest_letter", "tests", "note"});
+  reader.only({"id", "environment", "task", "angle_deg", "feature_space", "commands", "answers_of", "never_distractor",
+               "train", "tests", "note"});
   Scenario s;
   s.id = reader.at("id").string();
   s.environment = reader.at("environment").string();
-  s.command = {reader.at("utterance").string(), read_task(reader.at("task"))};
+  s.task = read_task(reader.at("task"));
+  if (s.task == Task::rotate) s.angle_deg = reader.at("angle_deg").number();
   s.space = load_feature_space(reader.at("feature_space").string());
-  s.truth = read_distribution(reader.at("truth"), s.space);
-  s.truth.provenance = Provenance::truth;
-  s.truth.source = "true distribution";
-  s.truth.asked_as = s.command.utterance;
-  if (s.truth.target.empty()) reader.at("truth").fail("at least one object type and one texture");
-  if ((s.command.task == Task::sweep) != s.truth.avoid.has_value())
-    reader.at("truth").fail("\"avoid\" for sweep, and only there");
-  if (s.command.task == Task::rotate) s.angle_deg = reader.at("angle_deg").number();
+  for (const JsonReader& command : reader.at("commands").elements())
+    s.commands.push_back(read_command(command, s.task, s.space));
+  s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
   if (reader.has("never_distractor")) s.never_distractor = read_feature_set(reader.at("never_distractor"), s.space);
-  if (reader.has("earliest_letter")) s.earliest_letter = reader.at("earliest_letter").boolean();
+  s.train = read_train(reader, s.space);
   for (const JsonReader& arm : reader.at("tests").elements()) {
-    arm.only({"arm"});
-    s.tests.push_back({arm.at("arm").string()});
+    s.tests.push_back(read_arm(arm, s.space));
+    const auto same = [&](const Arm& other) { return other.id == s.tests.back().id; };
+    if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
+    if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
   }
   if (s.tests.empty()) reader.at("tests").fail("at least one arm");
+  if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
   return s;
+}
+
+std::vector<int> Scenario::commands_of(const std::string& arm) const {
+  bool seen = true;
+  if (arm != "train") {
+    const auto found = std::find_if(tests.begin(), tests.end(), [&](const Arm& a) { return a.id == arm; });
+    if (found == tests.end())
+      throw InputError(fmt::format("arm \"{}\": expected train or a test arm of scenario \"{}\"", arm, id));
+    seen = !found->unseen;
+  }
+  std::vector<int> indices;
+  for (std::size_t i = 0; i < commands.size(); ++i)
+    if (commands[i].seen == seen) indices.push_back(static_cast<int>(i));
+  return indices;
 }
 
 std::vector<std::string> scenario_ids() {

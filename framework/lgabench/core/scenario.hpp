@@ -1,7 +1,8 @@
-// A scenario: a command, a task, the true distribution, and the scenes it trains and tests on. Read without an engine.
+// A scenario: commands, a task, the true distributions, and the scenes it trains and tests on. Read without an engine.
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/scene.hpp>
@@ -15,21 +16,49 @@ struct Command {
   Task task = Task::pick_and_place;
 };
 
-/// Test scenes of one kind, played by one policy. "test" is the paper's; variants are named after what they change.
+/// One way to ask for the task, and what the scenario's author means by it.
+struct ScenarioCommand {
+  std::string utterance;
+  Selection truth;   // provenance truth
+  bool seen = true;  // demonstrated; an unseen command is only tested (paper, Q3)
+};
+
+/// What scenes of one kind hold. Targets and obstacles are drawn from the command's truth where nothing else is said.
+struct SceneContent {
+  std::optional<FeatureSet> target, avoid;
+  bool as_method_asks = false;  // training alone: targets and obstacles from the Selection, if the method wants that
+  std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
+  bool hard = false;           // a distractor shares the target's type or its texture, and still is no target
+  bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
+  /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets; for
+  /// sweep, obstacles), the others are distractors.
+  std::vector<std::string> choice;
+};
+
+/// Test scenes of one kind, played by one policy. Arms share their random streams: scene i of each has one layout.
 struct Arm {
-  std::string id = "test";
+  std::string id;
+  SceneContent scenes;
+  bool unseen = false;                         // give the unseen commands instead of the seen ones
+  double label_noise = 0, missed_segment = 0;  // how imperfect the textualization is (see textualization.hpp)
 };
 
 struct Scenario {
   std::string id, environment;
-  Command command;
+  Task task = Task::pick_and_place;
   double angle_deg = 0;  // rotate only
   FeatureSpace space;
-  Selection truth;                             // what the scenario's author means; provenance truth
+  std::vector<ScenarioCommand> commands;
+  std::string answers_of;                      // the scenario whose GPT-4 answers hold for this one; mostly its own id
   std::optional<FeatureSet> never_distractor;  // test distractors stay out of it, beyond the true distribution
-  bool earliest_letter = false;  // "bring the one that comes earliest": a distractor may be a later letter
+  SceneContent train;
   std::vector<Arm> tests;
   Json json;  // as read: goes into a cell's configuration whole
+
+  Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task}; }
+  /// Commands that scenes of this arm ("train" for training scenes) give in turn, as indices: scene i gives number
+  /// i modulo their count. @throws InputError for an arm that the scenario lacks.
+  std::vector<int> commands_of(const std::string& arm) const;
 };
 
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.

@@ -39,15 +39,11 @@ Json to_json(const Scene& scene) {
                        {"position_m", {o.position_m.x, o.position_m.y}},
                        {"yaw_rad", o.yaw_rad},
                        {"instance_id", o.instance_id}});
-  return {{"scenario", scene.scenario},
-          {"arm", scene.arm},
-          {"layout", scene.layout},
-          {"split", scene.split},
-          {"seed", scene.seed},
-          {"index", scene.index},
-          {"task", to_string(scene.task)},
-          {"angle_rad", scene.angle_rad},
-          {"objects", std::move(objects)}};
+  return {{"scenario", scene.scenario},   {"arm", scene.arm},
+          {"layout", scene.layout},       {"split", scene.split},
+          {"seed", scene.seed},           {"index", scene.index},
+          {"command", scene.command},     {"task", to_string(scene.task)},
+          {"angle_rad", scene.angle_rad}, {"objects", std::move(objects)}};
 }
 
 std::uint64_t Scene::hash() const { return hash64(canonical(to_json(*this))); }

@@ -31,11 +31,13 @@ struct Scene {
   double angle_rad = 0;  // rotate: the turn that counts as success
   std::uint64_t seed = 0;
   int index = 0;
+  int command = 0;                   // which of the scenario's commands is given
   std::vector<SceneObject> objects;  // ordered by instance_id
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;
-  /// First object with the role, or nullptr. The Scene owns it.
+  /// First object with the role, or nullptr. The Scene owns it. Several objects may be targets (any of them is right)
+  /// or obstacles (none may be touched).
   const SceneObject* find(Role role) const;
 };
 

@@ -38,7 +38,7 @@ bool recovery_step(Environment& environment, const Scene& scene, double sigma, i
 
 // Named by everything that decides its bytes; a scene's hash covers scenario, layout, features, seed and index.
 fs::path cache_file(const DemonstrationCache& cache, const std::vector<Scene>& scenes, const Needs& needs,
-                    const std::string& utterance) {
+                    const std::vector<std::string>& utterances) {
   std::vector<std::string> hashes;
   for (const Scene& scene : scenes) hashes.push_back(hex(scene.hash()));
   const Json identity{{"builds", cache.builds},
@@ -46,18 +46,18 @@ fs::path cache_file(const DemonstrationCache& cache, const std::vector<Scene>& s
                       {"noisy_per_clean", needs.noisy_per_clean},
                       {"noise_max", needs.noise_max},
                       {"scenes", hashes},
-                      {"utterance", utterance}};
+                      {"utterances", utterances}};
   return cache.directory / (sha256(canonical(identity)).substr(0, 32) + ".hdf5");
 }
 
 }  // namespace
 
 std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
-                                       const std::string& utterance) {
+                                       const std::vector<std::string>& utterances) {
   std::vector<Demonstration> all;
   for (const Scene& scene : scenes) {
     Demonstration demonstration;
-    demonstration.instruction.utterance = utterance;
+    demonstration.instruction.utterance = utterances.at(static_cast<std::size_t>(scene.command));
     Observation observation = environment.reset(scene);
     demonstration.steps.push_back({std::move(observation), label(environment.expert_action())});
     for (int k = 1; k <= needs.noisy_per_clean; ++k) {
@@ -72,14 +72,15 @@ std::vector<Demonstration> demonstrate(Environment& environment, const std::vect
 
 std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache, Environment& environment,
                                                  const std::vector<Scene>& scenes, const Needs& needs,
-                                                 const std::string& utterance, const std::function<void(int)>& done) {
+                                                 const std::vector<std::string>& utterances,
+                                                 const std::function<void(int)>& done) {
   constexpr std::size_t per_file = 10;
   std::vector<Demonstration> all;
   for (std::size_t first = 0; first < scenes.size(); first += per_file) {
     const auto begin = scenes.begin() + static_cast<std::ptrdiff_t>(first);
     const auto count = static_cast<std::ptrdiff_t>(std::min(per_file, scenes.size() - first));
     const std::vector<Scene> block(begin, begin + count);
-    const fs::path file = cache_file(cache, block, needs, utterance);
+    const fs::path file = cache_file(cache, block, needs, utterances);
     std::vector<Demonstration> demonstrations;
     try {
       if (fs::exists(file)) demonstrations = read_demonstrations(file);
@@ -87,7 +88,7 @@ std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache
       fmt::print(stderr, "{}; made again\n", e.what());
     }
     if (demonstrations.size() != block.size()) {
-      demonstrations = demonstrate(environment, block, needs, utterance);
+      demonstrations = demonstrate(environment, block, needs, utterances);
       write_file(file, demonstrations_hdf5(demonstrations, cache.environment_id));
     }
     std::move(demonstrations.begin(), demonstrations.end(), std::back_inserter(all));

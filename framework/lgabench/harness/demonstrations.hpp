@@ -15,9 +15,10 @@ namespace lgabench {
 /// sigma = noise_max k / n (x std .25 sigma, y std .5 sigma, yaw std pi sigma, on both poses), and the state that this
 /// led to is added with the oracle's action for it. A rollout that left the workspace, touched the obstacle or did not
 /// come to rest is dropped. Labels are noiseless and have the precision of a file. A function of its arguments: the
-/// noise is a random stream per scene and k. @throws EngineError if the engine fails.
+/// noise is a random stream per scene and k. `utterances`: of the scenario's commands, as Scene::command counts them.
+/// @throws EngineError if the engine fails.
 std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
-                                       const std::string& utterance);
+                                       const std::vector<std::string>& utterances);
 
 /// Where finished demonstrations are kept, shared by methods, runs and processes.
 struct DemonstrationCache {
@@ -31,6 +32,7 @@ struct DemonstrationCache {
 /// is said on stderr. `done(n)` after each ten.
 std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache, Environment& environment,
                                                  const std::vector<Scene>& scenes, const Needs& needs,
-                                                 const std::string& utterance, const std::function<void(int)>& done);
+                                                 const std::vector<std::string>& utterances,
+                                                 const std::function<void(int)>& done);
 
 }  // namespace lgabench

@@ -21,16 +21,16 @@ std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::uni
   return tabletop::make_environment(std::move(world), scenario.space);
 }
 
-Scene training_scene(const Scenario& scenario, const std::string& layout, const Selection& distribution,
+Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index) {
   expect_tabletop(scenario);
-  return tabletop::sample_scene(scenario, {distribution, layout, "train", "train", training_seed}, index);
+  return tabletop::sample_scene(scenario, {layout, "train", "train", training_seed, selections}, index);
 }
 
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
                  int index) {
   expect_tabletop(scenario);
-  return tabletop::sample_scene(scenario, {scenario.truth, layout, "test", arm, scene_seed}, index);
+  return tabletop::sample_scene(scenario, {layout, "test", arm, scene_seed}, index);
 }
 
 }  // namespace lgabench

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/physics_world.hpp>
@@ -13,12 +14,12 @@ namespace lgabench {
 /// The scenario's environment on that engine. @throws InputError for an environment that is not known.
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
 
-/// Scene `index` to demonstrate: targets drawn from `distribution`, a Selection or the truth.
-/// @throws InputError where the layout is unknown or can show nothing of the distribution.
-Scene training_scene(const Scenario& scenario, const std::string& layout, const Selection& distribution,
+/// Scene `index` to demonstrate. Where the scenario leaves it to the method, targets are drawn from `selections`, one a
+/// command; empty: the truth. @throws InputError where the layout is unknown or can show nothing of the distribution.
+Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index);
 
-/// Test scene `index` of an arm: targets drawn from the truth, whatever was selected or trained on.
+/// Test scene `index` of an arm: whatever was selected or trained on.
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
                  int index);
 

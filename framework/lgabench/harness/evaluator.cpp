@@ -21,23 +21,29 @@ Action random_object(const Environment& environment, const Scene& scene, const O
   return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
 }
 
+// The arm has no part in it: more noise adds errors to those that less of it makes.
+RandomStream perception_stream(const Scene& scene) {
+  return RandomStream(fmt::format("textualization/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index));
+}
+
 }  // namespace
 
 Json to_json(const Episode& e) {
   return {{"arm", e.arm},
           {"index", e.index},
+          {"command", e.command},
           {"scene", hex(e.scene)},
           {"success", e.failure == Failure::none},
           {"failure", to_string(e.failure)},
           {"action", e.action ? Json(*e.action) : Json(nullptr)}};
 }
 
-Actor policy_actor(Policy& policy, const Instruction& instruction, const std::string& plugin_id) {
-  return [&policy, &instruction, plugin_id](const Environment&, const Scene&, const Observation& observation) {
+Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
+  return [&policy, &instructions, plugin_id](const Environment&, const Scene& scene, const Observation& observation) {
     try {
       return guarded(plugin_id, [&] {
         policy.reset();
-        return policy.act(observation, instruction);
+        return policy.act(observation, instructions.at(static_cast<std::size_t>(scene.command)));
       });
     } catch (const InputError& e) {  // at this point only the method can be at fault
       throw MethodError(e.what());
@@ -51,30 +57,29 @@ Actor reference_actor(const std::string& id) {
   throw InputError(fmt::format("reference row \"{}\": expected constant_action, random_object or oracle", id));
 }
 
-std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
-                              const std::function<void(int)>& done) {
+std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
+                              const Actor& actor, const std::function<void(int)>& done) {
   std::vector<Episode> episodes;
   episodes.reserve(scenes.size());
   for (const TestScene& test : scenes) {
-    Episode episode{test.arm, test.index, test.scene.hash(), Failure::method_error, std::nullopt};
-    const Observation observation = environment.reset(test.scene);
-    try {
-      const Action action = actor(environment, test.scene, observation);
-      episode.failure = environment.step(action).failure;  // refuses an action that is not finite
-      episode.action = to_vector(action);
-    } catch (const MethodError& e) {
-      fmt::print(stderr, "episode {} of {}: {}\n", test.index, test.arm, e.what());
+    const Scene& scene = test.scene;
+    Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::method_error, std::nullopt};
+    if (test.abstraction_empty) {
+      episode.failure = Failure::abstraction_empty;
+    } else {
+      const Observation observation =
+          imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
+      try {
+        const Action action = actor(environment, scene, observation);
+        episode.failure = environment.step(action).failure;  // refuses an action that is not finite
+        episode.action = to_vector(action);
+      } catch (const MethodError& e) {
+        fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+      }
     }
     episodes.push_back(episode);
     done(static_cast<int>(episodes.size()));
   }
-  return episodes;
-}
-
-std::vector<Episode> without_abstraction(const std::vector<TestScene>& scenes) {
-  std::vector<Episode> episodes;
-  for (const TestScene& test : scenes)
-    episodes.push_back({test.arm, test.index, test.scene.hash(), Failure::abstraction_empty, std::nullopt});
   return episodes;
 }
 

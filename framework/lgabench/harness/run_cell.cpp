@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -99,7 +100,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests)
     for (int i = 0; i < cell.episodes; ++i)
-      scenes.push_back({arm.id, i, test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i)});
+      scenes.push_back(
+          {test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i), {arm.label_noise, arm.missed_segment}});
   return scenes;
 }
 
@@ -126,39 +128,50 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const std::string& id = cell.method.id;
   Phases phases(report);
 
-  // 1 select: which features does the command make matter?
+  // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  RecordedLanguageModel lm(scenario, cell.answers);
-  TruthAsHuman human(scenario.truth);
+  RecordedLanguageModel lm(scenario.space, scenario.answers_of, cell.answers);
+  TruthAsHuman human(scenario.commands);
   TrainingLines training(phases);
   Services services{lm, human, cell.method.options, cell.training_seed, training};
   Needs needs;
-  Selection selection;
-  if (method) {
-    needs = guarded(id, [&] { return method->needs(services.options); });
-    selection = guarded(id, [&] { return method->select(scenario.command, scenario.space, services); });
+  std::vector<std::string> utterances;
+  std::vector<Instruction> instructions;
+  if (method) needs = guarded(id, [&] { return method->needs(services.options); });
+  for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
+    const Command command = scenario.command(static_cast<int>(c));
+    Selection selection;
+    if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
     expect_within(scenario.space, selection);
+    utterances.push_back(command.utterance);
+    instructions.push_back({command.utterance, std::move(selection)});
   }
   const bool on_selected = method && needs.targets == Needs::Targets::selected;
-  const bool abstraction_empty = on_selected && selection.empty();
+  const auto is_empty = [&](int c) {
+    return on_selected && instructions[static_cast<std::size_t>(c)].selection.empty();
+  };
+  const std::vector<int> seen = scenario.commands_of("train");
+  const bool abstraction_empty = std::any_of(seen.begin(), seen.end(), is_empty);  // nothing to show for a command
   const bool learns = method && !abstraction_empty;
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
   phases.begin("sample");
+  std::vector<Selection> selections;
+  if (on_selected)
+    for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
   std::vector<Scene> scenes;
   if (learns)
     for (int i = 0; i < cell.demonstrations; ++i)
-      scenes.push_back(
-          training_scene(scenario, cell.layout, on_selected ? selection : scenario.truth, cell.training_seed, i));
+      scenes.push_back(training_scene(scenario, cell.layout, selections, cell.training_seed, i));
 
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
-  std::vector<Demonstration> demonstrations =
-      cached_demonstrations(demonstration_cache(job), *environment, scenes, needs, scenario.command.utterance,
-                            [&](int n) { phases.count(n); });
-  for (Demonstration& d : demonstrations) d.instruction.selection = selection;
+  std::vector<Demonstration> demonstrations = cached_demonstrations(demonstration_cache(job), *environment, scenes,
+                                                                    needs, utterances, [&](int n) { phases.count(n); });
+  for (std::size_t i = 0; i < demonstrations.size(); ++i)
+    demonstrations[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
 
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
@@ -171,20 +184,24 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
 
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
-  const std::vector<TestScene> tests = test_scenes(scenario, cell);
-  const Instruction instruction{scenario.command.utterance, selection};
+  std::vector<TestScene> tests = test_scenes(scenario, cell);
+  for (TestScene& test : tests) test.abstraction_empty = abstraction_empty || is_empty(test.scene.command);
+  const Actor actor = policy              ? policy_actor(*policy, instructions, id)
+                      : abstraction_empty ? Actor()
+                                          : reference_actor(id);
   const std::vector<Episode> episodes =
-      abstraction_empty
-          ? without_abstraction(tests)
-          : evaluate(*environment, tests, policy ? policy_actor(*policy, instruction, id) : reference_actor(id),
-                     [&](int n) { phases.count(n); });
+      evaluate(*environment, scenario.space, tests, actor, [&](int n) { phases.count(n); });
 
   // 6 record: no clock but in timing.json.
   std::string episode_lines;
   for (const Episode& episode : episodes) episode_lines += canonical(to_json(episode)) + '\n';
-  const Json chosen{{"selection", to_json(selection)}, {"quality", quality(selection, scenario.truth)}};
+  Json commands = Json::array();
+  for (std::size_t c = 0; c < instructions.size(); ++c)
+    commands.push_back({{"utterance", utterances[c]},
+                        {"selection", to_json(instructions[c].selection)},
+                        {"quality", quality(instructions[c].selection, scenario.commands[c].truth)}});
   record(job, {{"cell.json", canonical(to_json(cell)) + '\n'},
-               {"selection.json", canonical(chosen) + '\n'},
+               {"selection.json", canonical({{"commands", commands}}) + '\n'},
                {"training.jsonl", training.lines},
                {"episodes.jsonl", episode_lines},
                {"timing.json", canonical(phases.seconds()) + '\n'}});
