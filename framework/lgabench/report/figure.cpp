@@ -79,7 +79,7 @@ std::string title(const std::string& suite, const Table& table, const std::strin
   return fmt::format("{}, {}{}: {}", suite, table.title(), rest, table.title(mean_scenario));
 }
 
-std::string settings(const std::string& title, const std::string& axis, double left, double right,
+std::string settings(const std::string& title, const std::string& axis, double left, double right, double bottom,
                      const std::string& ticks) {
   return fmt::format(
       "set terminal svg size 900,520 font 'Helvetica,14' background '#ffffff' noenhanced\n"
@@ -88,13 +88,13 @@ std::string settings(const std::string& title, const std::string& axis, double l
       "set ylabel 'success'\n"
       "set xrange [{}:{}]\n"
       "set xtics ({})\n"
-      "set yrange [-0.02:1.03]\n"
+      "set yrange [{}:1.03]\n"
       "set ytics 0, 0.2 nomirror\n"
       "set xtics nomirror\n"
       "set border 3 lc rgb '#444444'\n"
       "set grid ytics lc rgb '#dddddd' lt 1 lw 1\n"
       "set key outside right top Left reverse samplen 2.5 spacing 1.3\n",
-      quoted(title), quoted(axis), left, right, ticks);
+      quoted(title), quoted(axis), left, right, ticks, bottom);
 }
 
 // Writes RUN/figures/NAME.gp and runs it.
@@ -151,7 +151,7 @@ std::string curves_script(const std::string& suite, const Table& table, const st
   std::string ticks;
   for (const int n : columns) ticks += fmt::format("{}{}", ticks.empty() ? "" : ", ", n);
   return script.text(settings(title(suite, table, table.arms.size() > 1 ? ", " + arm : ""), "demonstrations",
-                              columns.front() - pad, columns.back() + pad, ticks));
+                              columns.front() - pad, columns.back() + pad, -0.02, ticks));
 }
 
 std::string bars_script(const std::string& suite, const Table& table) {
@@ -172,9 +172,9 @@ std::string bars_script(const std::string& suite, const Table& table) {
   const double width = group / static_cast<double>(std::max<std::size_t>(methods.size(), 1));
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const std::string bars = data(methods[i], (static_cast<double>(i) + 0.5) * width - group / 2);
-    script.add(bars, fmt::format("using 1:2:({:.6g}) with boxes fs solid 0.85 noborder lc rgb '{}' title {}",
-                                 width * 0.9, display_color(methods[i], i), quoted(display_name(methods[i]))));
-    script.add(bars, "with yerrorbars lw 1.4 pt -1 lc rgb '#222222' notitle");
+    script.add(bars, fmt::format("using 1:2:({:.6g}) with boxes fs solid noborder lc rgb '{}' title {}", width * 0.9,
+                                 display_color(methods[i], i), quoted(display_name(methods[i]))));
+    script.add(bars, "with yerrorbars lw 1.4 ps 0 lc rgb '#222222' notitle");
   }
   for (const std::string& id : table.references(mean_scenario))
     script.add(data(id, -0.46),
@@ -186,7 +186,7 @@ std::string bars_script(const std::string& suite, const Table& table) {
   for (std::size_t arm = 0; arm < table.arms.size(); ++arm)
     ticks += fmt::format("{}{} {}", arm == 0 ? "" : ", ", quoted(table.arms[arm]), arm);
   return script.text(settings(title(suite, table, fmt::format(", {} demonstrations", n)), "arm", -0.6,
-                              static_cast<double>(table.arms.size()) - 0.4, ticks));
+                              static_cast<double>(table.arms.size()) - 0.4, 0, ticks));
 }
 
 std::vector<Figure> draw_figures(const fs::path& run, const std::string& suite, const Table& table,

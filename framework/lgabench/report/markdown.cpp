@@ -126,16 +126,16 @@ std::string success(const Summary& summary, const PaperValues& paper, const std:
     for (const Figure& figure : figures[i])
       text += figure.problem.empty() ? fmt::format("![{}]({})\n\n", figure.title, figure.file)
                                      : fmt::format("No figure: {}.\n\n", figure.problem);
-    for (const View& view : views(table)) {
-      const bool arms = table.arms.size() > 1;
-      text += arms ? fmt::format("### {}\n\nColumns: arms of the test.\n\n", view.corner)
-                   : "Columns: number of demonstrations.\n\n";
+    const std::vector<View> all = views(table);
+    for (const View& view : all) {
+      const char* gap = &view == &all.front() ? "" : "\n";
+      text += table.arms.size() > 1 ? fmt::format("{}### {}\n\nColumns: arms of the test.\n\n", gap, view.corner)
+                                    : "Columns: number of demonstrations.\n\n";
       text += table_of(table, view.columns, success_text, {mean_scenario}, paper);
       text += "\nEach scenario:\n\n" + table_of(table, view.columns, success_text, each, paper);
       if (!view.shifted.empty())
         text += fmt::format("\nChange against {}, scene by scene:\n\n", plain(table.arms.front())) +
                 table_of(table, view.shifted, shift_text, table.scenarios(), {});
-      if (arms) text += "\n";
     }
   }
   return text;
@@ -271,9 +271,8 @@ constexpr const char* how_to_read =
     "scene. Its interval is the cluster bootstrap's, nowhere narrower than Bonett and Price's for paired proportions "
     "on all episodes.\n"
     "- Reference rows are no methods: the best constant action knows the training actions alone, the random visible "
-    "object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing and stand the "
-    "same "
-    "in every column.\n";
+    "object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing and are "
+    "the same for every number of demonstrations.\n";
 
 }  // namespace
 
