@@ -1,6 +1,10 @@
 // Reports of fabricated runs with several arms and several commands.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+
+#include <lgabench/report/paper.hpp>
 #include <lgabench/report/report.hpp>
 
 #include "report_run.hpp"
@@ -114,6 +118,15 @@ TEST(Arms, SameActionsAreMarkedForMethodsAlone) {
   EXPECT_SILENT(report::table_text(run.path), "same actions");
 }
 
+TEST(Arms, NoActionIsNotTheSameAction) {
+  FabricatedRun run;
+  Spec spec = shifted("lga", "q2_heart", 0, 0, 0, 0);
+  spec.failure = "abstraction_empty";
+  for (Arm& arm : spec.arms) arm.action = std::nan("");
+  run.add(spec);
+  EXPECT_FALSE(rows_of(run).at("q2_heart lga texture").at("shift").at("same_actions"));
+}
+
 TEST(Arms, OfOtherCommandsAreNotPaired) {
   FabricatedRun run;
   run.run["suite"] = "q3";
@@ -127,6 +140,20 @@ TEST(Arms, OfOtherCommandsAreNotPaired) {
   EXPECT_SILENT(text, "change against");
   EXPECT_SAYS(page, "| scenario | method | seen | unseen | *the paper, its arms pooled* |\n");
   EXPECT_SAYS(line_with(page, "| q3_fruit | **LGA**"), "| *0.95* |");
+  EXPECT_SILENT(line_with(page, "| mean over 1 scenario | **LGA**"), "*0.95*");  // the paper gives no mean
+}
+
+TEST(Paper, BarsBelongToTheirScenarios) {
+  const report::PaperValues q2 = report::paper_values("q2"), q3 = report::paper_values("q3");
+  for (const auto& [scenario, rate] :
+       std::map<std::string, double>{{"q2_heart", .18}, {"q2_letter", .07}, {"q2_bowl", .18}, {"q2_block", 0}})
+    EXPECT_EQ(q2.find(scenario, "GCBC-DART", 50), rate) << scenario;
+  EXPECT_EQ(q2.find("q2_bowl", "LGA-S", 50), .97);
+  for (const auto& [scenario, rate] :
+       std::map<std::string, double>{{"q3_fruit", .13}, {"q3_food", .18}, {"q3_utensil", .35}})
+    EXPECT_EQ(q3.find(scenario, "GCBC-DART", 50), rate) << scenario;
+  EXPECT_EQ(q3.find("q3_fruit", "LGA", 10), std::nullopt);
+  EXPECT_TRUE(report::paper_values("factorial").rates.empty());
 }
 
 TEST(Commands, EachHasItsOwnSelection) {

@@ -1,5 +1,6 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string name;
     int won = 0;                   // of 20: the first
     std::vector<int> commands{0};  // given in turn
-    double action = 0.5;
+    double action = 0.5;           // each of the 12 numbers; NaN: gave none
   };
 
   struct Spec {
@@ -109,14 +110,15 @@ class FabricatedRun : public TemporaryDirectory {
     for (const Arm& arm : s.all_arms())
       for (std::size_t i = 0; i < 20; ++i) {
         const bool won = static_cast<int>(i) < arm.won;
-        episodes += canonical({{"arm", arm.name},
-                               {"index", i},
-                               {"command", arm.commands[i % arm.commands.size()]},
-                               {"scene", hex(i)},
-                               {"success", won},
-                               {"failure", won ? "none" : s.failure},
-                               {"action", std::vector<double>(12, arm.action)}}) +
-                    '\n';
+        episodes +=
+            canonical({{"arm", arm.name},
+                       {"index", i},
+                       {"command", arm.commands[i % arm.commands.size()]},
+                       {"scene", hex(i)},
+                       {"success", won},
+                       {"failure", won ? "none" : s.failure},
+                       {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
+            '\n';
       }
     for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
     const Json timing{{"select_s", 0.25}, {"sample_s", 0.5},   {"demonstrate_s", 1.0},
