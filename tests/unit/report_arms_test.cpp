@@ -180,7 +180,7 @@ TEST(Figures, OneNumberOfDemonstrationsMakesBarsOfTheArms) {
   rows_of(run);
   const std::string script = read_file(run.path / "figures/success_cells_mujoco.gp");
   EXPECT_SAYS(script, "set xtics ('control' 0, 'texture' 1, 'hard' 2)");
-  EXPECT_SAYS(script, "with boxes");
+  EXPECT_SAYS(script, "with boxerrorbars");
   EXPECT_SAYS(script, "\n1.2 0.2 0.08");  // GCBC-DART in the arm texture
   EXPECT_SAYS(read_file(run.path / "figures/success_cells_mujoco.svg"), "GCBC-DART");
   EXPECT_SAYS(read_file(run.path / "report.md"), "![success](figures/success_cells_mujoco.svg)");

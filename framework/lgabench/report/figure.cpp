@@ -171,10 +171,9 @@ std::string bars_script(const std::string& suite, const Table& table) {
   const std::vector<std::string> methods = table.methods(mean_scenario);
   const double width = group / static_cast<double>(std::max<std::size_t>(methods.size(), 1));
   for (std::size_t i = 0; i < methods.size(); ++i) {
-    const std::string bars = data(methods[i], (static_cast<double>(i) + 0.5) * width - group / 2);
-    script.add(bars, fmt::format("using 1:2:({:.6g}) with boxes fs solid noborder lc rgb '{}' title {}", width * 0.9,
-                                 display_color(methods[i], i), quoted(display_name(methods[i]))));
-    script.add(bars, "with yerrorbars lw 1.4 ps 0 lc rgb '#222222' notitle");
+    script.add(data(methods[i], (static_cast<double>(i) + 0.5) * width - group / 2),
+               fmt::format("using 1:2:3:4:({:.6g}) with boxerrorbars fs solid noborder lc rgb '{}' title {}",
+                           width * 0.9, display_color(methods[i], i), quoted(display_name(methods[i]))));
   }
   for (const std::string& id : table.references(mean_scenario))
     script.add(data(id, -0.46),
@@ -185,7 +184,8 @@ std::string bars_script(const std::string& suite, const Table& table) {
   std::string ticks;
   for (std::size_t arm = 0; arm < table.arms.size(); ++arm)
     ticks += fmt::format("{}{} {}", arm == 0 ? "" : ", ", quoted(table.arms[arm]), arm);
-  return script.text(settings(title(suite, table, fmt::format(", {} demonstrations", n)), "arm", -0.6,
+  return script.text("set errorbars 0.7 front lw 1.4 lc rgb '#222222'\n" +
+                     settings(title(suite, table, fmt::format(", {} demonstrations", n)), "arm", -0.6,
                               static_cast<double>(table.arms.size()) - 0.4, 0, ticks));
 }
 
