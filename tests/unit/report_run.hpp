@@ -1,5 +1,6 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -27,15 +28,36 @@ class FabricatedRun : public TemporaryDirectory {
            {"started", "2024-05-07T12:00:00Z"}};
   }
 
+  struct Arm {
+    std::string name;
+    int won = 0;                   // of 20: the first
+    std::vector<int> commands{0};  // given in turn
+    double action = 0.5;           // each of the 12 numbers; NaN: gave none
+  };
+
   struct Spec {
     std::string method;
     int won = 0;  // of 20: the first
     std::string scenario = "heart";
     int demonstrations = 20, seed = 0;
     std::string kind = "method", layout = "cells", failure = "missed_object";
+    std::vector<Arm> arms{};                               // none: "test", with `won`
+    std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
+
+    std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
+    std::vector<std::pair<std::string, bool>> all_commands() const {
+      return commands.empty() ? std::vector<std::pair<std::string, bool>>{{"Bring me the " + scenario + ".", true}}
+                              : commands;
+    }
   };
 
   static Json cell_json(const Spec& s) {
+    Json commands = Json::array(), tests = Json::array();
+    for (const auto& [utterance, seen] : s.all_commands())
+      commands.push_back({{"utterance", utterance},
+                          {"seen", seen},
+                          {"truth", {{"target", {{"object_types", {"heart"}}, {"textures", "ALL"}}}}}});
+    for (const Arm& arm : s.all_arms()) tests.push_back({{"arm", arm.name}});
     return {{"suite", "q1"},
             {"environment", "tabletop"},
             {"layout", s.layout},
@@ -43,8 +65,8 @@ class FabricatedRun : public TemporaryDirectory {
              {{"id", s.scenario},
               {"environment", "tabletop"},
               {"task", "pick_and_place"},
-              {"utterance", "Bring me the " + s.scenario + "."},
-              {"tests", {{{"arm", "test"}}}}}},
+              {"commands", commands},
+              {"tests", tests}}},
             {"engine", "mujoco"},
             {"method", {{"kind", s.kind}, {"id", s.method}, {"version", "0.1"}, {"options", Json::object()}}},
             {"demonstrations", s.demonstrations},
@@ -57,6 +79,15 @@ class FabricatedRun : public TemporaryDirectory {
   }
 
   static Json selection_json(const Spec& s) {
+    Json commands = Json::array();
+    for (const auto& [utterance, seen] : s.all_commands()) {
+      commands.push_back(selected_json(s));
+      commands.back()["utterance"] = utterance;
+    }
+    return {{"commands", commands}};
+  }
+
+  static Json selected_json(const Spec& s) {
     const Json quality{{"precision", 1.0}, {"recall", 0.75}, {"size", 3}, {"true_size", 4}};
     const bool selects = s.method == "lga" || s.method == "human";
     return {
@@ -76,14 +107,19 @@ class FabricatedRun : public TemporaryDirectory {
   /// A cell that finished; returns its directory.
   fs::path add(const Spec& s) {
     std::string episodes, training;
-    for (int i = 0; i < 20; ++i)
-      episodes += canonical({{"arm", "test"},
-                             {"index", i},
-                             {"scene", hex(static_cast<std::uint64_t>(i))},
-                             {"success", i < s.won},
-                             {"failure", i < s.won ? "none" : s.failure},
-                             {"action", std::vector<double>(12, 0.5)}}) +
-                  '\n';
+    for (const Arm& arm : s.all_arms())
+      for (std::size_t i = 0; i < 20; ++i) {
+        const bool won = static_cast<int>(i) < arm.won;
+        episodes +=
+            canonical({{"arm", arm.name},
+                       {"index", i},
+                       {"command", arm.commands[i % arm.commands.size()]},
+                       {"scene", hex(i)},
+                       {"success", won},
+                       {"failure", won ? "none" : s.failure},
+                       {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
+            '\n';
+      }
     for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
     const Json timing{{"select_s", 0.25}, {"sample_s", 0.5},   {"demonstrate_s", 1.0},
                       {"learn_s", 4.0},   {"evaluate_s", 2.0}, {"total_s", 7.75}};

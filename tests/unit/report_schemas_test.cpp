@@ -10,10 +10,14 @@ namespace {
 
 using Complaints = std::vector<std::string>;
 
-// Every file of a run with a finished and a failed cell, as schema name and document.
+// Every file of a run with finished cells (one of them with several arms) and a failed one, as schema name and
+// document.
 std::vector<std::pair<std::string, Json>> run_documents() {
   FabricatedRun run;
   run.add({"lga", 15});
+  FabricatedRun::Spec arms{"lga", 0, "letter"};
+  arms.arms = {{"test", 15}, {"hard", 10}};
+  run.add(arms);
   run.add_failed({"gcbc_dart", 0}, "plugin");
   run.save();
   report::write_report(run.path);
@@ -38,6 +42,14 @@ TEST(Schemas, DemandEveryMemberOfARow) {
       }
 }
 
+TEST(Schemas, DescribeTheShiftOfAnArm) {
+  int shifts = 0;
+  for (const auto& [schema, document] : run_documents())
+    if (schema == "summary")
+      for (const Json& row : document.at("rows")) shifts += row.at("shift").is_object() ? 1 : 0;
+  EXPECT_EQ(shifts, 2);  // the scenario's and the mean's: AcceptTheFilesOfARun has seen one
+}
+
 // What each kind of file may not be: a JSON pointer and the value put there.
 TEST(Schemas, RefuseBrokenFiles) {
   const std::vector<std::tuple<std::string, std::string, Json>> faults{
@@ -46,19 +58,26 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"cell", "/method/kind", "baseline"},
       {"cell", "/episodes", 0},
       {"cell", "/extra", 1},
-      {"selection", "/selection/provenance", "guessed"},
-      {"selection", "/quality/target/textures/recall", 1.5},
+      {"cell", "/scenario/commands", Json::array()},
+      {"cell", "/scenario/commands/0/seen", "yes"},
+      {"selection", "/commands", Json::array()},
+      {"selection", "/commands/0/utterance", 1},
+      {"selection", "/commands/0/selection/provenance", "guessed"},
+      {"selection", "/commands/0/quality/target/textures/recall", 1.5},
       {"training", "/loss", "low"},
       {"training", "/epoch", 0.5},
       {"episodes", "/failure", "bad_luck"},
       {"episodes", "/success", true},  // and a failure
       {"episodes", "/action", {1, 2, 3}},
+      {"episodes", "/command", -1},
       {"timing", "/learn_s", -1.0},
       {"status", "/state", "done"},
       {"status", "/fault", "nobody"},
       {"status", "/files", {{"cell.json", "abc"}}},
       {"summary", "/rows/0/success", 1.5},
       {"summary", "/rows/0/marks", {"good"}},
+      {"summary", "/rows/0/shift", {{"difference", 0.5}}},
+      {"summary", "/rows/0/phi", {{"quality", nullptr}}},
       {"summary", "/rows/0/failures", {{"bad_luck", 1}}},
       {"summary", "/failed_cells/0/fault", nullptr}};
   const auto all = run_documents();

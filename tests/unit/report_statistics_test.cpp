@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <lgabench/report/statistics.hpp>
 
 namespace lgabench::report {
@@ -79,6 +81,47 @@ TEST(SuccessInterval, IsTheWiderOfBootstrapAndWilson) {
   const Interval differ = success_interval({{0, 0, 0}, {1, 1, 1}}, 120, "x");
   EXPECT_EQ(differ.low, 0);
   EXPECT_EQ(differ.high, 1);
+}
+
+// How often the interval holds the truth, summed over every outcome of n scenes with its multinomial probability.
+double coverage(double only_first, double only_second, int n) {
+  const double neither = 1 - only_first - only_second, truth = only_second - only_first;
+  double covered = 0;
+  for (int b = 0; b <= n; ++b)
+    for (int c = 0; b + c <= n; ++c) {
+      const Interval interval = paired_difference(b, c, n);
+      if (interval.low <= truth && truth <= interval.high)
+        covered += std::exp(std::lgamma(n + 1) - std::lgamma(b + 1) - std::lgamma(c + 1) - std::lgamma(n - b - c + 1)) *
+                   std::pow(only_first, b) * std::pow(only_second, c) * std::pow(neither, n - b - c);
+    }
+  return covered;
+}
+
+TEST(PairedDifference, CoversTheTruthAboutAsOftenAsItSays) {
+  for (const int n : {20, 100})
+    for (const double only_first : {.02, .1, .3, .5})
+      for (const double only_second : {.02, .1, .3}) {
+        EXPECT_GT(coverage(only_first, only_second, n), .93) << only_first << " " << only_second << " " << n;
+        if (only_first + only_second >= .2) {  // else few outcomes are likely at all
+          EXPECT_LT(coverage(only_first, only_second, n), .985) << only_first << " " << only_second << " " << n;
+        }
+      }
+}
+
+TEST(PairedDifference, HasASignAndStaysWithinOne) {
+  const Interval a = paired_difference(3, 11, 40), b = paired_difference(11, 3, 40);
+  EXPECT_NEAR(a.low, -b.high, 1e-15);
+  EXPECT_NEAR(a.high, -b.low, 1e-15);
+  EXPECT_GT(a.low + a.high, 0);
+  EXPECT_EQ(paired_difference(0, 20, 20).high, 1);
+}
+
+TEST(ChangeInterval, IsTheWiderOfBootstrapAndPairedDifference) {
+  const Interval agree = change_interval({{0, 0, 0}}, 0, 0, 60, "x");
+  EXPECT_EQ(agree.low, paired_difference(0, 0, 60).low);
+  const Interval differ = change_interval({{0, 0, 0}, {-1, -1, -1}}, 60, 0, 120, "x");
+  EXPECT_EQ(differ.low, -1);
+  EXPECT_EQ(differ.high, 0);
 }
 
 }  // namespace

@@ -53,9 +53,11 @@ TEST(Summary, RowsHaveTheExactCounts) {
   EXPECT_NEAR(lga.at("high"), .8881, 5e-5);
   EXPECT_EQ(lga.at("failures"), (Json{{"missed_object", 5}}));
   EXPECT_EQ(lga.at("marks"), Json::array());
-  EXPECT_EQ(lga.at("phi").at("provenance"), "recorded");
-  EXPECT_EQ(lga.at("phi").at("lm_queries"), 112);
-  EXPECT_EQ(lga.at("phi").at("quality").at("target").at("textures").at("recall"), 0.75);
+  ASSERT_EQ(lga.at("phi").size(), 1u);
+  EXPECT_EQ(lga.at("phi").at(0).at("provenance"), "recorded");
+  EXPECT_EQ(lga.at("phi").at(0).at("lm_queries"), 112);
+  EXPECT_EQ(lga.at("phi").at(0).at("quality").at("target").at("textures").at("recall"), 0.75);
+  EXPECT_EQ(lga.at("shift"), nullptr);
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("phi"), nullptr);
 
   const Json mean = row_of(summary, "(mean)", "lga");
@@ -204,7 +206,9 @@ TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
   report::write_report(run.path);
   const std::string page = read_file(run.path / "report.md");
   EXPECT_SAYS(page, "| *LGA, the paper* | *0.293* |");
-  EXPECT_SAYS(page, "| heart | LGA | target | a language model's recorded answers | gpt-4 | 1.00 | 0.75 | 3 of 4 |");
+  EXPECT_SAYS(page,
+              "| heart | Bring me the heart. | LGA | target | a language model's recorded answers | gpt-4 | 1.00 | "
+              "0.75 | 3 of 4 |");
   EXPECT_SAYS(page, "fetch \\| heart");  // a bar inside a cell
   EXPECT_SAYS(page, "| cells | mujoco | LGA | 1 | 0.25 | 0.50 | 1.00 | 4.00 | 2.00 | 7.75 |");
 }
@@ -223,10 +227,11 @@ TEST(Report, CsvHoldsTheRows) {
   const std::string csv = read_file(run.path / "summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
-            "n_error,marks,missed_object,wrong_object,bad_placement,bad_angle,missed_zone,touched_obstacle,"
+            "against,difference,difference_low,difference_high,same_actions,n_error,marks,missed_object,wrong_object,"
+            "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
   EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,20,15,0.75,0.53");
-  EXPECT_SAYS(csv, ",0,,5,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_SAYS(csv, ",,,,,,0,,5,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST(Report, WithoutGnuplotItSaysSoAndGoesOn) {
@@ -301,6 +306,14 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
   EXPECT_SAYS(broken("episodes.jsonl", [](auto text) { return text.substr(0, text.find('\n') + 1); }),
               "episodes.jsonl: line 1: expected 20 episodes of arm \"test\", got 1");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"index\":3", "\"index\":4")),
+              "episodes.jsonl: line 5: /index: expected each index once");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("\"command\":0", "\"command\":1")),
+              "episodes.jsonl: line 1: /command: expected");
+  EXPECT_SAYS(broken("selection.json", replacing("me the heart", "it")),
+              "selection.json: /commands/0/utterance: expected the scenario's command \"Bring me the heart.\"");
+  EXPECT_SAYS(broken("selection.json", [](auto) { return "{\"commands\":[]}\n"; }),
+              "selection.json: /commands: expected an entry for each of the scenario's 1 commands");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("0.5", "0.25")),
               "episodes.jsonl: differs from its checksum in status.json");
 }
 

@@ -34,13 +34,27 @@ std::string head_of(const std::vector<std::string>& names, std::size_t words) {
   return row_of(names) + row_of(rules);
 }
 
+bool has_unseen(const RunResults& run) {
+  return std::any_of(run.cells.begin(), run.cells.end(), [](const CellResult& cell) {
+    return std::any_of(cell.commands.begin(), cell.commands.end(), [](const auto& c) { return !c.seen; });
+  });
+}
+
+// Whether demonstrations with the command were given, where that is not so for all.
+std::string command_text(const std::string& utterance, bool seen, bool tell) {
+  return plain(utterance) + (!tell ? "" : seen ? " (seen)" : " (unseen)");
+}
+
 std::string what_was_run(const RunResults& run) {
   std::size_t failed = 0;
-  std::vector<std::pair<std::string, std::string>> commands;
+  std::vector<std::string> commands;  // rows
+  const bool tell = has_unseen(run);
   for (const CellResult& cell : run.cells) {
     failed += cell.failed ? 1 : 0;
-    const std::pair command(cell.scenario, cell.utterance);
-    if (std::find(commands.begin(), commands.end(), command) == commands.end()) commands.push_back(command);
+    for (const CommandResult& command : cell.commands) {
+      const std::string row = row_of({plain(cell.scenario), command_text(command.utterance, command.seen, tell)});
+      if (std::find(commands.begin(), commands.end(), row) == commands.end()) commands.push_back(row);
+    }
   }
   std::string text = "## What was run\n\n";
   text += fmt::format("- cells: {} finished, {} failed, {} not run\n", run.cells.size() - failed, failed, run.not_run);
@@ -48,36 +62,53 @@ std::string what_was_run(const RunResults& run) {
     if (value.is_primitive() && !value.is_null() && value != "") text += fmt::format("- {}: {}\n", name, plain(value));
   for (const auto& item : run.json.at("machine").items())
     text += fmt::format("- machine, {}: {}\n", item.key(), plain(item.value()));
-  text += "\n" + head_of({"scenario", "command"}, 2);
-  for (const auto& [scenario, utterance] : commands) text += row_of({plain(scenario), plain(utterance)});
-  return text;
+  return text + "\n" + head_of({"scenario", "command"}, 2) + fmt::format("{}", fmt::join(commands, ""));
 }
 
-std::string paper_text(const PaperValues& paper, const std::string& method, int demonstrations) {
-  const auto values = paper.find(method);
-  if (values == paper.end()) return "";
-  const auto value = values->second.find(demonstrations);
-  return value == values->second.end() ? "" : fmt::format("*{:.3f}*", value->second);
+std::string paper_text(const std::optional<double>& rate, int digits) {
+  return rate ? fmt::format("*{:.{}f}*", *rate, digits) : "";
 }
 
-// Success of every method, one column a number of demonstrations; the paper's values under ours on the mean.
-std::string success_table(const Table& table, const PaperValues& paper, const std::vector<std::string>& scenarios) {
-  const std::vector<int> columns = table.demonstrations();
+// The method's values at the columns' numbers of demonstrations.
+std::vector<std::string> paper_texts(const PaperValues& paper, const std::string& scenario, const std::string& id,
+                                     const std::vector<Column>& columns) {
+  std::vector<std::string> texts;
+  for (const Column& c : columns)
+    texts.push_back(paper_text(paper.find(scenario, display_name(id), c.demonstrations), 3));
+  return texts;
+}
+
+// `columns` of `text_of` for every method of `scenarios`.
+std::string table_of(const Table& table, const std::vector<Column>& columns, std::string (*text_of)(const Row*),
+                     const std::vector<std::string>& scenarios, const PaperValues& paper) {
+  // Beside several arms the paper's value, pooled over its own, has a column; else its curve a row.
+  const bool arms = table.arms.size() > 1;
+  const auto pooled = [&](const std::string& scenario, const std::string& id) {
+    return paper_text(paper.find(scenario, display_name(id), columns.front().demonstrations), 2);
+  };
+  bool beside = false;
+  for (const std::string& scenario : scenarios)
+    for (const std::string& id : table.methods(scenario)) beside = beside || (arms && !pooled(scenario, id).empty());
+
   std::vector<std::string> head{"scenario", "method"};
-  for (const int n : columns) head.push_back(std::to_string(n));
+  for (const Column& column : columns) head.push_back(plain(column.head));
+  if (beside) head.emplace_back("*the paper, its arms pooled*");
   std::string text = head_of(head, 2);
   for (const std::string& scenario : scenarios) {
     const auto line = [&](const std::string& id, const std::string& shown) {
       std::vector<std::string> cells{plain(table.title(scenario)), shown};
-      for (const int n : columns) cells.push_back(success_text(table.find(scenario, id, n)));
+      for (const Column& c : columns) cells.push_back(text_of(table.find(c.arm, scenario, id, c.demonstrations)));
+      if (beside) cells.push_back(pooled(scenario, id));
       text += row_of(cells);
     };
     for (const std::string& id : table.methods(scenario)) {
-      const std::string name = display_name(id);
-      line(id, "**" + plain(name) + "**");
-      if (scenario != mean_scenario || paper.count(name) == 0) continue;
-      std::vector<std::string> cells{"*the paper's scenarios*", "*" + plain(name) + ", the paper*"};
-      for (const int n : columns) cells.push_back(paper_text(paper, name, n));
+      const std::string name = plain(display_name(id));
+      line(id, "**" + name + "**");
+      if (arms || scenario != mean_scenario) continue;
+      std::vector<std::string> cells{"*the paper's scenarios*", "*" + name + ", the paper*"};
+      const auto published = paper_texts(paper, scenario, id, columns);
+      if (std::all_of(published.begin(), published.end(), [](const auto& t) { return t.empty(); })) continue;
+      cells.insert(cells.end(), published.begin(), published.end());
       text += row_of(cells);
     }
     for (const std::string& id : table.references(scenario)) line(id, "reference: " + plain(display_name(id)));
@@ -85,17 +116,27 @@ std::string success_table(const Table& table, const PaperValues& paper, const st
   return text;
 }
 
-std::string success(const Summary& summary, const PaperValues& paper, const std::vector<Figure>& figures) {
+std::string success(const Summary& summary, const PaperValues& paper, const std::vector<std::vector<Figure>>& figures) {
   std::string text;
   for (std::size_t i = 0; i < summary.tables.size(); ++i) {
     const Table& table = summary.tables[i];
     std::vector<std::string> each = table.scenarios();
     each.pop_back();  // the mean
     text += fmt::format("\n## Success: {}\n\n", plain(table.title()));
-    text += figures[i].problem.empty() ? fmt::format("![success against demonstrations]({})\n\n", figures[i].file)
-                                       : fmt::format("No figure: {}.\n\n", figures[i].problem);
-    text += "Columns: number of demonstrations.\n\n" + success_table(table, paper, {mean_scenario});
-    text += "\nEach scenario:\n\n" + success_table(table, {}, each);
+    for (const Figure& figure : figures[i])
+      text += figure.problem.empty() ? fmt::format("![{}]({})\n\n", figure.title, figure.file)
+                                     : fmt::format("No figure: {}.\n\n", figure.problem);
+    const std::vector<View> all = views(table);
+    for (const View& view : all) {
+      const char* gap = &view == &all.front() ? "" : "\n";
+      text += table.arms.size() > 1 ? fmt::format("{}### {}\n\nColumns: arms of the test.\n\n", gap, view.corner)
+                                    : "Columns: number of demonstrations.\n\n";
+      text += table_of(table, view.columns, success_text, {mean_scenario}, paper);
+      text += "\nEach scenario:\n\n" + table_of(table, view.columns, success_text, each, paper);
+      if (!view.shifted.empty())
+        text += fmt::format("\nChange against {}, scene by scene:\n\n", plain(table.arms.front())) +
+                table_of(table, view.shifted, shift_text, table.scenarios(), {});
+    }
   }
   return text;
 }
@@ -106,37 +147,41 @@ std::string count(const Json& value) { return value.is_number() ? fmt::format("{
 
 // Precision, recall and size of every Selection; equal ones (of other layouts, demonstrations) once.
 std::string phi(const RunResults& run, const Summary& summary) {
-  std::map<std::string, std::string> commands;
-  for (const CellResult& cell : run.cells) commands[cell.scenario] = cell.utterance;
+  const bool tell = has_unseen(run);
   std::string text;
-  std::set<std::string> seen, wordings;
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows) {
-      if (row.phi.is_null() || !seen.insert(row.scenario + '\n' + row.method + '\n' + canonical(row.phi)).second)
-        continue;
-      for (const auto& [about, groups] : row.phi.at("quality").items()) {
-        if (groups.is_null()) continue;
-        std::vector<std::string> cells{plain(row.scenario), plain(display_name(row.method)), about,
-                                       plain(provenance_words(row.phi.at("provenance"))), plain(row.phi.at("source"))};
-        for (const char* group : {"object_types", "textures"}) {
-          const Json numbers = groups.value(group, Json::object());
-          cells.push_back(share(numbers.value("precision", Json())));
-          cells.push_back(share(numbers.value("recall", Json())));
-          cells.push_back(count(numbers.value("size", Json())) + " of " + count(numbers.value("true_size", Json())));
-        }
-        cells.push_back(count(row.phi.at("lm_queries")));
-        text += row_of(cells);
+  std::set<std::string> shown, wordings;
+  const auto add = [&](const Row& row, const Json& phi) {
+    if (!shown.insert(row.scenario + '\n' + row.method + '\n' + canonical(phi)).second) return;
+    for (const auto& [about, groups] : phi.at("quality").items()) {
+      if (groups.is_null()) continue;
+      std::vector<std::string> cells{plain(row.scenario),
+                                     command_text(phi.at("utterance"), phi.at("seen"), tell),
+                                     plain(display_name(row.method)),
+                                     about,
+                                     plain(provenance_words(phi.at("provenance"))),
+                                     plain(phi.at("source"))};
+      for (const char* group : {"object_types", "textures"}) {
+        const Json numbers = groups.value(group, Json::object());
+        cells.push_back(share(numbers.value("precision", Json())));
+        cells.push_back(share(numbers.value("recall", Json())));
+        cells.push_back(count(numbers.value("size", Json())) + " of " + count(numbers.value("true_size", Json())));
       }
-      if (const std::string asked = row.phi.at("asked_as"); asked != commands[row.scenario])
-        wordings.insert(
-            fmt::format("- {}, of {}: “{}”\n", plain(row.scenario), plain(row.phi.at("source")), plain(asked)));
+      cells.push_back(count(phi.at("lm_queries")));
+      text += row_of(cells);
     }
+    if (phi.at("asked_as") != phi.at("utterance"))
+      wordings.insert(
+          fmt::format("- {}, of {}: “{}”\n", plain(row.scenario), plain(phi.at("source")), plain(phi.at("asked_as"))));
+  };
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows)
+      for (const Json& phi : row.phi) add(row, phi);
   if (text.empty()) return "";
   return "\n## The feature abstraction φ̂\n\nAgainst the scenario's true distribution: precision and recall of what was "
          "selected, and how many were selected of how many that are true.\n\n" +
-         head_of({"scenario", "method", "about", "answered by", "source", "types: precision", "recall", "selected",
-                  "textures: precision", "recall", "selected", "queries"},
-                 5) +
+         head_of({"scenario", "command", "method", "about", "answered by", "source", "types: precision", "recall",
+                  "selected", "textures: precision", "recall", "selected", "queries"},
+                 6) +
          text + (wordings.empty() ? "" : "\nWhere the question was worded otherwise than the command:\n\n") +
          fmt::format("{}", fmt::join(wordings, ""));
 }
@@ -152,24 +197,26 @@ std::string failures(const Summary& summary) {
   head.insert(head.end(), words.begin(), words.end());
   std::string text =
       "\n## Failures by type\n\nEpisodes over all scenarios and numbers of demonstrations.\n\n" + head_of(head, 2);
-  for (const Table& table : summary.tables) {
-    auto ids = table.methods(mean_scenario);
-    for (std::string& id : table.references(mean_scenario)) ids.push_back(std::move(id));
-    for (const std::string& id : ids) {
-      int episodes = 0, won = 0;
-      std::map<std::string, int> failed;
-      for (const Row& row : table.rows) {
-        if (!row.is_mean() || row.method != id) continue;
-        episodes += row.episodes;
-        won += row.successes;
-        for (const auto& [word, n] : row.failures) failed[word] += n;
+  for (const Table& table : summary.tables)
+    for (const std::string& arm : table.arms) {
+      auto ids = table.methods(mean_scenario);
+      for (std::string& id : table.references(mean_scenario)) ids.push_back(std::move(id));
+      const std::string title = table.title() + (table.arms.size() > 1 ? ", " + arm : "");
+      for (const std::string& id : ids) {
+        int episodes = 0, won = 0;
+        std::map<std::string, int> failed;
+        for (const Row& row : table.rows) {
+          if (!row.is_mean() || row.arm != arm || row.method != id) continue;
+          episodes += row.episodes;
+          won += row.successes;
+          for (const auto& [word, n] : row.failures) failed[word] += n;
+        }
+        std::vector<std::string> cells{plain(title), plain(display_name(id)), std::to_string(episodes),
+                                       std::to_string(won)};
+        for (const std::string& word : words) cells.push_back(std::to_string(failed[word]));
+        text += row_of(cells);
       }
-      std::vector<std::string> cells{plain(table.title()), plain(display_name(id)), std::to_string(episodes),
-                                     std::to_string(won)};
-      for (const std::string& word : words) cells.push_back(std::to_string(failed[word]));
-      text += row_of(cells);
     }
-  }
   return text;
 }
 
@@ -220,22 +267,25 @@ constexpr const char* how_to_read =
     "from a cluster bootstrap over scenarios, then training seeds (10,000 times), nowhere narrower than Wilson's on "
     "all "
     "episodes. With few seeds or scenarios it is rough.\n"
+    "- A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired scene by "
+    "scene. Its interval is the cluster bootstrap's, nowhere narrower than Bonett and Price's for paired proportions "
+    "on all episodes.\n"
     "- Reference rows are no methods: the best constant action knows the training actions alone, the random visible "
-    "object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing and stand the "
-    "same "
-    "in every column.\n";
+    "object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing and are "
+    "the same for every number of demonstrations.\n";
 
 }  // namespace
 
 std::string markdown(const RunResults& run, const Summary& summary, const PaperValues& paper,
-                     const std::vector<Figure>& figures) {
+                     const std::vector<std::vector<Figure>>& figures) {
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
-  if (!paper.empty())
-    text +=
-        "\nThe paper's values are those of its figure 3a, on the mean over its own scenarios, not only those of this "
-        "run.\n";
+  if (!paper.rates.empty())
+    text += fmt::format("\nThe paper's values, in italics, are those of its figure {}, {}.\n", paper.figure,
+                        paper.rates.count(mean_scenario)
+                            ? "on the mean over its own scenarios, not only those of this run"
+                            : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
   return text + phi(run, summary) + failures(summary) + times(run) + failed_cells(summary) + how_to_read;
 }
 

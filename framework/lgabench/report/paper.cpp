@@ -1,24 +1,71 @@
 #include <lgabench/report/paper.hpp>
 
+#include <fmt/format.h>
+
+#include <vector>
+
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
+namespace {
 
-PaperValues paper_values(const std::string& suite) {
-  PaperValues values;
-  if (suite != "q1") return values;
-  const fs::path file = data_directory() / "paper" / "reference_results.json";
-  const Json json = read_json(file);
-  const JsonReader figure = JsonReader(json, file.string()).at("figure_3a_success_vs_demonstrations");
+// The numbers of an array that must have `size`.
+std::vector<double> rates(const JsonReader& list, std::size_t size) {
+  std::vector<double> all;
+  for (const JsonReader& rate : list.elements()) all.push_back(rate.number());
+  if (all.size() != size) list.fail(fmt::format("{} numbers", size));
+  return all;
+}
+
+void read_curves(const JsonReader& figure, PaperValues& values) {
   const auto demonstrations = figure.at("demonstrations").elements();
   for (const auto& item : figure.json().items()) {
     if (item.key() == "demonstrations") continue;
-    const JsonReader means = figure.at(item.key()).at("mean");
-    const auto rates = means.elements();
-    if (rates.size() != demonstrations.size()) means.fail("a value for each number of demonstrations");
-    for (std::size_t i = 0; i < rates.size(); ++i)
-      values[item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = rates[i].number();
+    const std::vector<double> means = rates(figure.at(item.key()).at("mean"), demonstrations.size());
+    for (std::size_t i = 0; i < means.size(); ++i)
+      values.rates[mean_scenario][item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = means[i];
+  }
+}
+
+// `ids`: our scenarios in the order of the figure's list.
+void read_bars(const JsonReader& figure, const std::vector<std::string>& ids, PaperValues& values) {
+  constexpr int demonstrations = 50;  // section 4.2 and 4.3: "we train on 50 demonstrations"
+  for (const auto& item : figure.json().items()) {
+    if (item.key() == "scenarios") continue;
+    const std::vector<double> bars = rates(figure.at(item.key()), ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) values.rates[ids[i]][item.key()][demonstrations] = bars[i];
+  }
+}
+
+}  // namespace
+
+std::optional<double> PaperValues::find(const std::string& scenario, const std::string& method,
+                                        int demonstrations) const {
+  const auto methods = rates.find(scenario);
+  if (methods == rates.end()) return std::nullopt;
+  const auto values = methods->second.find(method);
+  if (values == methods->second.end()) return std::nullopt;
+  const auto value = values->second.find(demonstrations);
+  return value == values->second.end() ? std::nullopt : std::optional(value->second);
+}
+
+PaperValues paper_values(const std::string& suite) {
+  PaperValues values;
+  if (suite != "q1" && suite != "q2" && suite != "q3") return values;
+  const fs::path file = data_directory() / "paper" / "reference_results.json";
+  const Json json = read_json(file);
+  const JsonReader reader(json, file.string());
+  if (suite == "q1") {
+    values.figure = "3a";
+    read_curves(reader.at("figure_3a_success_vs_demonstrations"), values);
+  } else if (suite == "q2") {
+    values.figure = "4a";
+    read_bars(reader.at("figure_4a_observational_shift"), {"q2_heart", "q2_letter", "q2_bowl", "q2_block"}, values);
+  } else {
+    values.figure = "4b";
+    read_bars(reader.at("figure_4b_linguistic_ambiguity"), {"q3_fruit", "q3_food", "q3_utensil"}, values);
   }
   return values;
 }

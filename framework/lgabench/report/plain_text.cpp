@@ -16,24 +16,25 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, display_width(text)), ' ');
 }
 
-std::string block(const Table& table) {
-  const std::vector<int> columns = table.demonstrations();
-  const std::string title = "demonstrations";
-  std::size_t first = title.size() - 2, wide = 0;  // the title has no indent
+// Columns of `text_of` for every scenario and method, under `corner`.
+std::string block(const Table& table, const std::string& corner, const std::vector<Column>& columns,
+                  std::string (*text_of)(const Row*)) {
+  std::size_t first = corner.size() - 2, wide = 0;  // the corner has no indent
   for (const Row& row : table.rows) {
     first = std::max(first, display_width(display_name(row.method)));
-    wide = std::max(wide, display_width(success_text(&row)));
+    wide = std::max(wide, display_width(text_of(&row)));
   }
+  for (const Column& column : columns) wide = std::max(wide, display_width(column.head));
   first += 4, wide += 2;  // the indent and the gaps between columns
 
   std::string text;
   const auto add = [&text](std::string row) { text += row.erase(row.find_last_not_of(' ') + 1) + '\n'; };
-  std::string head = padded(title, first);
-  for (const int n : columns) head += padded(std::to_string(n), wide);
+  std::string head = padded(corner, first);
+  for (const Column& column : columns) head += padded(column.head, wide);
   add(head);
   const auto line = [&](const std::string& scenario, const std::string& id) {
     std::string row = padded("  " + display_name(id), first);
-    for (const int n : columns) row += padded(success_text(table.find(scenario, id, n)), wide);
+    for (const Column& c : columns) row += padded(text_of(table.find(c.arm, scenario, id, c.demonstrations)), wide);
     add(row);
   };
   for (const std::string& scenario : table.scenarios()) {
@@ -50,7 +51,13 @@ std::string block(const Table& table) {
 std::string plain_text(const RunResults& run, const Summary& summary) {
   std::string text;
   for (const Table& table : summary.tables)
-    text += fmt::format("{}, {}: success [95 % interval]\n\n{}\n", summary.suite, table.title(), block(table));
+    for (const View& view : views(table)) {
+      text += fmt::format("{}, {}: success [95 % interval]\n\n{}\n", summary.suite, table.title(),
+                          block(table, view.corner, view.columns, success_text));
+      if (!view.shifted.empty())
+        text += fmt::format("{}, {}: change against {} [95 % interval]\n\n{}\n", summary.suite, table.title(),
+                            table.arms.front(), block(table, view.corner, view.shifted, shift_text));
+    }
   for (const std::string& note : notes(run, summary)) text += note + '\n';
   for (const CellResult& cell : summary.failed)
     text += fmt::format("failed: {} {} {} {} n={} seed={} ({}): {}\n", cell.method, cell.scenario, cell.layout,

@@ -22,8 +22,8 @@ void write_report(const fs::path& run) {
   write_file(run / "summary.csv", to_csv(summary));
 
   const PaperValues paper = paper_values(summary.suite);
-  std::vector<Figure> figures;
-  for (const Table& table : summary.tables) figures.push_back(draw_figure(run, summary.suite, table, paper));
+  std::vector<std::vector<Figure>> figures;
+  for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, paper, figures));
 }
 

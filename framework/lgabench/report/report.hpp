@@ -12,7 +12,8 @@ namespace lgabench::report {
 void write_report(const fs::path& run);
 
 /// The table for a terminal, fixed width, without colour: a block a scenario and one for their mean; success with its
-/// 95 % interval for each method and number of demonstrations, reference rows below a rule, failed cells last.
+/// 95 % interval for each method and number of demonstrations (with several arms: for each arm, and the change against
+/// the first one where they are paired), reference rows below a rule, failed cells last.
 /// @throws InputError as write_report does.
 std::string table_text(const fs::path& run);
 

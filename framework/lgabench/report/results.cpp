@@ -31,27 +31,52 @@ std::vector<Json> read_lines(const fs::path& file) {
   return lines;
 }
 
-std::vector<PlayedEpisode> read_episodes(const fs::path& file, const CellResult& cell) {
-  std::vector<PlayedEpisode> episodes;
-  std::map<std::string, int> played;
+void read_episodes(const fs::path& file, CellResult& cell) {
+  std::map<std::string, std::map<long long, PlayedEpisode>> played;
   const std::vector<std::string> words = failure_words();
   int line = 0;
   for (const Json& json : read_lines(file)) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
-    PlayedEpisode e{reader.at("arm").string(), reader.at("failure").string(), reader.at("success").boolean()};
-    if (std::find(cell.arms.begin(), cell.arms.end(), e.arm) == cell.arms.end())
+    const std::string arm = reader.at("arm").string();
+    if (std::find(cell.arms.begin(), cell.arms.end(), arm) == cell.arms.end())
       reader.at("arm").fail(fmt::format("an arm of the scenario ({})", fmt::join(cell.arms, ", ")));
+    PlayedEpisode e;
+    e.command =
+        static_cast<std::size_t>(reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1));
+    e.success = reader.at("success").boolean();
+    e.failure = reader.at("failure").string();
     if (e.success != (e.failure == "none")) reader.at("failure").fail("\"none\" exactly on success");
     if (!e.success && std::find(words.begin(), words.end(), e.failure) == words.end())
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));
-    ++played[e.arm];
-    episodes.push_back(std::move(e));
+    if (const JsonReader action = reader.at("action"); !action.json().is_null())
+      for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
+    const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
+    if (!played[arm].emplace(index, std::move(e)).second)
+      reader.at("index").fail(fmt::format("each index once in arm \"{}\"", arm));
   }
-  for (const std::string& arm : cell.arms)
-    if (played[arm] != cell.episodes_per_arm)
+  for (const std::string& arm : cell.arms) {
+    for (auto& item : played[arm]) cell.episodes[arm].push_back(std::move(item.second));
+    if (cell.episodes[arm].size() != static_cast<std::size_t>(cell.episodes_per_arm))
       throw InputError(fmt::format("{}: line {}: expected {} episodes of arm \"{}\", got {}", file.string(), line,
-                                   cell.episodes_per_arm, arm, played[arm]));
-  return episodes;
+                                   cell.episodes_per_arm, arm, cell.episodes[arm].size()));
+  }
+}
+
+// What was selected for each of the cell's commands.
+void read_selections(const fs::path& file, CellResult& cell) {
+  const Json json = read_json(file);
+  const JsonReader list = JsonReader(json, file.string()).at("commands");
+  const auto commands = list.elements();
+  if (commands.size() != cell.commands.size())
+    list.fail(fmt::format("an entry for each of the scenario's {} commands", cell.commands.size()));
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    CommandResult& command = cell.commands[i];
+    if (commands[i].at("utterance").string() != command.utterance)
+      commands[i].at("utterance").fail(fmt::format("the scenario's command \"{}\"", command.utterance));
+    command.selection = commands[i].at("selection").json();
+    command.quality = commands[i].at("quality").json();
+    if (!command.quality.is_null()) commands[i].at("quality").at("target");
+  }
 }
 
 void read_configuration(const fs::path& file, CellResult& cell) {
@@ -59,7 +84,9 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   const JsonReader reader(json, file.string());
   const JsonReader scenario = reader.at("scenario"), method = reader.at("method");
   cell.scenario = scenario.at("id").string();
-  cell.utterance = scenario.at("utterance").string();
+  for (const JsonReader& command : scenario.at("commands").elements())
+    cell.commands.push_back(
+        {command.at("utterance").string(), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
   for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(arm.at("arm").string());
   cell.layout = reader.at("layout").string();
   cell.engine = reader.at("engine").string();
@@ -86,12 +113,8 @@ CellResult read_cell(const fs::path& directory) {
     cell.reason = reader.at("reason").string();
     return cell;
   }
-  const fs::path selection_file = directory / "selection.json";
-  const Json selection = read_json(selection_file);
-  cell.selection = JsonReader(selection, selection_file.string()).at("selection").json();
-  cell.quality = JsonReader(selection, selection_file.string()).at("quality").json();
-  cell.episodes = read_episodes(directory / "episodes.jsonl", cell);
-  if (!cell.quality.is_null()) JsonReader(selection, selection_file.string()).at("quality").at("target");
+  read_selections(directory / "selection.json", cell);
+  read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
   cell.timing = read_json(timing_file);
   for (const char* phase : phases) JsonReader(cell.timing, timing_file.string()).at(phase).number();

@@ -1,6 +1,7 @@
 // A run as it lies on disk (docs/formats), read and checked into values.
 #pragma once
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,22 +14,31 @@ namespace lgabench::report {
 constexpr std::array<const char*, 6> phases{"select_s", "sample_s",   "demonstrate_s",
                                             "learn_s",  "evaluate_s", "total_s"};
 
+/// A command of the cell's scenario, and what the method selected for it.
+struct CommandResult {
+  std::string utterance;
+  bool seen = true;         // trained on; the others are tested only
+  Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
+};
+
 struct PlayedEpisode {
-  std::string arm, failure;  // failure is "none" exactly on success
+  std::size_t command = 0;  // index into the cell's commands
+  std::string failure;      // "none" exactly on success
   bool success = false;
+  std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
-  std::string key, scenario, utterance, layout, engine, method, kind;  // kind: method or reference
+  std::string key, scenario, layout, engine, method, kind;  // kind: method or reference
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::vector<std::string> arms;
+  std::vector<CommandResult> commands;
   bool failed = false;
-  std::string fault, reason;  // where it failed; fault: plugin or host
-  std::vector<PlayedEpisode> episodes;
-  Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
-  Json timing;              // as in timing.json
+  std::string fault, reason;                                   // where it failed; fault: plugin or host
+  std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
+  Json timing;                                                 // as in timing.json
 
   bool is_reference() const { return kind == "reference"; }
 };

@@ -11,6 +11,13 @@ namespace {
 
 constexpr double z = 1.959963984540054;  // standard normal quantile at .975
 
+// `chance`, what the episodes alone leave open; with several policies nowhere narrower than their bootstrap.
+Interval widened(const Interval& chance, const std::vector<Cluster>& clusters, std::string_view name) {
+  if (clusters.size() == 1 && clusters.front().size() == 1) return chance;
+  const Interval between = cluster_bootstrap(clusters, name);
+  return {std::min(chance.low, between.low), std::max(chance.high, between.high)};
+}
+
 double mean(const Cluster& rates) {
   return std::accumulate(rates.begin(), rates.end(), 0.0) / static_cast<double>(rates.size());
 }
@@ -34,6 +41,12 @@ double mcnemar(int only_first, int only_second) {
     log_term += std::log(static_cast<double>(n - k)) - std::log(k + 1.0);
   }
   return std::min(1.0, 2 * tail);
+}
+
+Interval paired_difference(int only_first, int only_second, int episodes) {
+  const double n = episodes + 2.0, first = (only_first + 1) / n, second = (only_second + 1) / n;
+  const double centre = second - first, half = z * std::sqrt((first + second - centre * centre) / n);
+  return {std::max(-1.0, centre - half), std::min(1.0, centre + half)};
 }
 
 double cluster_mean(const std::vector<Cluster>& clusters) {
@@ -62,10 +75,12 @@ Interval cluster_bootstrap(const std::vector<Cluster>& clusters, std::string_vie
 }
 
 Interval success_interval(const std::vector<Cluster>& clusters, int episodes, std::string_view name) {
-  const Interval chance = wilson(cluster_mean(clusters) * episodes, episodes);
-  if (clusters.size() == 1 && clusters.front().size() == 1) return chance;
-  const Interval between = cluster_bootstrap(clusters, name);
-  return {std::min(chance.low, between.low), std::max(chance.high, between.high)};
+  return widened(wilson(cluster_mean(clusters) * episodes, episodes), clusters, name);
+}
+
+Interval change_interval(const std::vector<Cluster>& differences, int only_first, int only_second, int episodes,
+                         std::string_view name) {
+  return widened(paired_difference(only_first, only_second, episodes), differences, name);
 }
 
 }  // namespace lgabench::report

@@ -17,7 +17,12 @@ Interval wilson(double successes, int episodes);
 /// `only_first` against `only_second` (scenes that one of them alone won) were both equally good. @pre both >= 0
 double mcnemar(int only_first, int only_second);
 
-/// Success rates of the policies of one scenario, one a training seed.
+/// Interval for the difference of two proportions on the same scenes, second minus first, 95 %: Wald's with the
+/// shares of scenes that one alone won taken as (k + 1) / (n + 2), which keeps it honest where few or none differ
+/// (Bonett and Price 2012). @pre only_first, only_second >= 0, their sum <= episodes > 0
+Interval paired_difference(int only_first, int only_second, int episodes);
+
+/// Success rates (or differences of them) of the policies of one scenario, one a training seed.
 using Cluster = std::vector<double>;
 
 /// Mean over clusters of the mean within each. @pre no cluster is empty, nor the list
@@ -32,5 +37,10 @@ Interval cluster_bootstrap(const std::vector<Cluster>& clusters, std::string_vie
 /// Wilson's on all their episodes, since differences between policies only add to the chance in each, and with a few
 /// policies that happen to agree the bootstrap has hardly any width. Arguments as the two; `episodes` in all.
 Interval success_interval(const std::vector<Cluster>& clusters, int episodes, std::string_view name);
+
+/// Interval of cluster_mean for a table of differences between two arms that are paired scene by scene, a value a
+/// policy: as success_interval, with paired_difference in Wilson's place.
+Interval change_interval(const std::vector<Cluster>& differences, int only_first, int only_second, int episodes,
+                         std::string_view name);
 
 }  // namespace lgabench::report

@@ -14,14 +14,42 @@ namespace {
 // What one cell adds to a row: a policy on one arm.
 struct Policy {
   int episodes = 0, successes = 0;
+  // Beside the first arm, scene by scene:
+  bool paired = false;                // the arms give the same commands
+  int only_first = 0, only_here = 0;  // scenes won in one of the two alone
+  bool same_actions = false;
   double rate() const { return static_cast<double>(successes) / episodes; }
+  double difference() const { return static_cast<double>(only_here - only_first) / episodes; }
 };
+
+using Episodes = std::vector<PlayedEpisode>;
+
+Policy played(const Episodes& episodes) {
+  Policy policy;
+  policy.episodes = static_cast<int>(episodes.size());
+  for (const PlayedEpisode& e : episodes) policy.successes += e.success ? 1 : 0;
+  return policy;
+}
+
+void pair(Policy& policy, const Episodes& first, const Episodes& here) {
+  policy.paired = policy.same_actions = first.size() == here.size();
+  for (std::size_t i = 0; policy.paired && i < here.size(); ++i) {
+    policy.paired = first[i].command == here[i].command;
+    policy.only_first += first[i].success && !here[i].success ? 1 : 0;
+    policy.only_here += here[i].success && !first[i].success ? 1 : 0;
+    policy.same_actions = policy.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
+  }
+}
 
 // A row in the making: the policies of each scenario.
 struct Draft {
   Row row;
   std::vector<std::vector<Policy>> scenarios;
 };
+
+void add_new(std::vector<std::string>& all, const std::string& one) {
+  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+}
 
 // Mean over the numbers at `path` in each of `all`, the number itself where all agree; null without one.
 Json mean_at(const std::vector<Json>& all, const Json::json_pointer& path) {
@@ -47,13 +75,13 @@ std::string words_at(const std::vector<Json>& all, const Json::json_pointer& pat
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// Provenance, cost and quality of a row's Selections; null if none of its cells selects.
-Json phi_of(const std::vector<const CellResult*>& cells) {
+// Provenance, cost and quality of a row's Selections for one command; null if none of its cells selects.
+Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
   std::vector<Json> selections, qualities;
   for (const CellResult* cell : cells)
-    if (!cell->failed && !cell->quality.is_null()) {
-      selections.push_back(cell->selection);
-      qualities.push_back(cell->quality);
+    if (!cell->failed && !cell->commands[command].quality.is_null()) {
+      selections.push_back(cell->commands[command].selection);
+      qualities.push_back(cell->commands[command].quality);
     }
   if (selections.empty()) return nullptr;
   Json quality;
@@ -63,31 +91,65 @@ Json phi_of(const std::vector<const CellResult*>& cells) {
       for (const auto& item : numbers.items())
         quality[about][group][item.key()] = mean_at(qualities, Json::json_pointer("") / about / group / item.key());
   }
-  return {{"provenance", words_at(selections, "/provenance"_json_pointer)},
+  return {{"utterance", cells.front()->commands[command].utterance},
+          {"seen", cells.front()->commands[command].seen},
+          {"provenance", words_at(selections, "/provenance"_json_pointer)},
           {"source", words_at(selections, "/source"_json_pointer)},
           {"asked_as", words_at(selections, "/asked_as"_json_pointer)},
           {"lm_queries", mean_at(selections, "/cost/lm_queries"_json_pointer)},
           {"quality", quality}};
 }
 
-// Success and its interval from the policies.
-void estimate(Draft& draft) {
-  std::vector<Cluster> clusters;
+// The same for every command that the arm gives; null if no method selects.
+Json phi_of(const std::vector<const CellResult*>& cells, const std::string& arm) {
+  std::set<std::size_t> given;
+  for (const CellResult* cell : cells)
+    if (!cell->failed)
+      for (const PlayedEpisode& e : cell->episodes.at(arm)) given.insert(e.command);
+  Json all;
+  for (const std::size_t command : given)
+    if (Json phi = phi_of(cells, command); !phi.is_null()) all.push_back(std::move(phi));
+  return all;
+}
+
+std::string stream_name(const char* what, const Row& row) {
+  return fmt::format("{}/{}/{}/{}/{}/{}/{}", what, row.scenario, row.layout, row.engine, row.method, row.demonstrations,
+                     row.arm);
+}
+
+// Success, its change against the first arm, and their intervals, from the policies.
+void estimate(Draft& draft, const std::string& first_arm) {
+  std::vector<Cluster> rates, differences;
+  Policy all;
+  all.paired = all.same_actions = true;
   for (const auto& policies : draft.scenarios) {
-    Cluster cluster;
-    for (const Policy& p : policies) cluster.push_back(p.rate());
-    if (!cluster.empty()) clusters.push_back(std::move(cluster));
+    if (policies.empty()) continue;
+    Cluster rate, difference;
+    for (const Policy& p : policies) {
+      rate.push_back(p.rate());
+      difference.push_back(p.difference());
+      all.paired = all.paired && p.paired;
+      all.same_actions = all.same_actions && p.same_actions;
+      all.only_first += p.only_first;
+      all.only_here += p.only_here;
+    }
+    rates.push_back(std::move(rate));
+    differences.push_back(std::move(difference));
   }
-  if (clusters.empty()) return;
+  if (rates.empty()) return;
   Row& row = draft.row;
-  row.success = cluster_mean(clusters);
-  row.interval = success_interval(clusters, row.episodes,
-                                  fmt::format("report/{}/{}/{}/{}/{}/{}", row.scenario, row.layout, row.engine,
-                                              row.method, row.demonstrations, row.arm));
+  row.success = cluster_mean(rates);
+  row.interval = success_interval(rates, row.episodes, stream_name("report", row));
+  if (row.arm == first_arm || !all.paired) return;
+  row.shift =
+      Shift{first_arm, cluster_mean(differences),
+            change_interval(differences, all.only_first, all.only_here, row.episodes, stream_name("report/shift", row)),
+            all.same_actions};
 }
 
 // The row of `cells`: all seeds of one (scenario, method, demonstrations).
-Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::string& arm) {
+Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::string& arm,
+                     const std::string& first_arm) {
   const CellResult& first = *cells.front();
   Draft draft;
   Row& row = draft.row;
@@ -98,34 +160,31 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.method = first.method;
   row.kind = first.kind;
   row.demonstrations = first.demonstrations;
-  row.phi = phi_of(cells);
+  row.phi = phi_of(cells, arm);
   auto& policies = draft.scenarios.emplace_back();
   for (const CellResult* cell : cells) {
     if (cell->failed) {
       if (cell->fault == "host") row.n_error += cell->episodes_per_arm;
       continue;
     }
-    Policy policy;
-    for (const PlayedEpisode& e : cell->episodes) {
-      if (e.arm != arm) continue;
-      ++policy.episodes;
-      if (e.success)
-        ++policy.successes;
-      else
-        ++row.failures[e.failure];
-    }
+    const Episodes& episodes = cell->episodes.at(arm);
+    Policy policy = played(episodes);
+    if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
+      pair(policy, control->second, episodes);
+    for (const PlayedEpisode& e : episodes)
+      if (!e.success) ++row.failures[e.failure];
     ++row.seeds;
     row.episodes += policy.episodes;
     row.successes += policy.successes;
     policies.push_back(policy);
   }
   if (policies.size() < cells.size()) row.marks.emplace_back("incomplete");
-  estimate(draft);
+  estimate(draft, first_arm);
   return draft;
 }
 
 // The row over all scenarios, from their rows of the same method and number of demonstrations.
-Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios) {
+Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, const std::string& first_arm) {
   Draft mean;
   Row& row = mean.row = drafts.front()->row;
   row.scenario = mean_scenario;
@@ -135,6 +194,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios) {
   row.marks.clear();
   row.success.reset();
   row.interval = {};
+  row.shift.reset();
   bool complete = drafts.size() == scenarios;
   for (const Draft* draft : drafts) {
     row.seeds = std::max(row.seeds, draft->row.seeds);
@@ -146,7 +206,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios) {
     mean.scenarios.push_back(draft->scenarios.front());
   }
   if (!complete) row.marks.emplace_back("incomplete");
-  estimate(mean);
+  estimate(mean, first_arm);
   return row;
 }
 
@@ -154,35 +214,42 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios) {
 void mark_not_learned(Table& table) {
   for (Row& row : table.rows) {
     if (row.is_reference() || !row.success) continue;
-    const Row* constant = table.find(row.scenario, "constant_action", row.demonstrations);
+    const Row* constant = table.find(row.arm, row.scenario, "constant_action", row.demonstrations);
     if (constant && constant->success && *row.success < *constant->success)
       row.marks.insert(row.marks.begin(), "baseline_not_learned");
   }
 }
 
-Table make_table(const std::string& arm, const std::vector<const CellResult*>& cells) {
+using Cells = std::vector<const CellResult*>;
+
+Table make_table(const Cells& cells) {
   Table table;
   table.layout = cells.front()->layout;
   table.engine = cells.front()->engine;
-  table.arm = arm;
   std::vector<std::string> scenarios;                            // as the cells are ordered
   using Place = std::tuple<std::string, int, std::string, int>;  // kind, rank, method, demonstrations
-  std::map<std::string, std::map<Place, std::vector<const CellResult*>>> grouped;
+  std::map<std::string, std::map<Place, Cells>> grouped;
   for (const CellResult* cell : cells) {
-    if (grouped.count(cell->scenario) == 0) scenarios.push_back(cell->scenario);
+    add_new(scenarios, cell->scenario);
+    for (const std::string& arm : cell->arms) add_new(table.arms, arm);
     grouped[cell->scenario][{cell->kind, display_rank(cell->method), cell->method, cell->demonstrations}].push_back(
         cell);
   }
-  std::map<Place, std::vector<const Draft*>> over_scenarios;
-  std::vector<Draft> drafts;
-  drafts.reserve(cells.size());  // as many rows at most: pointers to them stay valid
-  for (const std::string& scenario : scenarios)
-    for (const auto& [place, seeds] : grouped[scenario]) {
-      drafts.push_back(scenario_draft(seeds, arm));
-      over_scenarios[place].push_back(&drafts.back());
-      table.rows.push_back(drafts.back().row);
-    }
-  for (const auto& [place, rows] : over_scenarios) table.rows.push_back(mean_row(rows, scenarios.size()));
+  for (const std::string& arm : table.arms) {
+    std::map<Place, std::vector<const Draft*>> over_scenarios;
+    std::vector<Draft> drafts;
+    drafts.reserve(cells.size());  // as many rows at most: pointers to them stay valid
+    for (const std::string& scenario : scenarios)
+      for (const auto& [place, seeds] : grouped[scenario]) {
+        const std::vector<std::string>& played = seeds.front()->arms;
+        if (std::find(played.begin(), played.end(), arm) == played.end()) continue;
+        drafts.push_back(scenario_draft(seeds, arm, table.arms.front()));
+        over_scenarios[place].push_back(&drafts.back());
+        table.rows.push_back(drafts.back().row);
+      }
+    for (const auto& [place, rows] : over_scenarios)
+      table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
+  }
   mark_not_learned(table);
   return table;
 }
@@ -194,7 +261,8 @@ bool Row::marked(const std::string& mark) const { return std::find(marks.begin()
 std::vector<std::string> Table::scenarios() const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (all.empty() || all.back() != row.scenario) all.push_back(row.scenario);
+    if (!row.is_mean()) add_new(all, row.scenario);
+  all.emplace_back(mean_scenario);
   return all;
 }
 
@@ -208,9 +276,9 @@ std::vector<int> Table::demonstrations() const {
   return {columns.begin(), columns.end()};
 }
 
-const Row* Table::find(const std::string& scenario, const std::string& method, int n) const {
+const Row* Table::find(const std::string& arm, const std::string& scenario, const std::string& method, int n) const {
   for (const Row& row : rows)
-    if (row.scenario == scenario && row.method == method &&
+    if (row.arm == arm && row.scenario == scenario && row.method == method &&
         (row.demonstrations == n || (row.is_reference() && row.demonstrations == 0)))
       return &row;
   return nullptr;
@@ -219,8 +287,7 @@ const Row* Table::find(const std::string& scenario, const std::string& method, i
 std::vector<std::string> Table::ids(const std::string& scenario, const std::string& kind) const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (row.scenario == scenario && row.kind == kind && (all.empty() || all.back() != row.method))
-      all.push_back(row.method);
+    if (row.scenario == scenario && row.kind == kind) add_new(all, row.method);
   return all;
 }
 
@@ -230,77 +297,18 @@ std::string Table::title(const std::string& scenario) const {
   return fmt::format("mean over {} scenario{}", n, n == 1 ? "" : "s");
 }
 
-std::string Table::title() const {
-  return fmt::format("layout {}, engine {}{}", layout, engine, arm == "test" ? "" : ", arm " + arm);
-}
+std::string Table::title() const { return fmt::format("layout {}, engine {}", layout, engine); }
 
 Summary summarize(const RunResults& run) {
   Summary summary;
   summary.suite = run.suite;
-  std::map<std::tuple<std::string, std::string, std::string>, std::vector<const CellResult*>> tables;
+  std::map<std::pair<std::string, std::string>, Cells> tables;
   for (const CellResult& cell : run.cells) {
-    for (const std::string& arm : cell.arms) tables[{cell.layout, cell.engine, arm}].push_back(&cell);
+    tables[{cell.layout, cell.engine}].push_back(&cell);
     if (cell.failed) summary.failed.push_back(cell);
   }
-  for (const auto& [place, cells] : tables) summary.tables.push_back(make_table(std::get<2>(place), cells));
+  for (const auto& item : tables) summary.tables.push_back(make_table(item.second));
   return summary;
-}
-
-Json to_json(const Summary& summary) {
-  Json rows = Json::array(), failed = Json::array();
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows)
-      rows.push_back({{"scenario", row.scenario},
-                      {"layout", row.layout},
-                      {"engine", row.engine},
-                      {"method", row.method},
-                      {"method_kind", row.kind},
-                      {"demonstrations", row.demonstrations},
-                      {"arm", row.arm},
-                      {"seeds", row.seeds},
-                      {"episodes", row.episodes},
-                      {"successes", row.successes},
-                      {"success", row.success ? Json(*row.success) : Json()},
-                      {"low", row.success ? Json(row.interval.low) : Json()},
-                      {"high", row.success ? Json(row.interval.high) : Json()},
-                      {"failures", row.failures},
-                      {"n_error", row.n_error},
-                      {"marks", row.marks},
-                      {"phi", row.phi}});
-  for (const CellResult& cell : summary.failed)
-    failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
-  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}};
-}
-
-std::string to_csv(const Summary& summary) {
-  const auto quoted = [](const std::string& text) {  // RFC 4180
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string inside = text;
-    for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2) inside.insert(at, 1, '"');
-    return '"' + inside + '"';
-  };
-  const auto number = [](bool known, double value) { return known ? canonical(value) : std::string(); };
-
-  const std::vector<std::string> words = failure_words();
-  std::string csv = fmt::format(
-      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
-      "n_error,marks,{}\n",
-      fmt::join(words, ","));
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows) {
-      const bool known = row.success.has_value();
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario), quoted(row.layout),
-                         quoted(row.engine), quoted(row.method), row.kind, row.demonstrations, quoted(row.arm),
-                         row.seeds, row.episodes, row.successes, number(known, row.success.value_or(0)),
-                         number(known, row.interval.low), number(known, row.interval.high), row.n_error,
-                         fmt::join(row.marks, " "));
-      for (const std::string& word : words) {
-        const auto it = row.failures.find(word);
-        csv += fmt::format(",{}", it == row.failures.end() ? 0 : it->second);
-      }
-      csv += '\n';
-    }
-  return csv;
 }
 
 }  // namespace lgabench::report

@@ -13,7 +13,15 @@ namespace lgabench::report {
 
 constexpr const char* mean_scenario = "(mean)";
 
-/// What a method did at one number of demonstrations, in one scenario or on the mean over all of them.
+/// What an arm changed: its success minus that of the first arm, whose scenes and commands are paired with its own.
+struct Shift {
+  std::string against;  // the first arm
+  double difference = 0;
+  Interval interval;          // 95 %
+  bool same_actions = false;  // every policy acted in every scene exactly as in its pair
+};
+
+/// What a method did in one arm at one number of demonstrations, in one scenario or on the mean over all of them.
 struct Row {
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
@@ -21,32 +29,35 @@ struct Row {
   std::optional<double> success;  // mean over scenarios of the mean over training seeds; none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
-  int n_error = 0;  // episodes not played: the engine or the host failed
+  std::optional<Shift> shift;  // none in the first arm, nor where the arms give different commands
+  int n_error = 0;             // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
-  Json phi;  // provenance, cost and quality of the Selections; null in mean rows
+  Json phi;  // a list: provenance, cost, quality of what was selected for each of the arm's commands; null in mean rows
 
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }
   bool marked(const std::string& mark) const;
 };
 
-/// Rows of one (layout, engine, arm), in the order of tables: scenarios, the mean last; methods, reference rows last;
-/// demonstrations ascending.
+/// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;
+/// methods, reference rows last; demonstrations ascending.
 struct Table {
-  std::string layout, engine, arm;
+  std::string layout, engine;
+  std::vector<std::string> arms;
   std::vector<Row> rows;
 
   std::vector<std::string> scenarios() const;  // in order, the mean last
-  std::vector<int> demonstrations() const;     // columns: those of the methods, or of all where there is none
+  std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none
   /// The row, nullptr where there is none. A reference row that learns nothing (demonstrations 0) stands in every
-  /// column.
-  const Row* find(const std::string& scenario, const std::string& method, int demonstrations) const;
+  /// number of demonstrations.
+  const Row* find(const std::string& arm, const std::string& scenario, const std::string& method,
+                  int demonstrations) const;
   /// Ids of a scenario's methods, or of its reference rows, in order.
   std::vector<std::string> methods(const std::string& scenario) const { return ids(scenario, "method"); }
   std::vector<std::string> references(const std::string& scenario) const { return ids(scenario, "reference"); }
   /// "mean over 3 scenarios" for the mean, else the scenario's own id.
   std::string title(const std::string& scenario) const;
-  /// "layout cells, engine mujoco", and the arm if it is not the plain test.
+  /// "layout cells, engine mujoco"
   std::string title() const;
 
  private:

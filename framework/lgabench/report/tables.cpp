@@ -2,29 +2,78 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
 
+namespace {
+
+// Reference rows act alike whatever they see: it says something of methods alone.
+bool acts_the_same(const Row& row) { return !row.is_reference() && row.shift && row.shift->same_actions; }
+
+bool any_shift(const Table& table, const Column& column) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [&column](const Row& row) {
+    return row.arm == column.arm && row.shift && row.demonstrations == column.demonstrations;
+  });
+}
+
+}  // namespace
+
+std::vector<View> views(const Table& table) {
+  std::vector<View> all;
+  const std::vector<int> demonstrations = table.demonstrations();
+  if (table.arms.size() == 1) {
+    View& view = all.emplace_back(View{"demonstrations", {}, {}});
+    for (const int n : demonstrations) view.columns.push_back({std::to_string(n), table.arms.front(), n});
+    return all;
+  }
+  for (const int n : demonstrations) {
+    View& view = all.emplace_back(View{fmt::format("{} demonstrations", n), {}, {}});
+    for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
+    std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
+                 [&table](const Column& column) { return any_shift(table, column); });
+  }
+  return all;
+}
+
 std::string success_text(const Row* row) {
   if (!row) return "";
-  const std::string marks =
-      fmt::format("{}{}", row->marked("baseline_not_learned") ? "†" : "", row->marked("incomplete") ? "‡" : "");
+  const std::string marks = fmt::format("{}{}{}", row->marked("baseline_not_learned") ? "†" : "",
+                                        row->marked("incomplete") ? "‡" : "", acts_the_same(*row) ? " =" : "");
   if (!row->success) return "–" + marks;
   return fmt::format("{:.2f} [{:.2f}, {:.2f}]{}", *row->success, row->interval.low, row->interval.high, marks);
 }
 
+std::string shift_text(const Row* row) {
+  if (!row || !row->shift) return "";
+  const auto hundredths = [](double x) {  // without "-0.00"
+    const double rounded = std::round(x * 100) / 100;
+    return rounded == 0 ? std::string("0.00") : fmt::format("{:+.2f}", rounded);
+  };
+  const Shift& shift = *row->shift;
+  return fmt::format("{} [{}, {}]{}", hundredths(shift.difference), hundredths(shift.interval.low),
+                     hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   bool not_learned = false, incomplete = false;
+  std::set<std::string> same_as;                 // arms
   std::map<std::string, std::string> no_people;  // method -> provenance, where that has to be said
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       not_learned = not_learned || row.marked("baseline_not_learned");
       incomplete = incomplete || row.marked("incomplete");
-      const std::string provenance = row.phi.is_null() ? "" : row.phi.at("provenance").get<std::string>();
-      if (provenance == "truth" || provenance == "simulated_edit") no_people[row.method] = provenance;
+      if (acts_the_same(row)) same_as.insert(row.shift->against);
+      for (const Json& phi : row.phi) {
+        const std::string provenance = phi.at("provenance");
+        if (provenance == "truth" || provenance == "simulated_edit") no_people[row.method] = provenance;
+      }
     }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
@@ -36,6 +85,8 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   if (not_learned)
     lines.emplace_back("† baseline not learned: below the best constant action with as many demonstrations.");
   if (incomplete) lines.emplace_back("‡ incomplete: a cell failed, or the mean lacks a scenario.");
+  for (const std::string& arm : same_as)
+    lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
   for (const auto& [method, provenance] : no_people)
     lines.push_back(fmt::format("{}: {}.", display_name(method), provenance_words(provenance)));
   return lines;

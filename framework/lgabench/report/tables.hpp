@@ -9,16 +9,34 @@
 
 namespace lgabench::report {
 
-/// "0.85 [0.64, 0.95]", then † and ‡ for the row's marks; "–" for a row without episodes, "" where there is no row.
+/// A column of a table for readers.
+struct Column {
+  std::string head, arm;
+  int demonstrations = 0;
+};
+
+/// What is shown side by side: with a single arm its numbers of demonstrations; with several the arms, in a view of
+/// their own for each number of demonstrations.
+struct View {
+  std::string corner;  // what the columns are: "demonstrations", or e.g. "50 demonstrations"
+  std::vector<Column> columns;
+  std::vector<Column> shifted;  // those with a change against the first arm
+};
+std::vector<View> views(const Table& table);
+
+/// "0.85 [0.64, 0.95]", then †, ‡ and = for the row's marks; "–" for a row without episodes, "" where there is no row.
 std::string success_text(const Row* row);
 
-/// What a reader of the tables must know, one line each: what † and ‡ say, whose Selections are no measurement of
+/// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
+std::string shift_text(const Row* row);
+
+/// What a reader of the tables must know, one line each: what †, ‡ and = say, whose Selections are no measurement of
 /// people, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
-/// report.md. `figures` in the order of the summary's tables.
+/// report.md. `figures` of each of the summary's tables, in their order.
 std::string markdown(const RunResults& run, const Summary& summary, const PaperValues& paper,
-                     const std::vector<Figure>& figures);
+                     const std::vector<std::vector<Figure>>& figures);
 
 /// The terminal's table.
 std::string plain_text(const RunResults& run, const Summary& summary);

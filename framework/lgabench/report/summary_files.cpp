@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <lgabench/report/summary.hpp>
+
+namespace lgabench::report {
+namespace {
+
+Json shift_json(const std::optional<Shift>& shift) {
+  if (!shift) return nullptr;
+  return {{"against", shift->against},
+          {"difference", shift->difference},
+          {"low", shift->interval.low},
+          {"high", shift->interval.high},
+          {"same_actions", shift->same_actions}};
+}
+
+}  // namespace
+
+Json to_json(const Summary& summary) {
+  Json rows = Json::array(), failed = Json::array();
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows)
+      rows.push_back({{"scenario", row.scenario},
+                      {"layout", row.layout},
+                      {"engine", row.engine},
+                      {"method", row.method},
+                      {"method_kind", row.kind},
+                      {"demonstrations", row.demonstrations},
+                      {"arm", row.arm},
+                      {"seeds", row.seeds},
+                      {"episodes", row.episodes},
+                      {"successes", row.successes},
+                      {"success", row.success ? Json(*row.success) : Json()},
+                      {"low", row.success ? Json(row.interval.low) : Json()},
+                      {"high", row.success ? Json(row.interval.high) : Json()},
+                      {"shift", shift_json(row.shift)},
+                      {"failures", row.failures},
+                      {"n_error", row.n_error},
+                      {"marks", row.marks},
+                      {"phi", row.phi}});
+  for (const CellResult& cell : summary.failed)
+    failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
+  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}};
+}
+
+std::string to_csv(const Summary& summary) {
+  const auto quoted = [](const std::string& text) {  // RFC 4180
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string inside = text;
+    for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2) inside.insert(at, 1, '"');
+    return '"' + inside + '"';
+  };
+  const auto number = [](bool known, double value) { return known ? canonical(value) : std::string(); };
+
+  const std::vector<std::string> words = failure_words();
+  std::string csv = fmt::format(
+      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
+      "against,difference,difference_low,difference_high,same_actions,n_error,marks,{}\n",
+      fmt::join(words, ","));
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) {
+      const bool known = row.success.has_value();
+      const bool shifted = row.shift.has_value();
+      const Shift shift = row.shift.value_or(Shift());
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
+                         quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations,
+                         quoted(row.arm), row.seeds, row.episodes, row.successes,
+                         number(known, row.success.value_or(0)), number(known, row.interval.low),
+                         number(known, row.interval.high), quoted(shift.against), number(shifted, shift.difference),
+                         number(shifted, shift.interval.low), number(shifted, shift.interval.high),
+                         shifted ? canonical(shift.same_actions) : "", row.n_error, fmt::join(row.marks, " "));
+      for (const std::string& word : words) {
+        const auto it = row.failures.find(word);
+        csv += fmt::format(",{}", it == row.failures.end() ? 0 : it->second);
+      }
+      csv += '\n';
+    }
+  return csv;
+}
+
+}  // namespace lgabench::report
