@@ -75,7 +75,7 @@ class BadInput(Case):
 
     def test_command_line(self):
         for arguments, says in [
-            (["q9"], r'suite "q9": expected one of: q1'),
+            (["q9"], r'suite "q9": expected one of: .*q1'),
             (["q1", "--scenarios", "nope"], r"/scenarios/0: expected one of .*heart.*got \"nope\""),
             (["q1", "--demos=-5"], r"/demonstrations/0: expected a whole number from 1 .*got -5"),
             (["q1", "--demos", "10,ten"], r"/demonstrations/1: .*got \"ten\""),
@@ -96,7 +96,7 @@ class BadInput(Case):
         ]:
             with self.subTest(arguments):
                 self.refused("run", *arguments, says=says)
-        self.refused("run", "q1", "--methods", "nope", says=r'no method "nope", expected one of: factorial, gcbc_dart, gcbc_seg, lga', expect=4)
+        self.refused("run", "q1", "--methods", "nope", says=r'no method "nope", expected one of: .*gcbc_dart, .*lga', expect=4)
         self.refused("run", "q1", "--engines", "nope", says=r'no engine "nope"', expect=4)
         self.assertEqual(list(self.dir.iterdir()), [])
 
