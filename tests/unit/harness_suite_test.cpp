@@ -119,7 +119,7 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
   };
   EXPECT_SAYS(refusal({"a", "b", "a+epochs=750"}), "\"a\" and \"a+epochs=750\" are the same row, a;");
   EXPECT_SAYS(refusal({"a+loss=x+epochs=5", "a+epochs=5+loss=x"}), "the same row, a+epochs=5+loss=x;");
-  for (const char* malformed : {"a+", "a+loss", "a+loss+epochs=5", "a+loss=x+", "a+epochs=5+epochs=6"})
+  for (const char* malformed : {"a+", "a+5", "a+loss", "a+loss+epochs=5", "a+loss=x+", "a+epochs=5+epochs=6"})
     EXPECT_SAYS(refusal({malformed}), "expected ID+OPTION=VALUE+...");
   EXPECT_SAYS(refusal({"a+epoks=5"}), "epoks");
   EXPECT_SAYS(refusal({"a+epochs=few"}), "expected a whole number");

@@ -35,7 +35,7 @@ Json own_options(const std::string& method) {
     while (from < method.size() && !separates(from)) ++from;
     return from;
   };
-  for (std::size_t at = next(0); at < method.size();) {
+  for (std::size_t at = std::min(method.find('+'), method.size()); at < method.size();) {
     const std::size_t end = next(at + 1), equals = method.find('=', at);
     const std::string option = method.substr(at + 1, std::min(equals, end) - at - 1);
     if (option.empty() || equals >= end || options.contains(option))
