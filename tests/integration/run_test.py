@@ -75,7 +75,7 @@ class BadInput(Case):
 
     def test_command_line(self):
         for arguments, says in [
-            (["q9"], r'suite "q9": expected one of: q1'),
+            (["q9"], r'suite "q9": expected one of: .*q1'),
             (["q1", "--scenarios", "nope"], r"/scenarios/0: expected one of .*heart.*got \"nope\""),
             (["q1", "--demos=-5"], r"/demonstrations/0: expected a whole number from 1 .*got -5"),
             (["q1", "--demos", "10,ten"], r"/demonstrations/1: .*got \"ten\""),
@@ -89,12 +89,14 @@ class BadInput(Case):
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
             (["q1", "--set", "lga.epochs=-3"], r"/epochs: expected a whole number of 1 or more, got -3"),
             (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, gcbc_dart"),
+            (["q1", "--methods", "lga,lga+loss=norm"], r'"lga" and "lga\+loss=norm" are the same row, lga'),
+            (["q1", "--methods", "lga+loss"], r'method "lga\+loss": expected ID\+OPTION=VALUE'),
             (["q1", "--jobs", "0"], r"--jobs"),
             (["q1", "--resume", "--fresh"], r"excludes"),
         ]:
             with self.subTest(arguments):
                 self.refused("run", *arguments, says=says)
-        self.refused("run", "q1", "--methods", "nope", says=r'no method "nope", expected one of: gcbc_dart, lga', expect=4)
+        self.refused("run", "q1", "--methods", "nope", says=r'no method "nope", expected one of: .*gcbc_dart, .*lga', expect=4)
         self.refused("run", "q1", "--engines", "nope", says=r'no engine "nope"', expect=4)
         self.assertEqual(list(self.dir.iterdir()), [])
 
@@ -149,6 +151,28 @@ class BadInput(Case):
         self.refused("demos", "heart", "--out", "not.hdf5/x", says=r"not.hdf5/x: cannot be written: Not a directory")
         self.refused("demos", "nope", "--out", "x.hdf5", says=r'scenario "nope": expected one of: ')
         self.refused("demos", "heart", "--n=-1", "--out", "x.hdf5", says=r"--n")
+
+
+class Variants(Case):
+    def test_are_rows_of_their_own(self):
+        arguments = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "4", "--out", "out",
+                     "--methods", "lga+epochs=5,lga+loss=squared,factorial", "--set", "lga.epochs=6",
+                     "--set", "factorial.epochs=5"]
+        table = self.call(*arguments).stdout
+        self.assert_matches_schemas("out")
+        rows = {row["method"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]
+                if row["method_kind"] == "method"}
+        self.assertEqual(rows, {"lga+epochs=5", "lga+epochs=6+loss=squared", "factorial+epochs=5"})
+        for shown in ("LGA epochs=5 ", "LGA epochs=6 loss=squared ", "factorial epochs=5 "):
+            self.assertIn("  " + shown, table)
+        self.assertIn("0 cells computed, 6 were there", self.call(*arguments).stderr)
+
+        # factorial with its defaults is LGA.
+        results = {cell["method"]["name"]: [(self.dir / "out/cells" / key / name).read_bytes()
+                                            for name in ("selection.json", "training.jsonl", "episodes.jsonl")]
+                   for key, (cell, _) in self.cells("out").items()}
+        self.assertEqual(results["factorial+epochs=5"], results["lga+epochs=5"])
+        self.assertNotEqual(results["lga+epochs=6+loss=squared"], results["lga+epochs=5"])
 
 
 class Determinism(Case):

@@ -1,1 +1,1 @@
-lgabench_unit_test(abstraction_test SOURCES abstraction_test.cpp LINK lgabench_core)
+lgabench_unit_test(abstraction_test SOURCES abstraction_test.cpp textualization_test.cpp LINK lgabench_core)

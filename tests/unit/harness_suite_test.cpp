@@ -1,6 +1,7 @@
 // Suites, cells, run directories: what `lgabench` does before and after a worker.
 #include <algorithm>
 #include <fstream>
+#include <set>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/cell.hpp>
@@ -14,7 +15,8 @@ namespace lgabench {
 namespace {
 
 PluginInfo plugin(const std::string& kind, const std::string& id) {
-  const Json options{{"epochs", {{"default", 750}, {"help", "passes"}, {"source", "test"}}}};
+  const auto option = [](const Json& usual) { return Json{{"default", usual}, {"help", "help"}, {"source", "test"}}; };
+  const Json options{{"epochs", option(750)}, {"rate", option(.5)}, {"loss", option("norm")}};
   return {"/none/" + id + ".so", kind, id, "0.1", "", "", options, sha256(id)};
 }
 Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), plugin("engine", "e")}, {}}; }
@@ -64,7 +66,8 @@ TEST(Cells, ExpandCrossesTheGrid) {
 TEST(Cells, KeyIsOfTheWholeConfiguration) {
   const auto cells = expand(load_suite("q1"), small_grid(), {}, catalogue());
   const Cell& cell = cells.front();
-  EXPECT_EQ(cell.method.options, Json({{"epochs", 750}})) << "defaults are part of a cell";
+  EXPECT_EQ(cell.method.options, Json({{"epochs", 750}, {"rate", .5}, {"loss", "norm"}}))
+      << "defaults are part of a cell";
   EXPECT_EQ(key(read_cell(Json::parse(canonical(to_json(cell))), "test")), key(cell));
   EXPECT_EQ(key(cell), sha256(canonical(to_json(cell))).substr(0, 16));
   const Json json = to_json(cell);
@@ -72,7 +75,8 @@ TEST(Cells, KeyIsOfTheWholeConfiguration) {
     Json other = json;
     other[member.key()] = member.value().is_number() ? Json(91) : member.value().is_boolean() ? Json(true) : Json("x");
     if (member.key() == "scenario") other["scenario"] = {{"id", "x"}};
-    if (member.key() == "method") other["method"] = {{"kind", "method"}, {"id", "x"}, {"version", ""}, {"options", {}}};
+    if (member.key() == "method")
+      other["method"] = {{"kind", "method"}, {"id", "x"}, {"name", "x"}, {"version", ""}, {"options", {}}};
     EXPECT_NE(key(read_cell(other, "test")), key(cell)) << member.key();
   }
 }
@@ -86,6 +90,59 @@ TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
   Grid grid = small_grid();
   grid.methods = {"c"};
   EXPECT_THROW(expand(suite, grid, {}, catalogue()), PluginError);
+}
+
+// Names of the rows that a grid's methods make, with the number of epochs of each.
+std::vector<std::string> rows(const std::vector<std::string>& methods, const Json& settings = Json::object()) {
+  Grid grid{{"heart"}, {"cells"}, {"e"}, methods, {10}, {0}, 5, 7, false};
+  std::vector<std::string> names;
+  for (const Cell& cell : expand(load_suite("q1"), grid, {"recorded", settings, false}, catalogue()))
+    names.push_back(cell.method.name + " " + canonical(cell.method.options.at("epochs")));
+  return names;
+}
+
+TEST(Variants, AreNamedByTheOptionsThatDifferFromTheDefaults) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(rows({"a", "a+loss=squared+epochs=5", "b+rate=0.5+loss=norm", "b+rate=1e+30"}),
+            (Names{"a 750", "a+epochs=5+loss=squared 5", "b 750", "b+rate=1e+30 750"}));
+  EXPECT_EQ(rows({"a+rate=1"}), (Names{"a+rate=1.0 750"})) << "a whole number for a fractional option";
+}
+
+TEST(Variants, TakeSettingsOfTheirIdForWhatTheyDoNotSetThemselves) {
+  EXPECT_EQ(rows({"a", "a+epochs=750", "a+loss=x", "b"}, {{"a", {{"epochs", 9}}}}),
+            (std::vector<std::string>{"a+epochs=9 9", "a 750", "a+epochs=9+loss=x 9", "b 750"}));
+}
+
+TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
+  const auto refusal = [](const std::vector<std::string>& methods) {
+    return message_of<InputError>([&] { rows(methods); });
+  };
+  EXPECT_SAYS(refusal({"a", "b", "a+epochs=750"}), "\"a\" and \"a+epochs=750\" are the same row, a;");
+  EXPECT_SAYS(refusal({"a+loss=x+epochs=5", "a+epochs=5+loss=x"}), "the same row, a+epochs=5+loss=x;");
+  for (const char* malformed : {"a+", "a+5", "a+loss", "a+loss+epochs=5", "a+loss=x+", "a+epochs=5+epochs=6"})
+    EXPECT_SAYS(refusal({malformed}), "expected ID+OPTION=VALUE+...");
+  EXPECT_SAYS(refusal({"a+epoks=5"}), "epoks");
+  EXPECT_SAYS(refusal({"a+epochs=few"}), "expected a whole number");
+  EXPECT_THROW(rows({"c+epochs=5"}), PluginError);
+}
+
+TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
+  const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
+  for (const std::string id : {"factorial", "q1_long"}) {
+    const Suite suite = load_suite(id);
+    EXPECT_EQ(suite.grid.scenarios, load_suite("q1").grid.scenarios) << id;
+    for (const std::string preset : {"", "smoke", "paper", "leaderboard"}) {
+      const Grid grid = preset_grid(suite, preset);
+      const std::size_t each = grid.demonstrations.size() * grid.seeds.size() * (grid.methods.size() + 1) + 2;
+      EXPECT_EQ(expand(suite, grid, {}, shipped).size(), grid.scenarios.size() * each) << id << " " << preset;
+    }
+  }
+  std::set<std::string> pairs;
+  for (const Cell& cell : expand(load_suite("factorial"), preset_grid(load_suite("factorial"), "smoke"), {}, shipped))
+    if (!cell.method.is_reference())
+      pairs.insert(cell.method.options.at("scenes").get<std::string>() + " " +
+                   cell.method.options.at("input").get<std::string>());
+  EXPECT_EQ(pairs.size(), 6u) << "every pair of scenes and input";
 }
 
 struct RunDirectories : testing::Test, TemporaryDirectory {};

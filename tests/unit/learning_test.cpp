@@ -319,6 +319,20 @@ TEST(Policies, SeeWhatTheirInputsShowAndNothingElse) {
   EXPECT_NE(to_vector(rgb.policy->act(here, other)), act(rgb, here));
 }
 
+TEST(Policies, MaskTheSelectionOfTheirInputsWhereThereIsOne) {
+  const auto data = demonstrations(10);
+  const Observation here = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150),
+                    heart_moved = scene(30, 10, 80, 30);
+  Selection stars;
+  stars.target = {{"star"}, {"blue"}};
+  const Trained trained = learn({{Picture::mask}, false, {{instruction().utterance, stars}}}, data, 5);
+  EXPECT_NE(act(trained, star_moved), act(trained, here));
+  EXPECT_EQ(act(trained, heart_moved), act(trained, here));
+  Instruction other = instruction();
+  other.utterance = "Bring me the moon.";
+  EXPECT_THROW(trained.policy->act(here, other), MethodError) << "not silently the instruction's own";
+}
+
 TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Trained trained = learn({{Picture::mask, Picture::rgb}, true}, demonstrations(10), 5);
   const Observation probe = scene(10, 100, 80, 30);
@@ -342,12 +356,47 @@ TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {
   EXPECT_EQ(none.targets, Needs::Targets::truth);
   EXPECT_EQ(none.noisy_per_clean, 0);
   EXPECT_THROW(needs("gcbc_dart", {{"dart", "posthoc"}}), InputError);
+  EXPECT_EQ(needs("gcbc_seg", Json::object()).targets, Needs::Targets::truth);
+  EXPECT_EQ(needs("gcbc_seg", Json::object()).noisy_per_clean, 0);
+  EXPECT_EQ(needs("factorial", {{"scenes", "selected"}}).targets, Needs::Targets::selected);
+  EXPECT_EQ(needs("factorial", {{"scenes", "truth"}}).targets, Needs::Targets::truth);
+}
+
+// With a truth that is not what the language model selects, each input shows itself by what moves the action.
+TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const PluginInfo& plugin = catalogue.find("method", "factorial");
+  const Scenario scenario = load_scenario("red_heart");
+  Selection blue_stars;
+  blue_stars.target = {{"star"}, {"blue"}};
+  const auto data = demonstrations(10);
+  const Observation here = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150),
+                    heart_moved = scene(30, 10, 80, 30);
+  struct Case {
+    const char* input;
+    bool star, heart;  // whether the action follows it
+  };
+  for (const auto& [input, star, heart] :
+       {Case{"mask", false, true}, Case{"true_mask", true, false}, Case{"rgb", true, true}}) {
+    const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
+    RecordedLanguageModel lm(scenario, "recorded");
+    TruthAsHuman human(blue_stars);
+    Lines log;
+    Services services{lm, human, options, 0, log};
+    auto method = load_method(plugin);
+    EXPECT_EQ(method->select(scenario.command, scenario.space, services).provenance, Provenance::recorded);
+    const auto policy = method->learn(data, services);
+    method.reset();  // a policy outlives its method
+    const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
+    EXPECT_EQ(action(star_moved) != action(here), star) << input;
+    EXPECT_EQ(action(heart_moved) != action(here), heart) << input;
+  }
 }
 
 TEST(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
   const Scenario scenario = load_scenario("red_heart");
-  for (const char* id : {"lga", "gcbc_dart"}) {
+  for (const char* id : {"lga", "gcbc_dart", "gcbc_seg"}) {
     const PluginInfo& plugin = catalogue.find("method", id);
     const Json options = resolve_options(plugin, {{"epochs", 3}});
     RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");

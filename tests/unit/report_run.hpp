@@ -36,8 +36,8 @@ class FabricatedRun : public TemporaryDirectory {
   };
 
   struct Spec {
-    std::string method;
-    int won = 0;  // of 20: the first
+    std::string method;  // the row's name
+    int won = 0;         // of 20: the first
     std::string scenario = "heart";
     int demonstrations = 20, seed = 0;
     std::string kind = "method", layout = "cells", failure = "missed_object";
@@ -68,7 +68,12 @@ class FabricatedRun : public TemporaryDirectory {
               {"commands", commands},
               {"tests", tests}}},
             {"engine", "mujoco"},
-            {"method", {{"kind", s.kind}, {"id", s.method}, {"version", "0.1"}, {"options", Json::object()}}},
+            {"method",
+             {{"kind", s.kind},
+              {"id", s.method.substr(0, s.method.find('+'))},
+              {"name", s.method},
+              {"version", "0.1"},
+              {"options", Json::object()}}},
             {"demonstrations", s.demonstrations},
             {"training_seed", s.seed},
             {"scene_seed", 7},

@@ -26,25 +26,19 @@ struct Arguments {
   bool resume = false, fresh = false, no_reference = false, json = false;
 };
 
-// A number where the whole word is one, else the word: the reader then says what it expected there.
-Json value(const std::string& word) {
-  Json number = Json::parse(word, nullptr, false);
-  return number.is_number() || number.is_boolean() ? number : Json(word);
-}
-
-// 0,1,2 or 0:3 (without its end).
+// 0,1,2 or 0:3 (without its end). What is no number stays a word: the reader then says what it expected there.
 Json numbers(const Words& words) {
   Json all = Json::array();
   for (const std::string& word : words) {
     const std::size_t colon = word.find(':');
-    const Json first = value(word.substr(0, colon)),
-               last = colon == std::string::npos ? Json() : value(word.substr(colon + 1));
+    const Json first = option_value(word.substr(0, colon)),
+               last = colon == std::string::npos ? Json() : option_value(word.substr(colon + 1));
     constexpr long long most = 10000;
     if (first.is_number_unsigned() && last.is_number_unsigned() && first < last &&
         last.get<long long>() - first.get<long long>() <= most)
       for (auto n = first.get<long long>(); n < last.get<long long>(); ++n) all.push_back(n);
     else
-      all.push_back(value(word));
+      all.push_back(option_value(word));
   }
   return all;
 }
@@ -74,7 +68,8 @@ Json options_of(const Words& settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || dot > equals)
       throw InputError(fmt::format("--set {}: expected method.option=value", setting));
-    options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] = value(setting.substr(equals + 1));
+    options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] =
+        option_value(setting.substr(equals + 1));
   }
   return options;
 }
@@ -177,7 +172,7 @@ void add_run(CLI::App& app, int& exit) {
   };
   verb->add_option("suite", a->suite, "A suite's id, or a .json file of one")->required();
   verb->add_option("--preset", a->preset, "A part of the suite: smoke, paper, leaderboard");
-  list("--methods", a->methods, "Methods, by plugin id");
+  list("--methods", a->methods, "Methods, by plugin id; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
   list("--layout", a->layouts, "cells, continuous or released; several with commas");
@@ -196,14 +191,18 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_flag("--fresh", a->fresh, "Drop the run that is in --out")->excludes(resume);
   verb->add_option("--limit", a->limit, "Only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
-  verb->add_option("--set", a->settings, "method.option=value; may be given again")->take_all();
+  verb->add_option("--set", a->settings,
+                   "method.option=value, for each of its rows that does not set it; may be given again")
+      ->take_all();
   verb->add_option("--answers", a->answers,
                    "Whose recorded answers; recorded: GPT-4's where it was asked, else Claude's")
       ->check(CLI::IsMember({"recorded", "gpt4", "claude"}))
       ->capture_default_str();
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
-  verb->footer("Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3");
+  verb->footer(
+      "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
+      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared");
   verb->callback([a, &exit] { exit = run(*a); });
 }
 

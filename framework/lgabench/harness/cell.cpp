@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 
 #include <lgabench/core/files.hpp>
@@ -24,10 +25,59 @@ std::uint64_t seed_at(const JsonReader& reader) {
   return static_cast<std::uint64_t>(reader.integer(0, std::numeric_limits<std::int64_t>::max()));
 }
 
+// Options of "ID+OPTION=VALUE+OPTION=VALUE". A '+' separates only before a letter, so that a value may be 1e+30.
+Json own_options(const std::string& method) {
+  Json options = Json::object();
+  const auto next = [&method](std::size_t from) {
+    const auto separates = [&](std::size_t i) {
+      return method[i] == '+' && (i + 1 == method.size() || std::isalpha(static_cast<unsigned char>(method[i + 1])));
+    };
+    while (from < method.size() && !separates(from)) ++from;
+    return from;
+  };
+  for (std::size_t at = std::min(method.find('+'), method.size()); at < method.size();) {
+    const std::size_t end = next(at + 1), equals = method.find('=', at);
+    const std::string option = method.substr(at + 1, std::min(equals, end) - at - 1);
+    if (option.empty() || equals >= end || options.contains(option))
+      throw InputError(fmt::format("method \"{}\": expected ID+OPTION=VALUE+..., each option once", method));
+    options[option] = option_value(method.substr(equals + 1, end - equals - 1));
+    at = end;
+  }
+  return options;
+}
+
+// The method that a grid writes so: its own options, then those that `settings` gives its id, then defaults.
+Competitor competitor(const std::string& written, const Json& settings, const Catalogue& catalogue) {
+  const PluginInfo& info = catalogue.find("method", written.substr(0, written.find('+')));
+  Json given = settings.value(info.id, Json::object());
+  given.update(own_options(written));
+  Competitor method{"method", info.id, info.id, info.version, resolve_options(info, given)};
+  for (const auto& [option, value] : method.options.items())
+    if (value != info.options.at(option).at("default"))
+      method.name += fmt::format("+{}={}", option, value.is_string() ? value.get<std::string>() : canonical(value));
+  return method;
+}
+
+std::vector<Competitor> competitors(const Grid& grid, const Json& settings, const Catalogue& catalogue) {
+  std::vector<Competitor> methods;
+  for (const std::string& written : grid.methods) {
+    methods.push_back(competitor(written, settings, catalogue));
+    for (std::size_t i = 0; i + 1 < methods.size(); ++i)
+      if (methods[i].name == methods.back().name)
+        throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",
+                                     grid.methods[i], written, methods[i].name));
+  }
+  for (const auto& item : settings.items())
+    if (std::none_of(methods.begin(), methods.end(), [&](const Competitor& m) { return m.id == item.key(); }))
+      throw InputError(
+          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
+  return methods;
+}
+
 }  // namespace
 
 std::string Cell::title() const {
-  return fmt::format("{} {} {} {} n={} seed={}", method.id, scenario_id(), layout, engine, demonstrations,
+  return fmt::format("{} {} {} {} n={} seed={}", method.name, scenario_id(), layout, engine, demonstrations,
                      training_seed);
 }
 
@@ -40,6 +90,7 @@ Json to_json(const Cell& cell) {
           {"method",
            {{"kind", cell.method.kind},
             {"id", cell.method.id},
+            {"name", cell.method.name},
             {"version", cell.method.version},
             {"options", cell.method.options}}},
           {"demonstrations", cell.demonstrations},
@@ -56,7 +107,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
                "scene_seed", "episodes", "answers", "data", "smoke"});
   const JsonReader method = reader.at("method");
-  method.only({"kind", "id", "version", "options"});
+  method.only({"kind", "id", "name", "version", "options"});
   constexpr long long most = std::numeric_limits<int>::max();
 
   Cell cell;
@@ -66,8 +117,8 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.scenario = reader.at("scenario").json();
   reader.at("scenario").at("id").string();
   cell.engine = reader.at("engine").string();
-  cell.method = {method.at("kind").string(), method.at("id").string(), method.at("version").string(),
-                 method.at("options").json()};
+  cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),
+                 method.at("version").string(), method.at("options").json()};
   if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = seed_at(reader.at("training_seed"));
@@ -89,15 +140,7 @@ Json data_hashes(const Scenario& scenario) {
 }
 
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
-  std::vector<Competitor> methods;
-  for (const std::string& id : grid.methods) {
-    const PluginInfo& info = catalogue.find("method", id);
-    methods.push_back({"method", id, info.version, resolve_options(info, variation.options.value(id, Json::object()))});
-  }
-  for (const auto& item : variation.options.items())
-    if (std::find(grid.methods.begin(), grid.methods.end(), item.key()) == grid.methods.end())
-      throw InputError(
-          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
+  const std::vector<Competitor> methods = competitors(grid, variation.options, catalogue);
   for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
 
   std::vector<Cell> cells;
@@ -121,7 +164,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       cell.training_seed = seed;
       cells.push_back(cell);
     };
-    const auto reference = [](const char* row) { return Competitor{"reference", row, "1", Json::object()}; };
+    const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
     for (const std::string& layout : grid.layouts) {
       for (const std::string& engine : grid.engines) {
         cell.layout = layout;

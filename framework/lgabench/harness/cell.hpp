@@ -14,7 +14,9 @@ namespace lgabench {
 /// A method, or a row of the table that a method is measured against.
 struct Competitor {
   std::string kind = "method";  // or "reference": constant_action, random_object, oracle
-  std::string id, version;
+  std::string id;
+  std::string name;  // its row's: the id, then "+option=value" for each that differs from the default, sorted by option
+  std::string version;
   Json options = Json::object();  // every option, defaults included
 
   bool is_reference() const { return kind == "reference"; }
@@ -50,12 +52,14 @@ Json data_hashes(const Scenario& scenario);
 /// What is not on the grid.
 struct Variation {
   std::string answers = "recorded";
-  Json options = Json::object();  // method id -> option -> value, over the plugin's defaults
-  bool references = true;         // add the reference rows
+  Json options =
+      Json::object();      // method id -> option -> value, for each row of it that does not set the option itself
+  bool references = true;  // add the reference rows
 };
 
 /// Every cell of the grid: scenario by scenario, reference rows after the methods.
-/// @throws PluginError for an unknown method or engine, InputError for an unknown option.
+/// @throws PluginError for an unknown method or engine, InputError for an unknown option, for a method that is not
+/// written ID+OPTION=VALUE+..., and for two that name one row.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

@@ -11,7 +11,8 @@ namespace lgabench {
 /// What is crossed to make the cells of a run. As JSON the members have these names; a preset or the command line
 /// gives some of them and keeps the rest.
 struct Grid {
-  std::vector<std::string> scenarios, layouts, engines, methods;
+  std::vector<std::string> scenarios, layouts, engines;
+  std::vector<std::string> methods;  // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
   std::vector<int> demonstrations;   // clean demonstrations a policy learns from
   std::vector<std::uint64_t> seeds;  // training seeds
   int episodes = 0;                  // test scenes of each arm

@@ -34,8 +34,9 @@ class Featurizer {
       if (picture == Picture::rgb)
         shrink_rgb(observation.rgb, out);
       else
-        shrink_mask(picture == Picture::mask ? goal_mask(observation, instruction.selection) : object_mask(observation),
-                    out);
+        shrink_mask(
+            picture == Picture::mask ? goal_mask(observation, mask_selection(instruction)) : object_mask(observation),
+            out);
     }
     if (inputs_.utterance) {
       const std::vector<float>& embedding = embeddings_->of(instruction.utterance);
@@ -44,6 +45,13 @@ class Featurizer {
   }
 
  private:
+  const Selection& mask_selection(const Instruction& instruction) const {
+    if (inputs_.masks.empty()) return instruction.selection;
+    const auto found = inputs_.masks.find(instruction.utterance);
+    if (found == inputs_.masks.end()) throw MethodError("no mask was selected for: " + instruction.utterance);
+    return found->second;
+  }
+
   PolicyInputs inputs_;
   std::optional<SentenceEmbeddings> embeddings_;
 };

@@ -1,5 +1,7 @@
 // Behaviour cloning, the learner of every shipped method: they differ in what the network sees and in who selects.
 #pragma once
+#include <map>
+#include <string>
 #include <vector>
 
 #include <lgabench/core/method.hpp>
@@ -19,12 +21,15 @@ namespace lgabench {
 /// The pictures and the text that a policy is given. Each picture gets a tower of its own.
 struct PolicyInputs {
   enum class Picture {
-    mask,         // 1 channel: the goal mask of the instruction's Selection
+    mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
     rgb,          // 3 channels
     segmentation  // 1 channel: 1 on any object
   };
   std::vector<Picture> pictures;
   bool utterance = false;  // the sentence embedding of the instruction's utterance
+  /// Utterance -> the Selection that its mask is made of in place of the instruction's. Empty, or with every utterance
+  /// that will be given. Held by value: the policy keeps it when the method is gone.
+  std::map<std::string, Selection> masks{};
 };
 
 /// A subclass names its inputs and overrides select(), and needs() if it asks for more than demonstrations of its own

@@ -56,6 +56,10 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories);
 std::unique_ptr<Method> load_method(const PluginInfo& plugin);
 std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
 
+/// An option's value as written on a command line: a number, or true or false, where the whole word is one; else a
+/// text.
+Json option_value(const std::string& word);
+
 /// Every option of the plugin: those of `overrides` (an object), defaults for the rest. A whole number given for an
 /// option with a fractional default becomes fractional.
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values.

@@ -17,6 +17,11 @@ const char* type_of(const Json& value) {
 
 }  // namespace
 
+Json option_value(const std::string& word) {
+  Json value = Json::parse(word, nullptr, false);
+  return value.is_number() || value.is_boolean() ? value : Json(word);
+}
+
 Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
   const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
   const JsonReader given(overrides, owner);

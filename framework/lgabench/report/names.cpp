@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <iterator>
 
 namespace lgabench::report {
@@ -22,9 +23,10 @@ constexpr std::array<Name, 3> references{{{"constant_action", "best constant act
                                           {"oracle", "oracle", "#AAAAAA"}}};
 constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#A5AA00"};
 
-// The entry of `id`; nullptr where it has none.
+// The entry of the row's id; nullptr where it has none.
 template <typename Names>
-const Name* find(const Names& names, const std::string& id) {
+const Name* find(const Names& names, const std::string& method) {
+  const std::string id = method.substr(0, method.find('+'));
   const auto it = std::find_if(names.begin(), names.end(), [&id](const Name& n) { return id == n.id; });
   return it == names.end() ? nullptr : &*it;
 }
@@ -32,9 +34,13 @@ const Name* find(const Names& names, const std::string& id) {
 }  // namespace
 
 std::string display_name(const std::string& method) {
-  if (const Name* name = find(methods, method)) return name->shown;
-  if (const Name* name = find(references, method)) return name->shown;
-  return method;
+  const std::size_t plus = std::min(method.find('+'), method.size());
+  std::string shown = method.substr(0, plus), options = method.substr(plus);
+  for (std::size_t i = 0; i + 1 < options.size(); ++i)  // a '+' before a digit belongs to a number
+    if (options[i] == '+' && std::isalpha(static_cast<unsigned char>(options[i + 1]))) options[i] = ' ';
+  if (const Name* name = find(methods, method)) shown = name->shown;
+  if (const Name* name = find(references, method)) shown = name->shown;
+  return shown + options;
 }
 
 int display_rank(const std::string& method) {

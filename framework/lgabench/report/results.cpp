@@ -90,7 +90,7 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(arm.at("arm").string());
   cell.layout = reader.at("layout").string();
   cell.engine = reader.at("engine").string();
-  cell.method = method.at("id").string();
+  cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());

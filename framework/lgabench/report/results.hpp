@@ -30,7 +30,7 @@ struct PlayedEpisode {
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
-  std::string key, scenario, layout, engine, method, kind;  // kind: method or reference
+  std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::vector<std::string> arms;

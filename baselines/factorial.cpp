@@ -1,0 +1,39 @@
+// What a Selection does to the data apart from what it does to the input: every pair of training scenes and picture
+// (PROTOCOL, section 4). No text input. With both defaults it is LGA.
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/plugin/plugin.hpp>
+
+class Factorial : public lgabench::CloningMethod {
+ public:
+  lgabench::Needs needs(const lgabench::Json& options) const override {
+    using Targets = lgabench::Needs::Targets;
+    return {options.at("scenes") == "truth" ? Targets::truth : Targets::selected};
+  }
+
+  lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
+                             lgabench::Services& services) override {
+    true_masks_[command.utterance] = services.human.specify(command);
+    return lgabench::select_features(command, space, services.lm);
+  }
+
+ protected:
+  lgabench::PolicyInputs inputs(const lgabench::Json& options) const override {
+    using Picture = lgabench::PolicyInputs::Picture;
+    if (options.at("input") == "rgb") return {{Picture::rgb}};
+    if (options.at("input") == "true_mask") return {{Picture::mask}, false, true_masks_};
+    return {{Picture::mask}};
+  }
+
+ private:
+  std::map<std::string, lgabench::Selection> true_masks_;  // by utterance
+};
+
+LGABENCH_METHOD("factorial", "0.1", "What phi-hat does to the data, and what to the input: LGA with either replaced",
+                Factorial, "{" LGABENCH_CLONING_OPTIONS R"(,
+  "scenes": {"default": "selected", "values": ["selected", "truth"],
+             "help": "training targets drawn from the language model's Selection, or from the true distribution",
+             "source": "PROTOCOL, section 4"},
+  "input": {"default": "mask", "values": ["mask", "true_mask", "rgb"],
+            "help": "the policy sees the Selection's goal mask, the true distribution's, or the picture",
+            "source": "PROTOCOL, section 4"}})")
