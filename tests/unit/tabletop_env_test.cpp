@@ -65,6 +65,12 @@ TEST_P(Oracle, Succeeds) {
     const std::string& type = scene.find(Role::target)->object_type;
     EXPECT_TRUE(result.terminated);
     EXPECT_FALSE(result.truncated);
+    for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+      const SceneObject& other = scene.objects[k];
+      if (scene.task != Task::sweep || other.role == Role::target) continue;
+      EXPECT_LT(norm(centre_of(other, bench().world->pose(static_cast<int>(k))) - other.position_m), 1e-4)
+          << "scene " << i << ", " << split << ": " << other.object_type << " was moved";
+    }
     if (scene.task == Task::sweep && type == "L-shaped block" && result.failure == Failure::missed_zone)
       ++lagging;
     else
