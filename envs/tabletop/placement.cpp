@@ -24,18 +24,21 @@ const std::vector<Layout>& all_layouts() {
   constexpr Vec2 pallet{.5, .3};
   static const std::vector<Vec2> cells{{.375, -.36}, {.625, -.36}, {.375, -.06}, {.625, -.06}};
   static const std::vector<Vec2> rotate_cells{{.40, -.35}, {.60, -.115}, {.40, .115}, {.60, .35}};
-  static const std::vector<Layout> all{{Task::pick_and_place, "cells", cells, cells, pallet},
-                                       {Task::pick_and_place, "continuous", {}, {}, pallet},
-                                       {Task::pick_and_place,
-                                        "released",
-                                        {{.34375, -.265625}, {.34375, .125}},
-                                        {{.34375, .125}, {.625, -.265625}},
-                                        Vec2{.625, .125},
-                                        .17},
-                                       {Task::rotate, "cells", rotate_cells, rotate_cells},
-                                       {Task::rotate, "continuous", {}, {}},
-                                       sweep_layout("cells", 0),
-                                       sweep_layout("continuous", .03)};
+  // The authors' five places: targets in the first two, distractors in the second and third.
+  const std::vector<Vec2> released_targets{{.34375, -.265625}, {.34375, .125}};
+  const std::vector<Vec2> released_distractors{{.34375, .125}, {.625, -.265625}};
+  constexpr Vec2 released_pallet{.625, .125};
+  constexpr double released_widest = .17;
+  static const std::vector<Layout> all{
+      {Task::pick_and_place, "cells", cells, cells, pallet},
+      {Task::pick_and_place, "continuous", {}, {}, pallet},
+      {Task::pick_and_place, "released", released_targets, released_distractors, released_pallet, released_widest},
+      {Task::rotate, "cells", rotate_cells, rotate_cells},
+      {Task::rotate, "continuous", {}, {}},
+      {Task::rotate, "released", released_targets, released_distractors, {}, released_widest},
+      sweep_layout("cells", 0),
+      sweep_layout("continuous", .03),
+      sweep_layout("released", 0)};
   return all;
 }
 

@@ -252,7 +252,7 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
   if (layout == "continuous") {
     EXPECT_EQ(places.size(), many);
   } else {
-    EXPECT_EQ(places.size(), layout == "cells" ? 4u : 2u);
+    EXPECT_EQ(places.size(), layout == "released" && scenario.command.task != Task::sweep ? 2u : 4u);
     for (const auto& [place, count] : places) EXPECT_NEAR(count, many / static_cast<double>(places.size()), 200);
   }
 }
@@ -274,8 +274,8 @@ INSTANTIATE_TEST_SUITE_P(Q2, PairedScenes, testing::ValuesIn(every_scenario_and_
 
 TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
   const Scenario s = load_scenario("sweep_block_without_touching_pan");
-  for (const std::string layout : {"cells", "continuous"}) {
-    const double shift = layout == "cells" ? 1e-9 : .03;
+  for (const std::string& layout : layouts(Task::sweep)) {
+    const double shift = layout == "continuous" ? .03 : 1e-9;
     std::map<std::tuple<bool, bool, bool>, int> seen;  // target's row, target's side, obstacle's side
     for (int i = 0; i < many; ++i) {
       const Scene scene = sample_scene(s, test_request(layout), i);

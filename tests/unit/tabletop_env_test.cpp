@@ -1,88 +1,25 @@
 // The tabletop over MuJoCo: the oracle succeeds, failures are typed, and an episode depends on its scene alone.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <map>
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/predicates.hpp>
 #include <tabletop/sampler.hpp>
-#include <tabletop/tabletop.hpp>
 
-#include "mujoco/mujoco_world.hpp"
+#include "tabletop_bench.hpp"
 
 namespace lgabench::tabletop {
 namespace {
 
-/// The engine, with an eye kept on the bodies that the environment does not show.
-class WatchedWorld : public PhysicsWorld {
- public:
-  void load(const std::vector<BodyModel>& models, int copies) override { world_.load(models, copies); }
-  void reset(const std::vector<BodyPlacement>& placements) override {
-    world_.reset(placements);
-    steps = 0;
-  }
-  double time_step_s() const override { return world_.time_step_s(); }
-  void step() override {
-    world_.step();
-    ++steps;
-  }
-  Pose pose(int body) const override {
-    Pose pose = world_.pose(body);
-    if (creeps) pose.position_m.x += 1e-5 * steps;
-    return pose;
-  }
-  std::vector<Contact> contacts() const override { return world_.contacts(); }
-  int cast_down(Vec2 point, double& height_m) const override { return world_.cast_down(point, height_m); }
-  void grip(int body, const Pose& gripper) override { world_.grip(body, gripper); }
-  void move_gripper(const Pose& gripper) override { world_.move_gripper(gripper); }
-  void release() override { world_.release(); }
-  void place_spatula(Vec3 size_m, const Pose& pose) override { world_.place_spatula(size_m, pose); }
-  void move_spatula(const Pose& pose) override { world_.move_spatula(pose); }
-  void remove_spatula() override { world_.remove_spatula(); }
-
-  bool creeps = false;  // all bodies, at 2 mm/s
-  int steps = 0;        // since reset
-
- private:
-  MujocoWorld world_;
-};
-
-struct Bench {
-  WatchedWorld* world;
-  std::unique_ptr<Environment> environment;
-};
-
-Bench make_bench(const std::string& space = "tabletop") {
-  auto world = std::make_unique<WatchedWorld>();
-  WatchedWorld* const watched = world.get();
-  return {watched, make_environment(std::move(world), load_feature_space(space))};
-}
-
-Bench& bench(const std::string& space = "tabletop") {
-  static std::map<std::string, Bench> shared;
-  const auto found = shared.find(space);
-  return found != shared.end() ? found->second : shared.emplace(space, make_bench(space)).first->second;
-}
-Environment& environment() { return *bench().environment; }
-
-int scenes_per_case() {
+int scenes_per_arm() {
   const char* full = std::getenv("LGABENCH_FULL");
   return full && std::string(full) == "1" ? 500 : 50;
-}
-
-SceneObject object(const std::string& type, const std::string& texture, Role role, Vec2 position, std::uint8_t id) {
-  SceneObject o;
-  o.object_type = type;
-  o.texture = texture;
-  o.role = role;
-  o.position_m = position;
-  o.instance_id = id;
-  return o;
 }
 
 // 0: distractor (id 1), 1: the pallet (id 2), 2: target (id 3).
@@ -92,21 +29,6 @@ Scene bring(const std::string& type = "heart") {
                    object("pallet", "wooden", Role::goal, {.5, .3}, 2),
                    object(type, "red", Role::target, {.6, -.05}, 3)};
   return scene;
-}
-
-Action from_to(Vec2 from, Vec2 to) { return {{from, {}}, {to, {}}}; }
-
-struct Episode {
-  Observation first;
-  Action action;
-  StepResult result;
-};
-Episode play(Environment& env, const Scene& scene) {
-  Episode episode;
-  episode.first = env.reset(scene);
-  episode.action = env.expert_action();
-  episode.result = env.step(episode.action);
-  return episode;
 }
 
 void expect_same(const Episode& a, const Episode& b) {
@@ -132,28 +54,38 @@ std::vector<Case> all_cases() {
 
 class Oracle : public testing::TestWithParam<Case> {};
 
-// Every time, but for one kind of sweep: an L-shaped block may turn while it is pushed, and lag beside the blade.
+// Every time; of 500 sweeps, two L-shaped blocks may lag, which turn against the blade while it is pushed.
 TEST_P(Oracle, Succeeds) {
   const Scenario scenario = load_scenario(GetParam().scenario);
-  const int scenes = scenes_per_case();
+  const Bench& world = bench(scenario.space.id);
+  const int scenes = scenes_per_arm();
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
-  int turned_away = 0;
-  for (int i = 0; i < scenes; ++i) {
-    const std::string& arm = arms[static_cast<std::size_t>(i) % arms.size()];
-    const std::string split = arm == "train" ? "train" : "test";
-    const Scene scene = sample_scene(scenario, {GetParam().layout, split, arm, 3}, i);
-    const StepResult result = play(*bench(scenario.space.id).environment, scene).result;
-    const std::string& type = scene.find(Role::target)->object_type;
-    EXPECT_TRUE(result.terminated);
-    EXPECT_FALSE(result.truncated);
-    if (scene.task == Task::sweep && type == "L-shaped block" && result.failure == Failure::missed_zone)
-      ++turned_away;
-    else
-      EXPECT_EQ(result.failure, Failure::none)
-          << "scene " << i << ", " << arm << ", " << type << ": " << to_string(result.failure);
+  for (const std::string& arm : arms) {
+    // A distractor that the scenario puts in a sweep's way may be pushed along.
+    const bool undisturbed = scenario.task == Task::sweep && scenario.tests.front().scenes.choice.empty();
+    int lagging = 0;
+    for (int i = 0; i < scenes; ++i) {
+      const std::string split = arm == "train" ? "train" : "test";
+      const Scene scene = sample_scene(scenario, {GetParam().layout, split, arm, 200}, i);
+      const StepResult result = play(*world.environment, scene).result;
+      const std::string& type = scene.find(Role::target)->object_type;
+      const std::string which = fmt::format("scene {}, {}", i, arm);
+      EXPECT_TRUE(result.terminated);
+      EXPECT_FALSE(result.truncated);
+      for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+        const SceneObject& other = scene.objects[k];
+        if (!undisturbed || other.role == Role::target) continue;
+        EXPECT_LT(norm(centre_of(other, world.world->pose(static_cast<int>(k))) - other.position_m), 1e-4)
+            << which << ": " << other.object_type << " was moved";
+      }
+      if (scene.task == Task::sweep && type == "L-shaped block" && result.failure == Failure::missed_zone)
+        ++lagging;
+      else
+        EXPECT_EQ(result.failure, Failure::none) << which << ", " << type << ": " << to_string(result.failure);
+    }
+    EXPECT_LE(lagging, scenes / 250) << arm;
   }
-  EXPECT_LE(turned_away, scenes * 3 / 100 + 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, Oracle, testing::ValuesIn(all_cases()),
@@ -183,86 +115,6 @@ TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
       const StepResult result = play(environment(), scene).result;
       EXPECT_TRUE(result.is_success) << type << " by " << degrees << ": " << to_string(result.failure);
     }
-}
-
-// 0: distractor (id 1), 1: obstacle (id 2), 2: target (id 3); the right side, y > 0, is free.
-Scene sweep(const std::string& type = "block", const std::string& obstacle = "pan") {
-  Scene scene;
-  scene.task = Task::sweep;
-  scene.objects = {object("heart", "blue", Role::distractor, {.625, .16}, 1),
-                   object(obstacle, "green", Role::obstacle, {.375, -.16}, 2),
-                   object(type, "red", Role::target, {.375, .05}, 3)};
-  scene.objects[1].yaw_rad = pi / 2;
-  return scene;
-}
-
-TEST(Sweep, TheOracleBringsTheCentreToTheMiddleOfTheFreeZone) {
-  for (const std::string type : {"block", "small block", "shorter block", "L-shaped block"}) {
-    const Episode episode = play(environment(), sweep(type));
-    EXPECT_TRUE(episode.result.is_success) << type << ": " << to_string(episode.result.failure);
-    const Vec2 reached = centre_of(sweep(type).objects[2], bench().world->pose(2));
-    EXPECT_NEAR(reached.y, .41, .03) << type;
-    EXPECT_NEAR(reached.x, .375, .03) << type;
-    EXPECT_NEAR(bench().world->pose(2).position_m.z, 0, 1e-3) << type << " has toppled";
-    EXPECT_LT(norm(centre_of(sweep(type).objects[1], bench().world->pose(1)) - Vec2{.375, -.16}), 1e-6);
-  }
-}
-
-TEST(Sweep, FailuresAreTyped) {
-  const auto outcome = [](const Scene& scene, Vec2 from, Vec2 to) {
-    environment().reset(scene);
-    return environment().step(from_to(from, to)).failure;
-  };
-  EXPECT_EQ(outcome(sweep(), {.375, -.03}, {.375, .2}), Failure::missed_zone);
-  EXPECT_EQ(outcome(sweep(), {.5, -.03}, {.5, .3}), Failure::missed_object);
-  EXPECT_EQ(outcome(sweep(), {.625, .05}, {.625, .37}), Failure::wrong_object);
-  EXPECT_EQ(outcome(sweep(), {.375, -.01}, {.375, .5}), Failure::left_workspace);
-  for (const std::string obstacle : {"pan", "line"}) {
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, -.15}), Failure::touched_obstacle) << obstacle;
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, -.16}, {.375, .37}), Failure::touched_obstacle)
-        << obstacle << ": the spatula comes down on it";
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, .02}), Failure::missed_zone) << obstacle;
-  }
-}
-
-TEST(Sweep, TheSpatulaComesDownOnAnyObjectWithoutHarm) {
-  for (const std::string& type : load_feature_space("tabletop").object_types) {
-    Scene scene = sweep();
-    scene.objects[0] = object(type, "blue", Role::distractor, {.6, .25}, 1);
-    for (const Vec2 to : {Vec2{.6, -.2}, Vec2{.65, .45}, Vec2{.6, .25}}) {
-      environment().reset(scene);
-      StepResult result;
-      EXPECT_NO_THROW(result = environment().step(from_to({.6, .25}, to))) << type;
-      EXPECT_FALSE(result.truncated) << type;
-      const Pose reached = bench().world->pose(0);
-      EXPECT_LT(std::abs(reached.position_m.z), .15) << type << " was thrown";
-    }
-  }
-}
-
-TEST(Sweep, ATouchIsRememberedAfterASecondAction) {
-  environment().reset(sweep());
-  EXPECT_EQ(environment().step(from_to({.375, -.16}, {.375, -.16})).failure, Failure::touched_obstacle);
-  EXPECT_EQ(environment().step(environment().expert_action()).failure, Failure::touched_obstacle);
-  environment().reset(sweep());
-  EXPECT_EQ(environment().step(from_to({.375, -.03}, {.375, .1})).failure, Failure::missed_zone);
-  EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
-}
-
-TEST(Sweep, ZonesAreSeenInTheColoursOnly) {
-  Scene scene = sweep();
-  const Observation zones = environment().reset(scene);
-  scene.task = Task::rotate;
-  const Observation plain = environment().reset(scene);
-  EXPECT_EQ(zones.ids, plain.ids);
-  EXPECT_EQ(zones.instances.size(), 3u);
-  for (int column = 0; column < Observation::columns; ++column) {
-    const double y = (column + .5) / Observation::columns - .5;
-    const auto first = static_cast<std::ptrdiff_t>(3 * column);  // of row 0, which holds no object
-    EXPECT_EQ(std::abs(y) >= .34 && std::abs(y) <= .48,
-              !std::equal(zones.rgb.begin() + first, zones.rgb.begin() + first + 3, plain.rgb.begin() + first))
-        << y;
-  }
 }
 
 class AnyTask : public testing::TestWithParam<const char*> {};
