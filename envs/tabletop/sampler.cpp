@@ -132,6 +132,9 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
   std::vector<SceneObject> objects;
   for (const int i : random.permutation(static_cast<int>(request.content.choice.size()))) {
     const std::string& type = request.content.choice[static_cast<std::size_t>(i)];
+    if (!can_show(type, request.layout.widest_m))
+      throw InputError(fmt::format("scenario \"{}\", layout {}: expected a choice that can be shown, got \"{}\"",
+                                   request.scenario.id, request.layout.id, type));
     const std::string& texture = any_of(request.scenario.space.textures, random);
     const Role if_right = sweep ? Role::obstacle : Role::target;
     objects.push_back({type, texture, right.contains(type, texture) ? if_right : Role::distractor, {}, 0, 0});

@@ -63,6 +63,30 @@ TEST(Cells, ExpandCrossesTheGrid) {
   EXPECT_EQ(expand(suite, small_grid(), {"recorded", Json::object(), false}, catalogue()).size(), 2u * 2 * 3 * 2);
 }
 
+TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
+  const Suite robustness = load_suite("robustness");
+  Grid grid = small_grid();
+  grid.scenarios = load_suite("q1").grid.scenarios;
+  EXPECT_EQ(grid.scenarios, robustness.grid.scenarios);
+  const auto cells = expand(robustness, grid, {}, catalogue());
+  for (const Cell& cell : cells) {
+    const Scenario s = read_scenario(cell.scenario, "cell");
+    ASSERT_EQ(s.tests.size(), 6u);
+    EXPECT_EQ(s.tests[0].id, "test");
+    EXPECT_FALSE(s.tests[0].scenes.hard);
+    EXPECT_TRUE(s.tests[1].scenes.hard);
+    EXPECT_EQ(s.tests[1].scenes.later_letters, s.id == "letter") << "the rest is the first arm's";
+    EXPECT_EQ(s.tests[4].label_noise, .2);
+    EXPECT_EQ(s.tests[5].missed_segment, .1);
+    for (std::size_t i = 2; i < 6; ++i)
+      EXPECT_EQ(s.tests[i].scenes.distractors, s.tests[0].scenes.distractors) << "only what is seen differs";
+  }
+  Suite twice = robustness;
+  twice.arms[1]["arm"] = "hard";
+  EXPECT_SAYS(message_of<InputError>([&] { expand(twice, grid, {}, catalogue()); }),
+              "/tests/2/arm: expected each arm once");
+}
+
 TEST(Cells, KeyIsOfTheWholeConfiguration) {
   const auto cells = expand(load_suite("q1"), small_grid(), {}, catalogue());
   const Cell& cell = cells.front();

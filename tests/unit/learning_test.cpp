@@ -379,12 +379,12 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
   for (const auto& [input, star, heart] :
        {Case{"mask", false, true}, Case{"true_mask", true, false}, Case{"rgb", true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
-    RecordedLanguageModel lm(scenario, "recorded");
-    TruthAsHuman human(blue_stars);
+    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+    TruthAsHuman human({{scenario.commands[0].utterance, blue_stars}});
     Lines log;
     Services services{lm, human, options, 0, log};
     auto method = load_method(plugin);
-    EXPECT_EQ(method->select(scenario.command, scenario.space, services).provenance, Provenance::recorded);
+    EXPECT_EQ(method->select(scenario.command(0), scenario.space, services).provenance, Provenance::recorded);
     const auto policy = method->learn(data, services);
     method.reset();  // a policy outlives its method
     const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };

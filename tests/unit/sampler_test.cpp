@@ -252,7 +252,7 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
   if (layout == "continuous") {
     EXPECT_EQ(places.size(), many);
   } else {
-    EXPECT_EQ(places.size(), layout == "released" && scenario.command.task != Task::sweep ? 2u : 4u);
+    EXPECT_EQ(places.size(), layout == "released" && scenario.task != Task::sweep ? 2u : 4u);
     for (const auto& [place, count] : places) EXPECT_NEAR(count, many / static_cast<double>(places.size()), 200);
   }
 }
@@ -260,8 +260,10 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
 std::vector<std::tuple<std::string, std::string>> every_scenario_and_layout(const std::string& prefix = "") {
   std::vector<std::tuple<std::string, std::string>> all;
   for (const std::string& id : scenario_ids())
-    if (id.rfind(prefix, 0) == 0)
-      for (const std::string& layout : layouts(load_scenario(id).task)) all.emplace_back(id, layout);
+    for (const std::string& layout : layouts(load_scenario(id).task)) {
+      const bool too_wide = id == "q3_food" && layout == "released";  // its pan; refused, see below
+      if (id.rfind(prefix, 0) == 0 && !too_wide) all.emplace_back(id, layout);
+    }
   return all;
 }
 
@@ -417,6 +419,7 @@ TEST(Sampler, RefusesWhatItCannotSample) {
   pans.target.object_types = {"pan"};
   EXPECT_NO_THROW(sample_scene(s, train_request(pans, "cells"), 0));
   EXPECT_THROW(sample_scene(s, train_request(pans, "released"), 0), InputError);
+  EXPECT_THROW(sample_scene(load_scenario("q3_food"), test_request("released", 0, "seen"), 0), InputError);
   Selection pallets = s.commands[0].truth;
   pallets.target.object_types = {"pallet"};
   EXPECT_THROW(sample_scene(s, train_request(pallets, "cells"), 0), InputError);

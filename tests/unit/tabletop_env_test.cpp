@@ -48,7 +48,8 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::string& id : scenario_ids())
-    for (const std::string& layout : layouts(load_scenario(id).task)) cases.push_back({id, layout});
+    for (const std::string& layout : layouts(load_scenario(id).task))
+      if (id != "q3_food" || layout != "released") cases.push_back({id, layout});  // whose pan is refused there
   return cases;
 }
 

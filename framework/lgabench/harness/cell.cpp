@@ -74,6 +74,17 @@ std::vector<Competitor> competitors(const Grid& grid, const Json& settings, cons
   return methods;
 }
 
+// The suite's own arms come after the scenario's.
+Scenario with_arms(const Scenario& scenario, const Suite& suite) {
+  Json json = scenario.json;
+  const Json first = json["tests"].front();
+  for (const Json& arm : suite.arms) {
+    json["tests"].push_back(first);
+    json["tests"].back().update(arm);
+  }
+  return read_scenario(json, fmt::format("{}: scenario {} with /arms", suite.file, scenario.id));
+}
+
 }  // namespace
 
 std::string Cell::title() const {
@@ -145,7 +156,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
-    const Scenario scenario = load_scenario(id);
+    const Scenario scenario = with_arms(load_scenario(id), suite);
     if (scenario.environment != suite.environment)
       throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
                                    scenario.environment, suite.environment));

@@ -77,7 +77,7 @@ Suite load_suite(const std::string& id) {
   const Json json = read_json(file);
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "environment", "presets"});
+  members.insert(members.end(), {"id", "note", "environment", "arms", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -90,6 +90,11 @@ Suite load_suite(const std::string& id) {
   for (const std::string& member : grid_members)
     if (member == "smoke" ? reader.has(member) : true) own[member] = reader.at(member).json();
   suite.grid = apply(JsonReader(own, suite.file), Grid{});
+  if (reader.has("arms"))
+    for (const JsonReader& arm : reader.at("arms").elements()) {
+      arm.at("arm").string();
+      suite.arms.push_back(arm.json());
+    }
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_grid(suite, preset.key());

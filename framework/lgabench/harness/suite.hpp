@@ -30,6 +30,8 @@ Grid apply(const JsonReader& overrides, Grid base);
 struct Suite {
   std::string id, environment;
   Grid grid;
+  /// Arms that every scenario plays beside its own: each is the scenario's first arm with these members changed.
+  Json arms = Json::array();
   Json presets;      // name -> members of Grid
   std::string file;  // for messages
 };
