@@ -48,4 +48,6 @@ function(lgabench_link_data)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/${name} SYMBOLIC)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${source}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${name})
   endforeach()
+  # cmake/encoder puts the sentence encoder's weights there; too large to install.
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/.deps/encoder ${share}/encoder SYMBOLIC)
 endfunction()
