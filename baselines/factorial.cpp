@@ -21,7 +21,8 @@ class Factorial : public lgabench::CloningMethod {
   lgabench::PolicyInputs inputs(const lgabench::Json& options) const override {
     using Picture = lgabench::PolicyInputs::Picture;
     if (options.at("input") == "rgb") return {{Picture::rgb}};
-    if (options.at("input") == "true_mask") return {{Picture::mask}, false, true_masks_};
+    if (options.at("input") == "true_mask")
+      return {{Picture::mask}, lgabench::PolicyInputs::Text::none, {}, true_masks_};
     return {{Picture::mask}};
   }
 

@@ -16,7 +16,7 @@ class GcbcDart : public lgabench::CloningMethod {
 
  protected:
   lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
-    return {{lgabench::PolicyInputs::Picture::rgb}, true};
+    return {{lgabench::PolicyInputs::Picture::rgb}, lgabench::PolicyInputs::Text::utterance};
   }
 };
 

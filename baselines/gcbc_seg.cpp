@@ -13,8 +13,8 @@ class GcbcSeg : public lgabench::CloningMethod {
 
  protected:
   lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
-    using Picture = lgabench::PolicyInputs::Picture;
-    return {{Picture::rgb, Picture::segmentation}, true};
+    using Inputs = lgabench::PolicyInputs;
+    return {{Inputs::Picture::rgb, Inputs::Picture::segmentation}, Inputs::Text::utterance};
   }
 };
 

@@ -6,6 +6,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/abstraction/selection_text.hpp>
 
 #include "testing.hpp"
 
@@ -210,6 +211,16 @@ TEST(Human, SpecifiesTheTruthAndEditsObjectTypesOnly) {
   EXPECT_EQ(edited.target, (FeatureSet{{"letter G", "letter V"}, {"red", "tiger"}}));
   EXPECT_EQ(edited.cost.lm_queries, 112);
   EXPECT_EQ(edited.cost.human_seconds, 0);
+}
+
+TEST(SelectionText, NamesWhatIsSelected) {
+  const FeatureSpace space{"s", {"heart", "pan", "block"}, {"red", "blue"}};
+  Selection s = selection_of({{"heart", "block"}, {"red", "blue"}});
+  EXPECT_EQ(selection_text(s, space), "target: heart, block; any");
+  s.avoid = FeatureSet{{"pan"}, {"red"}};
+  EXPECT_EQ(selection_text(s, space), "target: heart, block; any. avoid: pan; red");
+  EXPECT_EQ(selection_text(selection_of({{}, {"blue"}}), space), "target: none; blue");
+  EXPECT_EQ(selection_text(selection_of({space.object_types, {"blue"}}), space), "target: any; blue");
 }
 
 TEST(Quality, IsPrecisionAndRecallOfEachGroup) {

@@ -2,7 +2,11 @@
 // (tests/reference/make_sentence_encoder.py).
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/learning/safetensors.hpp>
 #include <lgabench/learning/sentence_embeddings.hpp>
@@ -58,7 +62,7 @@ TEST(SentenceEncoder, GivesTheReferencesEmbeddings) {
 }
 
 TEST(SentenceEncoder, AgreesWithTheCommittedEmbeddings) {
-  const SentenceEmbeddings committed;
+  SentenceEmbeddings committed;
   for (const char* utterance : {"Bring me the red heart.", "Rotate the block."})
     EXPECT_LT(farthest(encoder().encode(utterance), committed.of(utterance)), 1e-5) << utterance;
 }
@@ -69,6 +73,43 @@ TEST(SentenceEncoder, RefusesOtherWeightsAndSaysWhichItWants) {
   write_file(directory.path / "model.safetensors", "nothing of the kind");
   EXPECT_SAYS(message_of<InputError>([&] { SentenceEncoder encoder(directory.path); }),
               "expected the weights with SHA-256 53aa");
+}
+
+// Without the encoder's weights, as on most machines.
+class WithoutWeights : public testing::Test, public TemporaryDirectory {
+ protected:
+  WithoutWeights() { setenv("LGABENCH_ENCODER", path.c_str(), 1); }
+  ~WithoutWeights() override { unsetenv("LGABENCH_ENCODER"); }
+};
+
+TEST_F(WithoutWeights, TheShippedCommandsAndSelectionsHaveEmbeddings) {
+  SentenceEmbeddings embeddings;
+  const auto dot = [&](const std::string& a, const std::string& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 384; ++i) sum += double{embeddings.of(a)[i]} * embeddings.of(b)[i];
+    return sum;
+  };
+  for (const std::string& id : scenario_ids()) {
+    const Scenario s = load_scenario(id);
+    for (std::size_t c = 0; c < s.commands.size(); ++c) {
+      std::vector<std::string> sentences{s.commands[c].utterance, selection_text(s.commands[c].truth, s.space)};
+      for (const char* answers : {"recorded", "claude"}) {
+        RecordedLanguageModel model(s.space, s.answers_of, answers);
+        const Selection selection = select_features(s.command(static_cast<int>(c)), s.space, model);
+        sentences.push_back(selection_text(selection, s.space));
+      }
+      for (const std::string& sentence : sentences) EXPECT_NEAR(dot(sentence, sentence), 1, 1e-6) << sentence;
+    }
+  }
+  EXPECT_GT(dot("Bring me the heart.", "Bring me the red heart."), dot("Bring me the heart.", "Rotate the block."));
+  EXPECT_SAYS(message_of<InputError>([&] { embeddings.of("Bring me the moon."); }), "cmake/encoder");
+}
+
+TEST(SentenceEmbeddings, OfOtherSentencesComeFromTheEncoder) {
+  SentenceEmbeddings embeddings;
+  const std::vector<float> moon = embeddings.of("Bring me the moon.");
+  EXPECT_EQ(moon, SentenceEncoder(SentenceEncoder::default_directory()).encode("Bring me the moon."));
+  EXPECT_EQ(moon, embeddings.of("Bring me the moon."));
 }
 
 // A header of JSON and the numbers 1, 2, 3, 4.

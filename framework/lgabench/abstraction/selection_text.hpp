@@ -1,0 +1,13 @@
+// A Selection in words.
+#pragma once
+#include <string>
+
+#include <lgabench/core/selection.hpp>
+
+namespace lgabench {
+
+/// "target: TYPES; TEXTURES", for sweep with ". avoid: TYPES; TEXTURES": names in the order of the space, separated by
+/// commas; "any" for all of the space's, "none" for none (PROTOCOL, section 5: what LGA-L is told).
+std::string selection_text(const Selection& selection, const FeatureSpace& space);
+
+}  // namespace lgabench

@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""Prints the sentences whose embeddings are committed, one a line: every shipped command, and in words every Selection
+that recorded answers give for one, and its truth.
+
+    sentences.py build/release/bin/lgabench > sentences.txt      (then make_embeddings.py)
+"""
+import json
+import subprocess
+import sys
+
+
+def main():
+    def ask(*arguments):
+        return subprocess.run([sys.argv[1], *arguments, "--json"], capture_output=True, text=True).stdout
+
+    sentences = set()
+    for scenario in json.loads(ask("list"))["scenarios"]:
+        for answers in ("recorded", "claude"):
+            for line in ask("select", scenario["id"], "--answers", answers).splitlines():
+                selected = json.loads(line)
+                sentences |= {selected["utterance"], selected["text"], selected["true_text"]}
+    print("\n".join(sorted(sentences)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+// LGA-L: the policy is told the Selection in words and sees no mask (paper, section 5, ablation).
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/plugin/plugin.hpp>
+
+class LgaL : public lgabench::CloningMethod {
+ public:
+  lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
+                             lgabench::Services& services) override {
+    space_ = space;
+    return lgabench::select_features(command, space, services.lm);
+  }
+
+ protected:
+  lgabench::PolicyInputs inputs(const lgabench::Json& options) const override {
+    lgabench::PolicyInputs inputs;
+    if (options.at("image") == "rgb") inputs.pictures = {lgabench::PolicyInputs::Picture::rgb};
+    inputs.text = lgabench::PolicyInputs::Text::selection;
+    inputs.space = space_;
+    return inputs;
+  }
+
+ private:
+  lgabench::FeatureSpace space_;
+};
+
+LGABENCH_METHOD("lga_l", "0.1", "Behaviour cloning on a language model's Selection in words", LgaL,
+                "{" LGABENCH_CLONING_OPTIONS R"(,
+  "image": {"default": "none", "values": ["none", "rgb"], "help": "what the policy sees beside the words",
+            "source": "none: paper, section 5, \"the language abstraction only\"; rgb: another reading of it"}})")
