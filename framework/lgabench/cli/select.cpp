@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
 
+#include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
@@ -14,7 +17,8 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string command, answers = "recorded", task = "pick_and_place", space = "tabletop";
+  std::string command, answers = "recorded", task = "pick_and_place", space = "tabletop", model, cassette;
+  int concurrency = 4, max_queries = -1;
   bool json = false;
 };
 
@@ -25,6 +29,41 @@ struct Asked {
   Command command;
   std::optional<Selection> truth;
 };
+
+// Whoever answers, and what it stands on.
+struct Answerer {
+  std::unique_ptr<ChatClient> client;
+  std::unique_ptr<Cassette> cassette;
+  std::unique_ptr<LanguageModel> model;
+};
+
+Answerer make_answerer(const Asked& asked, const Arguments& a) {
+  Answerer answerer;
+  if (a.answers != "openai" && a.answers != "cassette") {
+    answerer.model = std::make_unique<RecordedLanguageModel>(asked.space, asked.answers_of, a.answers);
+    return answerer;
+  }
+  const bool live = a.answers == "openai";
+  if (a.cassette.empty()) throw InputError(fmt::format("--answers {}: expected --cassette FILE too", a.answers));
+  answerer.cassette = std::make_unique<Cassette>(a.cassette);
+  ChatOptions options{a.model, a.concurrency, a.max_queries, {}};
+  if (options.model.empty()) {
+    const auto models = answerer.cassette->models();
+    if (live || models.size() != 1)
+      throw InputError(
+          fmt::format("--model: expected one; {} holds replies of: {}", a.cassette, fmt::join(models, ", ")));
+    options.model = *models.begin();
+  }
+  if (live) {
+    answerer.client = std::make_unique<OpenAiClient>(openai_from_environment());
+    options.progress = [](int asked_already, int all) {
+      fmt::print(stderr, ::isatty(2) ? "\rasked {} of {}{}" : "asked {} of {}{}", asked_already, all,
+                 asked_already == all || !::isatty(2) ? "\n" : "");
+    };
+  }
+  answerer.model = std::make_unique<ChatLanguageModel>(*answerer.cassette, answerer.client.get(), options);
+  return answerer;
+}
 
 // All commands of the scenario of that id, or the one with that utterance; else the words alone, which have no truth.
 std::vector<Asked> find_commands(const Arguments& arguments) {
@@ -65,8 +104,8 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
 }
 
 void select(const Asked& asked, const Arguments& arguments) {
-  RecordedLanguageModel model(asked.space, asked.answers_of, arguments.answers);
-  const Selection selection = select_features(asked.command, asked.space, model);
+  const Answerer answerer = make_answerer(asked, arguments);
+  const Selection selection = select_features(asked.command, asked.space, *answerer.model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
@@ -80,7 +119,10 @@ void select(const Asked& asked, const Arguments& arguments) {
   fmt::print("command     {}\n", asked.command.utterance);
   if (selection.asked_as != asked.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
   fmt::print("answers     {} ({})\n", selection.source, to_string(selection.provenance));
-  fmt::print("cost        {} queries\n", selection.cost.lm_queries);
+  fmt::print("cost        {} queries", selection.cost.lm_queries);
+  if (selection.cost.lm_tokens > 0)
+    fmt::print(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
+  fmt::print("\n");
   fmt::print("in words    {}\n", text);
   print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
   if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
@@ -92,17 +134,31 @@ void add_select(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("select", "Ask which features matter for a command, and print the Selection");
   verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes")->required();
-  verb->add_option("--answers", arguments->answers,
-                   "Whose recorded answers; recorded: GPT-4's where it was asked, else Claude's")
-      ->check(CLI::IsMember({"recorded", "gpt4", "claude"}))
+  verb->add_option(
+          "--answers", arguments->answers,
+          "recorded: GPT-4's where it was asked, else Claude's; gpt4, claude: theirs alone; openai: ask a server "
+          "now; cassette: what it said before")
+      ->check(CLI::IsMember({"recorded", "gpt4", "claude", "openai", "cassette"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "Of a command that is no scenario's")
       ->check(CLI::IsMember({"pick_and_place", "rotate", "sweep"}))
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "Feature space of a command that is no scenario's")
       ->capture_default_str();
+  verb->add_option("--cassette", arguments->cassette, "File of a server's replies; grows as it is asked");
+  verb->add_option("--model", arguments->model, "The server's model; of a cassette, by default its only one");
+  verb->add_option("--concurrency", arguments->concurrency, "Questions under way at once")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  verb->add_option("--max-queries", arguments->max_queries, "Ask no more than so many questions; -1: no limit")
+      ->check(CLI::Range(-1, 1000000))
+      ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
-  verb->footer("Example: lgabench select red_heart");
+  verb->footer(
+      "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one\n"
+      "question for each object type and texture. What was interrupted goes on from the cassette.\n"
+      "Example: lgabench select red_heart\n"
+      "         lgabench select \"Bring me a fruit.\" --space household --answers openai --model M --cassette M.jsonl");
   verb->callback([arguments] {
     for (const Asked& asked : find_commands(*arguments)) select(asked, *arguments);
   });

@@ -25,6 +25,18 @@ struct Descriptor {
   }
 };
 
+// False, with errno set, if not all of it could be written.
+bool write_all(int fd, std::string_view bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t n = ::write(fd, bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    done += static_cast<std::size_t>(n);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& file) {
@@ -50,17 +62,11 @@ void write_file(const fs::path& file, std::string_view bytes) {
   {
     const Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
     if (out.fd < 0) fail(file, "cannot be written");
-    std::size_t done = 0;
-    while (done < bytes.size()) {
-      const ssize_t n = ::write(out.fd, bytes.data() + done, bytes.size() - done);
-      if (n < 0 && errno == EINTR) continue;
-      if (n < 0) {
-        const int reason = errno;
-        ::unlink(temporary.c_str());
-        errno = reason;
-        fail(file, "cannot be written");
-      }
-      done += static_cast<std::size_t>(n);
+    if (!write_all(out.fd, bytes)) {
+      const int reason = errno;
+      ::unlink(temporary.c_str());
+      errno = reason;
+      fail(file, "cannot be written");
     }
     if (::fsync(out.fd) != 0) fail(file, "cannot be written to disk");
   }
@@ -70,6 +76,17 @@ void write_file(const fs::path& file, std::string_view bytes) {
     errno = reason;
     fail(file, "cannot be written");
   }
+}
+
+void append_file(const fs::path& file, std::string_view bytes) {
+  const Descriptor out{::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644)};
+  if (out.fd < 0) fail(file, "cannot be written");
+  const off_t before = ::lseek(out.fd, 0, SEEK_END);
+  if (write_all(out.fd, bytes) && ::fsync(out.fd) == 0) return;
+  const int reason = errno;
+  [[maybe_unused]] const int taken_back = ::ftruncate(out.fd, before);
+  errno = reason;
+  fail(file, "cannot be written");
 }
 
 std::vector<std::string> json_names(const fs::path& directory, std::error_code& error) {

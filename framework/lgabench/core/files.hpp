@@ -17,6 +17,10 @@ std::string read_file(const fs::path& file);
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
 void write_file(const fs::path& file, std::string_view bytes);
 
+/// Appends to `file`, which is made if need be, and fsyncs. What fails is taken back: the file is then as it was.
+/// @throws InputError naming the file and the system's reason.
+void append_file(const fs::path& file, std::string_view bytes);
+
 /// Names, without their ending, of the .json files in a directory, sorted; as many as could be read where `error` is
 /// set.
 std::vector<std::string> json_names(const fs::path& directory, std::error_code& error);

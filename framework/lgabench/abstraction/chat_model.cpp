@@ -1,0 +1,97 @@
+#include <lgabench/abstraction/chat_model.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace lgabench {
+
+ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options)
+    : cassette_(cassette), client_(client), options_(std::move(options)) {}
+
+// Several at once; the first that fails stops the rest, which has not begun.
+void ChatLanguageModel::ask(const std::vector<Request>& requests) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::size_t finished = 0, working = 0;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < requests.size();) {
+      std::exception_ptr thrown;
+      try {
+        const ChatReply reply = client_->complete(requests[i].json);
+        final_answer(reply.text);  // what cannot be read is not kept, but asked again another time
+        cassette_.add(requests[i].key, requests[i].json, reply);
+      } catch (const MethodError& e) {
+        thrown = std::make_exception_ptr(
+            MethodError(fmt::format("{}, asked about \"{}\": {}", options_.model, requests[i].candidate, e.what())));
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+      if (thrown) next = requests.size();
+      const std::lock_guard lock(mutex);
+      if (thrown && !failure) failure = thrown;
+      if (!thrown) ++finished;
+      changed.notify_one();
+    }
+    const std::lock_guard lock(mutex);
+    --working;
+    changed.notify_one();
+  };
+
+  std::vector<std::thread> threads;
+  working = std::min(requests.size(), static_cast<std::size_t>(std::max(options_.concurrency, 1)));
+  for (std::size_t i = working; i > 0; --i) threads.emplace_back(work);
+  {
+    std::unique_lock lock(mutex);
+    for (std::size_t told = 0; working > 0;) {
+      changed.wait(lock);
+      if (finished == told || !options_.progress) continue;
+      told = finished;
+      options_.progress(static_cast<int>(finished), static_cast<int>(requests.size()));
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+  asked_ += static_cast<int>(finished);
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
+                                            const std::vector<Question>& questions) {
+  std::vector<std::string> keys;
+  std::vector<Request> missing;
+  for (const Question& question : questions) {
+    const Prompt prompt = template_.fill(command, space, question);
+    const Json request{
+        {"model", options_.model},
+        {"messages", {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}}},
+        {"temperature", 0}};
+    keys.push_back(Cassette::key(request, template_.version()));
+    if (!cassette_.find(keys.back())) missing.push_back({keys.back(), question.candidate, request});
+  }
+  if (!missing.empty() && !client_)
+    throw InputError(fmt::format("cassette: expected replies of {} to \"{}\", {} of {} are missing", options_.model,
+                                 command.utterance, missing.size(), questions.size()));
+  if (options_.max_queries >= 0 && asked_ + static_cast<int>(missing.size()) > options_.max_queries)
+    throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, missing.size(),
+                                 options_.max_queries - asked_));
+  ask(missing);
+
+  std::vector<bool> answers;
+  for (const std::string& key : keys) {
+    const ChatReply reply = *cassette_.find(key);
+    answers.push_back(final_answer(reply.text));
+    ++cost_.lm_queries;
+    cost_.lm_tokens += reply.tokens;
+    cost_.lm_seconds += reply.seconds;
+  }
+  return answers;
+}
+
+}  // namespace lgabench

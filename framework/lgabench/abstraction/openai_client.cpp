@@ -1,0 +1,153 @@
+#include <lgabench/abstraction/openai_client.hpp>
+
+#include <curl/curl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+struct Response {
+  long status = 0;  // 0: none came
+  std::string body, problem;
+  double retry_after_s = 0;
+};
+
+std::size_t collect(char* bytes, std::size_t size, std::size_t count, void* into) {
+  static_cast<std::string*>(into)->append(bytes, size * count);
+  return size * count;
+}
+
+struct Easy {
+  CURL* handle = curl_easy_init();
+  curl_slist* headers = nullptr;
+  Easy() = default;
+  Easy(const Easy&) = delete;
+  Easy& operator=(const Easy&) = delete;
+  ~Easy() {
+    curl_slist_free_all(headers);
+    curl_easy_cleanup(handle);
+  }
+  void add_header(const std::string& header) { headers = curl_slist_append(headers, header.c_str()); }
+};
+
+Response post(const OpenAiOptions& options, const std::string& body) {
+  Easy easy;
+  Response response;
+  char problem[CURL_ERROR_SIZE] = "";
+  easy.add_header("Content-Type: application/json");
+  if (!options.api_key.empty()) easy.add_header("Authorization: Bearer " + options.api_key);
+  const auto set = [&easy](CURLoption option, auto value) { curl_easy_setopt(easy.handle, option, value); };
+  const std::string url = options.base_url + "/chat/completions";
+  set(CURLOPT_URL, url.c_str());
+  set(CURLOPT_PROTOCOLS_STR, "http,https");
+  set(CURLOPT_HTTPHEADER, easy.headers);
+  set(CURLOPT_POSTFIELDS, body.c_str());
+  set(CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(body.size()));
+  set(CURLOPT_WRITEFUNCTION, collect);
+  set(CURLOPT_WRITEDATA, &response.body);
+  set(CURLOPT_ERRORBUFFER, problem);
+  set(CURLOPT_NOSIGNAL, 1L);
+  set(CURLOPT_TIMEOUT, options.timeout_s);
+  set(CURLOPT_LOW_SPEED_LIMIT, 1L);
+  set(CURLOPT_LOW_SPEED_TIME, std::max(options.timeout_s / 2, 1L));
+  const CURLcode code = curl_easy_perform(easy.handle);
+  if (code != CURLE_OK) {
+    response.problem = *problem ? problem : curl_easy_strerror(code);
+    return response;
+  }
+  curl_easy_getinfo(easy.handle, CURLINFO_RESPONSE_CODE, &response.status);
+  curl_off_t seconds = 0;
+  if (curl_easy_getinfo(easy.handle, CURLINFO_RETRY_AFTER, &seconds) == CURLE_OK)
+    response.retry_after_s = static_cast<double>(seconds);
+  return response;
+}
+
+bool may_pass(const Response& response) {
+  const long s = response.status;
+  return s == 0 || s == 408 || s == 409 || s == 429 || s >= 500;
+}
+
+// What went wrong, in a line, without the key that a server may repeat.
+std::string complaint(const Response& response, const OpenAiOptions& options) {
+  std::string text = response.problem;
+  if (response.status != 0) {
+    const Json body = Json::parse(response.body, nullptr, false);
+    const bool says = body.is_object() && body.contains("error") && body["error"].is_object() &&
+                      body["error"].contains("message") && body["error"]["message"].is_string();
+    constexpr std::size_t shown = 200;
+    text = fmt::format("status {}: {}", response.status,
+                       (says ? body["error"]["message"].get<std::string>() : response.body).substr(0, shown));
+  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (!options.api_key.empty())
+    for (std::size_t at; (at = text.find(options.api_key)) != std::string::npos;)
+      text.replace(at, options.api_key.size(), "(key)");
+  return text;
+}
+
+ChatReply read_completion(const std::string& body) {
+  const Json json = Json::parse(body, nullptr, false);
+  const JsonReader reader(json, "language model's reply");
+  const auto choices = reader.at("choices").elements();
+  if (choices.size() != 1) reader.at("choices").fail("one choice");
+  const std::string reason = choices[0].at("finish_reason").string();
+  if (reason != "stop") throw MethodError(fmt::format("the reply was cut off: finish_reason is {}", reason));
+  ChatReply reply{choices[0].at("message").at("content").string(), 0, 0};
+  if (reader.has("usage") && reader.at("usage").has("total_tokens"))
+    reply.tokens = reader.at("usage").at("total_tokens").integer(0, 1LL << 40);
+  return reply;
+}
+
+}  // namespace
+
+OpenAiOptions openai_from_environment() {
+  const auto named = [](const char* name, const char* usual) {
+    const char* value = std::getenv(name);
+    return std::string(value && *value ? value : usual);
+  };
+  OpenAiOptions options;
+  options.base_url = named("OPENAI_BASE_URL", "https://api.openai.com/v1");
+  options.api_key = named("OPENAI_API_KEY", "");
+  while (!options.base_url.empty() && options.base_url.back() == '/') options.base_url.pop_back();
+  return options;
+}
+
+OpenAiClient::OpenAiClient(OpenAiOptions options) : options_(std::move(options)) {
+  static const CURLcode once = curl_global_init(CURL_GLOBAL_DEFAULT);
+  if (once != CURLE_OK) throw Error("libcurl could not be initialised");
+}
+
+ChatReply OpenAiClient::complete(const Json& request) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double longest_wait_s = 60;
+  const Clock::time_point start = Clock::now();
+  const std::string body = canonical(request);
+  double wait_s = options_.first_wait_s;
+  for (int attempt = 1;; ++attempt) {
+    const Response response = post(options_, body);
+    if (response.status == 200) {
+      try {
+        ChatReply reply = read_completion(response.body);
+        reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        return reply;
+      } catch (const InputError& e) {  // not what a completion looks like
+        throw MethodError(e.what());
+      }
+    }
+    const std::string what = complaint(response, options_);
+    if (!may_pass(response)) throw MethodError(what);
+    if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
+    const double pause_s = std::min(std::max(wait_s, response.retry_after_s), longest_wait_s);
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
+    wait_s *= 2;
+  }
+}
+
+}  // namespace lgabench

@@ -1,0 +1,33 @@
+// What a language model is asked, and how its reply is read.
+#pragma once
+#include <string>
+
+#include <lgabench/core/language_model.hpp>
+
+namespace lgabench {
+
+/// A chat's first two messages.
+struct Prompt {
+  std::string system, user;
+};
+
+/// The template prompts/selection.txt of the data directory: what the paper's prompt asks (appendix, "Full Prompt"), in
+/// other words, and for sweep of the object to be avoided too. Its version is the file's SHA-256.
+class PromptTemplate {
+ public:
+  /// @throws InputError where the file is missing or lacks a part.
+  PromptTemplate();
+
+  Prompt fill(const Command& command, const FeatureSpace& space, const Question& question) const;
+  const std::string& version() const { return version_; }
+
+ private:
+  Prompt text_;
+  std::string version_;
+};
+
+/// The answer on the reply's last line, "Final answer: yes" or "Final answer: no" in any case, with or without Markdown
+/// or a full stop around it. @throws MethodError for anything else: no answer is never a no.
+bool final_answer(const std::string& reply);
+
+}  // namespace lgabench

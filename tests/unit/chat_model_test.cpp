@@ -1,0 +1,323 @@
+// The live language model against a server on loopback that misbehaves on purpose.
+#include <httplib.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <functional>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include <lgabench/abstraction/openai_client.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+constexpr const char* key = "sk-secret-1234567890";
+
+const FeatureSpace space{"small", {"heart", "star", "pan"}, {"red", "blue"}};
+const Command command{"Bring me the red heart.", Task::pick_and_place};
+
+std::string completion(const std::string& text, const std::string& reason = "stop") {
+  return Json{{"choices", {{{"message", {{"role", "assistant"}, {"content", text}}}, {"finish_reason", reason}}}},
+              {"usage", {{"total_tokens", 7}}}}
+      .dump();
+}
+
+// Answers yes where the question is about a heart or red, no otherwise, unless `misbehave` answers first.
+class Server {
+ public:
+  using Handler = std::function<bool(int request, const httplib::Request&, httplib::Response&)>;
+
+  explicit Server(Handler misbehave = {}) : misbehave_(std::move(misbehave)) {
+    server_.Post("/v1/chat/completions", [this](const httplib::Request& request, httplib::Response& response) {
+      const int number = ++requests;
+      under_way(+1);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      {
+        const std::lock_guard lock(mutex_);
+        authorizations.insert(request.get_header_value("Authorization"));
+        bodies.push_back(request.body);
+      }
+      if (!misbehave_ || !misbehave_(number, request, response)) {
+        const bool yes = request.body.find("\\\"heart\\\"?") != std::string::npos ||
+                         request.body.find("\\\"red\\\"?") != std::string::npos;
+        response.set_content(completion(std::string("It depends.\n\n**Final answer:** ") + (yes ? "Yes." : "no")),
+                             "application/json");
+      }
+      under_way(-1);
+    });
+    server_.new_task_queue = [] { return new httplib::ThreadPool(16); };
+    port_ = server_.bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+  }
+  ~Server() {
+    server_.stop();
+    thread_.join();
+  }
+
+  OpenAiOptions options() const {
+    OpenAiOptions options;
+    options.base_url = "http://127.0.0.1:" + std::to_string(port_) + "/v1";
+    options.api_key = key;
+    options.first_wait_s = .01;
+    options.timeout_s = 4;
+    return options;
+  }
+
+  std::atomic<int> requests{0}, most_at_once{0};
+  std::set<std::string> authorizations;
+  std::vector<std::string> bodies;
+
+ private:
+  void under_way(int change) {
+    const int now = at_once_ += change;
+    for (int most = most_at_once; now > most && !most_at_once.compare_exchange_weak(most, now);) {
+    }
+  }
+
+  httplib::Server server_;
+  Handler misbehave_;
+  std::mutex mutex_;
+  std::atomic<int> at_once_{0};
+  int port_ = 0;
+  std::thread thread_;
+};
+
+class Chat : public testing::Test, public TemporaryDirectory {
+ protected:
+  fs::path tape() const { return path / "tape.jsonl"; }
+
+  Selection ask(const OpenAiOptions* server, ChatOptions options = {"m"}) {
+    options.model = "m";
+    Cassette cassette(tape());
+    std::unique_ptr<OpenAiClient> client;
+    if (server) client = std::make_unique<OpenAiClient>(*server);
+    ChatLanguageModel model(cassette, client.get(), options);
+    return select_features(command, space, model);
+  }
+  // What asking this server ends with.
+  std::string failure(const Server& server, int attempts = 2) {
+    OpenAiOptions options = server.options();
+    options.attempts = attempts;
+    const std::string said = message_of<MethodError>([&] { ask(&options); });
+    EXPECT_EQ(said.find(key), std::string::npos) << said;
+    return said;
+  }
+  void expect_red_hearts(const Selection& selection) {
+    EXPECT_EQ(selection.target, (FeatureSet{{"heart"}, {"red"}}));
+    EXPECT_EQ(selection.source, "m");
+  }
+};
+
+TEST_F(Chat, AsksOneQuestionACandidateAndReplaysThemWithoutAServer) {
+  Server server;
+  const OpenAiOptions options = server.options();
+  const Selection live = ask(&options);
+  expect_red_hearts(live);
+  EXPECT_EQ(live.provenance, Provenance::live);
+  EXPECT_EQ(live.cost.lm_queries, 5);
+  EXPECT_EQ(live.cost.lm_tokens, 5 * 7);
+  EXPECT_GT(live.cost.lm_seconds, 5 * .02);
+  EXPECT_EQ(server.requests, 5);
+  EXPECT_EQ(server.authorizations, std::set<std::string>{std::string("Bearer ") + key});
+  const std::string system = Json::parse(server.bodies[0])["messages"][0]["content"];
+  EXPECT_SAYS(system, "heart, star, pan");
+  EXPECT_SAYS(system, "red, blue");
+
+  const Selection replayed = ask(nullptr);
+  expect_red_hearts(replayed);
+  EXPECT_EQ(replayed.provenance, Provenance::cassette);
+  EXPECT_EQ(replayed.cost.lm_seconds, live.cost.lm_seconds) << "what it cost then";
+  EXPECT_EQ(server.requests, 5);
+  EXPECT_EQ(read_file(tape()).find(key), std::string::npos);
+}
+
+TEST_F(Chat, AsksSeveralAtOnceAndNoMore) {
+  Server server;
+  const OpenAiOptions options = server.options();
+  std::vector<int> told;
+  expect_red_hearts(ask(&options, {"m", 3, -1, [&](int asked, int all) {
+                                     EXPECT_EQ(all, 5);
+                                     told.push_back(asked);
+                                   }}));
+  EXPECT_EQ(server.most_at_once, 3);
+  EXPECT_EQ(told.back(), 5);
+}
+
+TEST_F(Chat, SpendsNoMoreThanItMay) {
+  Server server;
+  const OpenAiOptions options = server.options();
+  EXPECT_SAYS(message_of<InputError>([&] {
+                ask(&options, {"m", 1, 4, {}});
+              }),
+              "takes 5 queries, expected no more than 4");
+  EXPECT_EQ(server.requests, 0);
+  expect_red_hearts(ask(&options, {"m", 1, 5, {}}));
+}
+
+TEST_F(Chat, GoesOnWhereItStopped) {
+  {
+    Server server([](int request, const auto&, httplib::Response& response) {
+      if (request != 3) return false;
+      response.status = 400;
+      return true;
+    });
+    OpenAiOptions options = server.options();
+    EXPECT_THROW(ask(&options, {"m", 1, -1, {}}), MethodError);
+    EXPECT_EQ(server.requests, 3) << "what was not begun is not asked";
+  }
+  std::string torn = read_file(tape());
+  write_file(tape(), torn.substr(0, torn.size() - 10));  // killed while it wrote the second reply
+  Server server;
+  const OpenAiOptions options = server.options();
+  expect_red_hearts(ask(&options));
+  EXPECT_EQ(server.requests, 4);
+  EXPECT_SAYS(message_of<InputError>([&] {
+                write_file(tape(), "{}\n");
+                ask(nullptr);
+              }),
+              "tape.jsonl: line 1");
+}
+
+TEST_F(Chat, TriesAgainWhereThatMayHelp) {
+  for (const int status : {408, 409, 429, 500, 503}) {
+    fs::remove(tape());
+    Server server([status](int request, const auto&, httplib::Response& response) {
+      if (request > 2) return false;
+      response.status = status;
+      return true;
+    });
+    const OpenAiOptions options = server.options();
+    expect_red_hearts(ask(&options, {"m", 1, -1, {}}));
+    EXPECT_EQ(server.requests, 7) << status;
+  }
+}
+
+TEST_F(Chat, WaitsAsLongAsItIsTold) {
+  Server server([](int request, const auto&, httplib::Response& response) {
+    if (request > 1) return false;
+    response.status = 429;
+    response.set_header("Retry-After", "1");
+    return true;
+  });
+  const OpenAiOptions options = server.options();
+  const auto start = std::chrono::steady_clock::now();
+  expect_red_hearts(ask(&options, {"m", 1, -1, {}}));
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+}
+
+TEST_F(Chat, GivesUpAtLast) {
+  Server server([](int, const auto&, httplib::Response& response) {
+    response.status = 503;
+    response.set_content("{\"error\": {\"message\": \"overloaded\"}}", "application/json");
+    return true;
+  });
+  EXPECT_SAYS(failure(server, 3), "given up after 3 attempts: status 503: overloaded");
+}
+
+TEST_F(Chat, RefusalsAreFinalAndHideTheKey) {
+  for (const int status : {400, 401, 403, 404}) {
+    Server server([status](int, const auto&, httplib::Response& response) {
+      response.status = status;
+      response.set_content(std::string("{\"error\": {\"message\": \"Incorrect API key\\nprovided: ") + key + "\"}}",
+                           "application/json");
+      return true;
+    });
+    EXPECT_SAYS(failure(server), "status " + std::to_string(status) + ": Incorrect API key provided: (key)");
+    EXPECT_LE(server.requests, 4) << "one attempt for each that was under way";
+  }
+}
+
+TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
+  const auto failure_of = [this](const std::string& body) {
+    Server server([body](int, const auto&, httplib::Response& response) {
+      response.set_content(body, "application/json");
+      return true;
+    });
+    return failure(server);
+  };
+  EXPECT_SAYS(failure_of(completion("Final answer: yes", "length")), "cut off: finish_reason is length");
+  EXPECT_SAYS(failure_of(completion("Final answer: yes", "content_filter")), "finish_reason is content_filter");
+  EXPECT_SAYS(failure_of(completion("I would say so.")), "expected a last line \"Final answer: yes\"");
+  EXPECT_SAYS(failure_of(completion("Final answer: yes\nor rather not")),
+              "that ends \"Final answer: yes\nor rather not\"");
+  EXPECT_SAYS(failure_of("not JSON"), "language model's reply");
+  EXPECT_SAYS(failure_of("{\"choices\": []}"), "/choices: expected one choice");
+  EXPECT_SAYS(failure_of("{\"choices\": [{\"finish_reason\": \"stop\", \"message\": {\"content\": null}}]}"),
+              "content");
+  EXPECT_FALSE(fs::exists(tape())) << "what cannot be read is not kept";
+}
+
+TEST_F(Chat, ABrokenConnectionIsTriedAgain) {
+  Server server([](int request, const auto&, httplib::Response& response) {
+    if (request > 1) return false;
+    response.set_content_provider(1000, "application/json", [](std::size_t, std::size_t, httplib::DataSink& sink) {
+      sink.write("{\"choices\"", 10);
+      return false;  // closed before the length that was promised
+    });
+    return true;
+  });
+  const OpenAiOptions options = server.options();
+  expect_red_hearts(ask(&options, {"m", 1, -1, {}}));
+  EXPECT_EQ(server.requests, 6);
+}
+
+TEST_F(Chat, ASlowTrickleEnds) {
+  Server server([](int, const auto&, httplib::Response& response) {
+    response.set_chunked_content_provider("application/json", [](std::size_t, httplib::DataSink& sink) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      return sink.write(" ", 1);
+    });
+    return true;
+  });
+  OpenAiOptions options = server.options();
+  options.attempts = 1;
+  options.timeout_s = 1;
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "given up after 1 attempts");
+}
+
+TEST_F(Chat, NoServerAndNoTlsAreSaid) {
+  OpenAiOptions nowhere;
+  {
+    Server server;
+    nowhere = server.options();
+    nowhere.attempts = 1;
+    OpenAiOptions tls = nowhere;
+    tls.base_url.replace(0, 4, "https");
+    EXPECT_SAYS(message_of<MethodError>([&] { ask(&tls); }), "given up after 1 attempts: ");
+    OpenAiOptions file = nowhere;
+    file.base_url = "file:///etc";
+    EXPECT_THROW(ask(&file), MethodError);
+  }
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&nowhere); }), "given up after 1 attempts: ");
+}
+
+TEST(FinalAnswer, IsOnTheLastLine) {
+  for (const char* yes : {"Final answer: yes", "reasons\nfinal answer: YES.\n\n", "**Final answer:** yes",
+                          "Final Answer: **Yes**  ", "a\r\nFinal answer: yes\r\n", "Final answer: yes\n```"})
+    EXPECT_TRUE(final_answer(yes)) << yes;
+  EXPECT_FALSE(final_answer("Final answer: yes\nFinal answer: no"));
+  for (const char* none :
+       {"", "yes", "Final answer:", "Final answer: yes or no", "Final answer: yes, no", "Final answer: maybe",
+        "Final answer: y", "Final answer: yes (if red)", "Final answer: not yes", "Final answer: 1 yes"})
+    EXPECT_THROW(final_answer(none), MethodError) << none;
+}
+
+TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {
+  const PromptTemplate prompt;
+  const Command braces{"Bring me {candidate}.", Task::sweep};
+  const Prompt p = prompt.fill(braces, space, {Question::About::avoid, Question::Group::texture, "red"});
+  EXPECT_SAYS(p.user, "\"Bring me {candidate}.\"");
+  EXPECT_SAYS(p.user, "Could the object to be avoided have the object color \"red\"?");
+  EXPECT_SAYS(prompt.fill(command, space, {Question::About::target, Question::Group::object_type, "pan"}).user,
+              "Could the target object have the object type \"pan\"?");
+  EXPECT_EQ(p.user.find("{group}"), std::string::npos);
+  EXPECT_EQ(prompt.version().size(), 64u);
+}
+
+}  // namespace
+}  // namespace lgabench
