@@ -7,7 +7,6 @@ import json
 import os
 import pathlib
 import random
-import re
 import shutil
 import signal
 import struct
@@ -42,7 +41,8 @@ class Faults(Case):
 
     def assert_as_undisturbed(self, run="out"):
         self.assert_same_results(self.undisturbed.dir / "out", run)
-        self.assertEqual(sorted(p.name for p in (self.dir / run).rglob("*") if p.name[0] == "." or p.suffix == ".tmp"), [])
+        left = [p.name for p in (self.dir / run).rglob("*") if p.name[0] == "." or p.suffix == ".tmp"]
+        self.assertEqual(left, [])
 
     def finished(self, run="out"):
         """All bytes of the cells that are there and went well."""
@@ -97,7 +97,8 @@ class FaultyPlugins(Faults):
         ("learn", "throw_int"): r"plugin fixture_faulty: threw int", ("learn", "allocate"): r"out of memory",
         ("learn", "fork"): None, ("select", "fork"): None, ("learn", "close"): None,
         ("learn", "quick_exit"): r"exited with 0 in phase learn",
-        ("select", "throw_int"): r"plugin fixture_faulty: threw int", ("select", "segfault"): r"signal 11 .*in phase select",
+        ("select", "throw_int"): r"plugin fixture_faulty: threw int",
+        ("select", "segfault"): r"signal 11 .*in phase select",
     }
 
     def test_each_costs_its_own_cell_alone(self):
@@ -128,7 +129,7 @@ class FaultyPlugins(Faults):
                     self.assertEqual(files, {"cell.json", "status.json", "log.txt"})
                     self.assertRegex(status["reason"], expected)
                     self.assertEqual(reported.pop(key), status["reason"])
-                    self.assertIn(f"({self.dir}/out/cells/{key}/log.txt)".replace(f"{self.dir}/", ""), done.stderr)
+                    self.assertIn(f"{status['reason']} (out/cells/{key}/log.txt)", done.stderr)
                     self.assertIn(status["reason"], report)
         self.assertEqual(reported, {})
         self.assertIn("the fixture prints", (self.dir / "out/cells" / ended["act", "print"][0] / "log.txt").read_text())
@@ -138,7 +139,8 @@ class FaultyPlugins(Faults):
 
         # The command that is printed computes what failed again, and nothing else.
         command = done.stderr.splitlines()[-1].strip()
-        again = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=self.environment, cwd=self.dir)
+        again = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=self.environment,
+                               cwd=self.dir)
         self.assertEqual(again.returncode, 3, again.stderr)
         failed = sum(1 for expected in self.FAULTS.values() if expected)
         self.assertIn(f"0 cells computed, {1 + len(methods) - failed} were there, {failed} failed", again.stderr)
@@ -177,10 +179,11 @@ class Killed(Faults):
             self.assert_as_undisturbed(out)
         self.assertGreater(min(kills.values()), 3, kills)
 
-    def interrupted(self, *signals):
+    def interrupted(self, number, impatiently=False):
         run = self.start(*RUN, "--jobs", "2")
         self.first_worker(run)
-        for number in signals:
+        run.send_signal(number)
+        while impatiently and run.poll() is None:
             run.send_signal(number)
         said = run.communicate(timeout=60)[1]
         self.assertEqual(run.returncode, 130, said)
@@ -192,7 +195,7 @@ class Killed(Faults):
     def test_interrupted_prints_the_command_that_resumes(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             command = self.interrupted(number)
-        command = self.interrupted(signal.SIGINT, signal.SIGINT, signal.SIGTERM)
+        command = self.interrupted(signal.SIGINT, impatiently=True)
         subprocess.run(command, check=True, env=self.environment, cwd=self.dir, capture_output=True, timeout=300)
         shutil.move(self.dir / command[-2], self.dir / "out")
         self.assert_as_undisturbed()
@@ -251,8 +254,8 @@ class FullDisk(Faults):
                 "FULL_DISK_COUNT": str(count), "FULL_DISK_AT": str(number)}
         if stays:
             more["FULL_DISK_STAYS"] = "1"
-        done = subprocess.run([PROGRAM, *map(str, NO_TRAINING), "--cache", "disk/cache", "--out", "disk/out"], timeout=60,
-                              capture_output=True, text=True, cwd=self.dir, env={**self.environment, **more})
+        done = subprocess.run([PROGRAM, *map(str, NO_TRAINING), "--cache", "disk/cache", "--out", "disk/out"],
+                              timeout=60, capture_output=True, text=True, cwd=self.dir, env={**self.environment, **more})
         return done, struct.unpack("i", count.read_bytes())[0]
 
     def test_at_every_write(self):
@@ -291,7 +294,6 @@ class TornFiles(Faults):
             for damage, torn in {"truncated": whole[:middle], "empty": b"", "edited": whole.replace(b":", b";", 1),
                                  "longer": whole + b"{}\n", "zeros": bytes(len(whole)), "missing": None}.items():
                 with self.subTest(file=file.name, damage=damage):
-                    before = time.monotonic()
                     file.unlink() if torn is None else file.write_bytes(torn)
                     said = self.call(*NO_TRAINING, "--out", "out").stderr
                     self.assertRegex(said, rf"{file.name}.*; computed again")
@@ -299,7 +301,7 @@ class TornFiles(Faults):
                     self.assert_as_undisturbed()
 
     def test_a_status_that_says_less(self):
-        for change in ({"files": {}}, {"files": 3}, {"state": 1}, {"state": "failed"}, {"build": 5}, {"files": {"a": 1}}):
+        for change in ({"files": {}}, {"files": 3}, {"files": {"a": 1}}, {"state": 1}, {"state": "failed"}, {"build": 5}):
             with self.subTest(change):
                 shutil.rmtree(self.dir / "out", ignore_errors=True)
                 shutil.copytree(self.undisturbed.dir / "out", self.dir / "out")
@@ -329,8 +331,9 @@ class SharedCache(Faults):
             self.assertNotIn("made again", said)
         for out in ("a", "b"):
             self.assert_as_undisturbed(out)
-        files = lambda cache: {p.name: p.read_bytes() for p in cache.iterdir()}
-        self.assertEqual(files(self.dir / "cache"), files(self.undisturbed.dir / "cache"))
+        filled, wanted = ({p.name: p.read_bytes() for p in (case.dir / "cache").iterdir()}
+                          for case in (self, self.undisturbed))
+        self.assertEqual(filled, wanted)
 
 
 if __name__ == "__main__":

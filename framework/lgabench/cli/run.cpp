@@ -172,7 +172,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
-  verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH)");
+  verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
   verb->add_option("--cache", a->cache,
                    "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
   auto* resume = verb->add_flag("--resume", a->resume, "Go on in --out; cells of another build are computed again");

@@ -3,6 +3,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <lgabench/core/error.hpp>
@@ -24,7 +25,7 @@ struct FlushDenormalsAgain {
 };
 
 /// Returns call(). Whatever it throws becomes a Fault that reads "plugin ID: ..."; only an InputError stays one, since
-/// then an option or a file is to be corrected, not the plugin, and std::bad_alloc stays std::bad_alloc: how much
+/// then an option or a file is to be corrected, not the plugin, and a method's std::bad_alloc stays one: how much
 /// memory there is must not decide an episode. Use the default for methods and their policies (so a method cannot pass
 /// its failure off as the engine's), guarded<EngineError> for engines.
 template <class Fault = MethodError, class Call>
@@ -36,7 +37,8 @@ decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
   } catch (const InputError&) {
     throw InputError(named());
   } catch (const std::bad_alloc&) {
-    throw;
+    if constexpr (std::is_same_v<Fault, MethodError>) throw;
+    throw Fault(named());
   } catch (...) {
     throw Fault(named());
   }
