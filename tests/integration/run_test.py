@@ -1,69 +1,22 @@
-"""The programs as a person uses them: bad input, determinism, kill -9, faulty plugins, demonstrations, gallery.
+"""The programs as a person uses them: bad input, determinism, shards, demonstrations, gallery.
 
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py Killed
 """
+import hashlib
 import json
 import os
 import pathlib
-import random
 import re
 import shutil
-import signal
 import subprocess
-import tempfile
-import time
 import unittest
 
-BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
-PROGRAM = BUILD / "bin" / "lgabench"
-FIXTURES = BUILD / "tests" / "plugins"
+from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM
+
 # Small but real: both shipped methods train, for seconds.
 SMALL = ["q1", "--scenarios", "heart,letter", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
          "--episodes", "4", "--set", "lga.epochs=200", "--set", "gcbc_dart.epochs=5"]
 SMALL_CELLS = 2 * 5  # scenarios x (methods + constant action + random object + oracle)
-NO_CLOCK = ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")
-
-
-class Case(unittest.TestCase):
-    def setUp(self):
-        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
-        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
-        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
-
-    def call(self, *arguments, expect=0, **more):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=self.environment,
-                              cwd=self.dir, timeout=300, **more)
-        self.assertEqual(done.returncode, expect, done.stderr[-3000:])
-        return done
-
-    def start(self, *arguments):
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                   text=True, env=self.environment, cwd=self.dir)
-        self.addCleanup(process.stderr.close)
-        return process
-
-    def cells(self, run):
-        """key -> (cell, status) of every finished cell."""
-        return {path.name: tuple(json.loads((path / name).read_text()) for name in ("cell.json", "status.json"))
-                for path in (self.dir / run / "cells").iterdir() if not path.name.startswith(".")}
-
-    def results(self, run):
-        """All bytes that must not depend on how the run went."""
-        bytes_of = {f"{path.name}/{name}": (path / name).read_bytes()
-                    for path in (self.dir / run / "cells").iterdir() for name in NO_CLOCK if (path / name).exists()}
-        for name in ("summary.json", "summary.csv"):
-            bytes_of[name] = (self.dir / run / name).read_bytes()
-        return bytes_of
-
-    def assert_same_results(self, run, other):
-        a, b = self.results(run), self.results(other)
-        self.assertEqual(sorted(a), sorted(b))
-        self.assertEqual([name for name in a if a[name] != b[name]], [])
-
-    def assert_matches_schemas(self, run):
-        done = subprocess.run([BUILD / "bin" / "schema_check", self.dir / run], capture_output=True, text=True,
-                              timeout=60)
-        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
 
 
 class BadInput(Case):
@@ -205,125 +158,93 @@ class Determinism(Case):
         self.assert_matches_schemas("two")
 
 
-class Killed(Case):
-    @classmethod
-    def setUpClass(cls):
-        cls.undisturbed = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
-        cls.addClassCleanup(shutil.rmtree, cls.undisturbed, ignore_errors=True)
-        subprocess.run([PROGRAM, "run", *SMALL, "--out", cls.undisturbed / "run"], check=True, capture_output=True,
-                       env=dict(os.environ, LGABENCH_CACHE=str(cls.undisturbed / "cache")))
-
-    def assert_as_undisturbed(self, run):
-        self.assert_same_results(self.undisturbed / "run", run)
-
-    @staticmethod
-    def workers(parent):
-        try:
-            return [int(p) for p in pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()]
-        except OSError:
-            return []
-
-    @staticmethod
-    def gone(pid):
-        try:
-            return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] == "Z"
-        except OSError:
-            return True
-
-    def test_a_worker(self):
-        run = self.start("run", *SMALL, "--jobs", "2", "--out", "out")
-        while not self.workers(run.pid):
-            time.sleep(.001)
-        os.kill(self.workers(run.pid)[0], signal.SIGKILL)
-        said = run.communicate(timeout=300)[1]
-        self.assertEqual(run.returncode, 3, said)
-        failed = [status for _, status in self.cells("out").values() if status["state"] == "failed"]
-        self.assertEqual([(status["signal"], status["fault"]) for status in failed], [(9, "host")])
-        self.assertIn("signal 9", said)
-        self.call("run", *SMALL, "--out", "out", "--resume")
-        self.assert_as_undisturbed("out")
-
-    def test_the_parent_at_random_moments(self):
-        seed = random.randrange(1 << 30)
-        print("seed", seed, flush=True)
-        moments = random.Random(seed)
-        for _ in range(6):
-            run = self.start("run", *SMALL, "--jobs", "2", "--out", "out")
-            time.sleep(moments.uniform(.02, 1.2))
-            workers = self.workers(run.pid)
-            run.kill()
-            run.wait()
-            deadline = time.monotonic() + 5
-            while not all(map(self.gone, workers)):
-                self.assertLess(time.monotonic(), deadline, "a worker outlived its parent")
-                time.sleep(.01)
-        self.call("run", *SMALL, "--out", "out")
-        self.assert_as_undisturbed("out")
-        self.assertEqual(list((self.dir / "out/cells").glob(".*")), [])
-
-    def test_interrupted_prints_the_command_that_resumes(self):
-        run = self.start("run", *SMALL, "--jobs", "2")
-        while not self.workers(run.pid):
-            time.sleep(.001)
-        run.send_signal(signal.SIGINT)
-        said = run.communicate(timeout=60)[1]
-        self.assertEqual(run.returncode, 130, said)
-        command = said.splitlines()[-1].split()
-        self.assertEqual(command[-1], "--resume")
-        subprocess.run(command, check=True, env=self.environment, cwd=self.dir, stdout=subprocess.DEVNULL,
-                       stderr=subprocess.DEVNULL, timeout=300)
-        shutil.move(self.dir / command[-2], self.dir / "out")
-        self.assert_as_undisturbed("out")
-
-    def test_two_runs_cannot_write_into_one_directory(self):
-        run = self.start("run", *SMALL, "--out", "out")
-        while not self.workers(run.pid):
-            time.sleep(.001)
-        self.assertIn("another run is writing into it", self.call("run", *SMALL, "--out", "out", expect=2).stderr)
-        run.kill()
-        run.wait()
-
-
-class FaultyPlugins(Case):
-    RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
-           "--plugin-path", FIXTURES / "good", "--plugin-path", FIXTURES / "faulty", "--timeout", "3"]
-
-    def test_each_costs_its_own_cell_alone(self):
-        faulty = ["abort", "exit", "hang", "nan", "segfault", "throw"]
-        methods = ",".join("fixture_" + name for name in [*faulty[:3], "constant", *faulty[3:]])
-        done = self.call(*self.RUN, "--methods", methods, "--out", "out", expect=3)
-        ended = {}
-        for key, (cell, status) in self.cells("out").items():
-            ended[cell["method"]["id"].removeprefix("fixture_")] = (key, status)
-        reasons = {name: status["reason"] for name, (_, status) in ended.items() if status["state"] == "failed"}
-        self.assertEqual(sorted(reasons), ["abort", "exit", "hang", "segfault"])
-        self.assertRegex(reasons["abort"], r"signal 6 .*in phase evaluate")
-        self.assertRegex(reasons["segfault"], r"signal 11 .*in phase evaluate")
-        self.assertRegex(reasons["exit"], r"exited with 0 in phase evaluate")
-        self.assertRegex(reasons["hang"], r"stopped after 3 s in phase evaluate")
-        self.assertEqual({ended[name][1]["fault"] for name in reasons}, {"plugin"})
-        for name in reasons:
-            self.assertIn(reasons[name], done.stderr)
-            left = {p.name for p in (self.dir / "out/cells" / ended[name][0]).iterdir()}
-            self.assertEqual(left, {"cell.json", "status.json", "log.txt"})
-        for name in ("nan", "throw"):
-            lines = (self.dir / "out/cells" / ended[name][0] / "episodes.jsonl").read_text().splitlines()
-            self.assertEqual([(json.loads(line)["failure"], json.loads(line)["action"]) for line in lines],
-                             [("method_error", None)] * 3)
-        self.assert_matches_schemas("out")
-
-        self.call(*self.RUN, "--methods", "fixture_constant", "--out", "alone")
-        key = ended["constant"][0]
-        for name in NO_CLOCK:
-            self.assertEqual((self.dir / "out/cells" / key / name).read_bytes(),
-                             (self.dir / "alone/cells" / key / name).read_bytes())
-
-    def test_one_that_cannot_be_loaded(self):
+class Unloadable(Case):
+    def test_a_plugin_costs_its_own_cell_alone(self):
         done = self.call("run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2",
                          "--no-reference", "--methods", "missing_symbol,fixture_constant", "--out", "out",
                          "--plugin-path", FIXTURES / "refused", "--plugin-path", FIXTURES / "good", expect=4)
         self.assertRegex(done.stderr, r"missing_symbol.*undefined symbol")
         self.assertEqual(sorted(status["state"] for _, status in self.cells("out").values()), ["failed", "ok"])
+
+
+class Shards(Case):
+    RUN = ["run", "q1", "--scenarios", "heart,letter", "--methods",
+           "fixture_constant,fixture_faulty+where=learn+how=throw", "--demos", "10,20", "--seeds", "0", "--episodes", "2", "--plugin-path", FIXTURES / "good",
+           "--plugin-path", FIXTURES / "faulty"]
+    CELLS, FAILED = 2 * (2 * 3 + 2), 2 * 2
+
+    def test_merged_they_are_the_undisturbed_run(self):
+        said = self.call(*self.RUN, "--out", "whole", "--jobs", "2", expect=3).stderr
+        shares = re.search(r"^select (\d+) %, sample (\d+) %, demonstrate (\d+) %, learn (\d+) %, evaluate (\d+) %; "
+                           r"2 workers busy (\d+) % of [\d.]+ s$", said, re.MULTILINE)
+        *phases, busy = map(int, shares.groups())
+        self.assertTrue(97 <= sum(phases) <= 103 and 50 <= busy <= 101, shares[0])
+        parts = []
+        for shard in ("1/2", "2/2"):
+            out = "part" + shard[0]
+            said = self.call(*self.RUN, "--out", out, "--shard", shard, expect=3)
+            self.assertIn(f"shard {shard}: {self.CELLS // 2} of the run's {self.CELLS} cells are not run here", said.stderr)
+            self.assertIn(f"{self.CELLS // 2} of {self.CELLS} cells have not run yet", said.stdout)
+            parts.append(set(self.cells(out)))
+            # Each gets its share of every kind of cell.
+            kinds = [(cell["method"]["name"], cell["demonstrations"]) for cell, _ in self.cells(out).values()]
+            self.assertEqual(len(kinds), len(set(kinds)))
+        self.assertEqual(parts[0] | parts[1], set(self.cells("whole")))
+        said = self.call("merge", "both", "part1", "part2", expect=3)
+        self.assertIn(f"{self.CELLS - self.FAILED} cells finished, {self.FAILED} failed, 0 in none", said.stderr)
+        self.assert_same_results("whole", "both")
+        self.assert_matches_schemas("both")
+        whole, both = (json.loads((self.dir / run / "run.json").read_text()) for run in ("whole", "both"))
+        own = ("command", "started", "merged")
+        self.assertEqual(*({name: value for name, value in run.items() if name not in own} for run in (whole, both)))
+        self.assertEqual([part["command"].split()[-1] for part in both["merged"]], ["1/2", "2/2"])
+        self.assertEqual(self.call("merge", "both", "part1", "part2", expect=3).stdout, said.stdout)  # again
+        # A run like any other: it goes on, and only what failed is computed again.
+        said = self.call(*self.RUN, "--out", "both", "--resume", expect=3).stderr
+        self.assertIn(f"0 cells computed, {self.CELLS - self.FAILED} were there, {self.FAILED} failed", said)
+
+        # A part alone, a damaged cell: what is not there is not run, and that is said.
+        torn = next((self.dir / "part1/cells").glob("*/episodes.jsonl"))
+        torn.write_bytes(b"")
+        said = self.call("merge", "one", "part1", expect=3)
+        self.assertRegex(said.stderr, rf"{torn.parent.name}.*episodes.jsonl does not have the bytes.*left out")
+        self.assertIn(f"{self.CELLS // 2 + 1} in none of the runs", said.stderr)
+
+    def test_what_is_no_part_is_refused(self):
+        one = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10", "--seeds", "0",
+               "--plugin-path", FIXTURES / "good", "--no-reference"]
+        self.call(*one, "--episodes", "2", "--out", "a")
+        self.call(*one, "--episodes", "3", "--out", "b")
+        shutil.copytree(self.dir / "a", self.dir / "forged")
+        cell = next((self.dir / "forged/cells").iterdir())
+        (cell / "episodes.jsonl").write_bytes((cell / "episodes.jsonl").read_bytes().replace(b":1", b":0", 1))
+        status = json.loads((cell / "status.json").read_text())
+        status["files"]["episodes.jsonl"] = hashlib.sha256((cell / "episodes.jsonl").read_bytes()).hexdigest()
+        (cell / "status.json").write_text(json.dumps(status))
+        shutil.copytree(self.dir / "a", self.dir / "rebuilt")
+        record = self.dir / "rebuilt/run.json"
+        run = json.loads(record.read_text())
+        run["build"]["lgabench-worker"] = "0" * 64
+        record.write_text(json.dumps(run))
+        for runs, says in [
+            (["a", "b"], r"a and b are not parts of one run: other cells: episodes 2 there, 3 wanted"),
+            (["a", "forged"], rf"a/cells/{cell.name} and forged/cells/{cell.name}: other results of one cell: episodes"),
+            (["a", "rebuilt"], r"a and rebuilt are not parts of one run: other builds of lgabench-worker"),
+            (["a", "none"], r"none/run.json: cannot be read"),
+        ]:
+            with self.subTest(runs):
+                done = self.call("merge", "out", *runs, expect=2)
+                self.assertRegex(done.stderr, says)
+                self.assertFalse((self.dir / "out").exists())
+        self.assertRegex(self.call("merge", "a", "a", expect=2).stderr, r"a: both to be read and to be written")
+        for shard in ("0/2", "3/2", "1", "1/2/3", "x/2", "1/"):
+            self.assertRegex(self.call(*one, "--shard", shard, expect=2).stderr, rf"--shard {shard}: expected i/n")
+
+    def test_one_without_cells_says_so(self):
+        said = self.call("run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10",
+                         "--seeds", "0", "--plugin-path", FIXTURES / "good", "--no-reference", "--shard", "2/2", "--out", "out")
+        self.assertIn("shard 2/2: 1 of the run's 1 cells are not run here", said.stderr)
+        self.assertEqual(said.stdout, "")
 
 
 class Demonstrations(Case):

@@ -1,4 +1,6 @@
 // Suites, cells, run directories: what `lgabench` does before and after a worker.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -6,6 +8,7 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 
@@ -175,28 +178,50 @@ Json run_of(const std::vector<std::string>& keys) {
   return {{"cells", keys}, {"request", {{"episodes", static_cast<int>(keys.size())}}}};
 }
 
+const std::string cell_text = "{\"n\":1}\n";
+const std::string k = sha256("{\"n\":1}").substr(0, 16);  // the key of a cell that reads so
+
 // What a worker leaves behind.
 void finish(const fs::path& cell, const Json& build) {
-  write_file(cell / "episodes.jsonl", "{}\n");
-  const Json files{{"episodes.jsonl", sha256("{}\n")}};
+  Json files = Json::object();
+  for (const std::string name : {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json"}) {
+    const std::string bytes = name == "cell.json" ? cell_text : "{}\n";
+    write_file(cell / name, bytes);
+    files[name] = sha256(bytes);
+  }
   write_file(cell / "status.json", canonical({{"state", "ok"}, {"build", build}, {"files", files}}));
 }
 
 TEST_F(RunDirectories, ACellIsCompleteWithItsBuildAndItsBytes) {
   const Json build{{"worker", "1"}, {"engine", "2"}};
-  const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
-  EXPECT_FALSE(directory.state("k", build).complete);
-  finish(directory.scratch("k"), build);
-  EXPECT_FALSE(directory.state("k", build).complete) << "not yet kept";
-  directory.keep("k");
-  EXPECT_TRUE(directory.state("k", build).complete);
-  EXPECT_TRUE(directory.state("k", {{"worker", "1"}, {"engine", "3"}}).other_build);
-  std::ofstream(path / "run/cells/k/episodes.jsonl") << "{\"success\": true}\n";
-  const auto state = directory.state("k", build);
+  const RunDirectory directory(path / "run", run_of({k}), Existing::same);
+  EXPECT_EQ(directory.state(k, build).why, "") << "never begun";
+  finish(directory.scratch(k), build);
+  EXPECT_FALSE(directory.state(k, build).complete) << "not yet kept";
+  directory.keep(k);
+  EXPECT_TRUE(directory.state(k, build).complete) << directory.state(k, build).why;
+  EXPECT_TRUE(directory.state(k, {{"worker", "1"}, {"engine", "3"}}).other_build);
+  std::ofstream(directory.cell(k) / "episodes.jsonl") << "{\"success\": true}\n";
+  const auto state = directory.state(k, build);
   EXPECT_FALSE(state.complete);
   EXPECT_SAYS(state.why, "episodes.jsonl");
-  write_file(path / "run/cells/k/status.json", "{\"state\": ");
-  EXPECT_FALSE(directory.state("k", build).complete) << "a broken status is no result";
+  write_file(directory.cell(k) / "status.json", "{\"state\": ");
+  EXPECT_FALSE(directory.state(k, build).complete) << "a broken status is no result";
+  fs::remove(directory.cell(k) / "status.json");
+  EXPECT_SAYS(directory.state(k, build).why, "status.json: cannot be read");
+  finish(directory.cell("0123456789abcdef"), build);
+  EXPECT_SAYS(directory.state("0123456789abcdef", build).why, "cell.json does not have the bytes");
+}
+
+TEST_F(RunDirectories, ResumingWithAnotherBuildSaysSoInRunJson) {
+  Json run = run_of({k});
+  run["build"] = {{"worker", "1"}};
+  { const RunDirectory directory(path / "run", run, Existing::same); }
+  run["build"] = {{"worker", "2"}};
+  { const RunDirectory directory(path / "run", run, Existing::same); }
+  EXPECT_EQ(read_json(path / "run/run.json")["build"]["worker"], "1") << "its cells are still the first build's";
+  { const RunDirectory directory(path / "run", run, Existing::resume); }
+  EXPECT_EQ(read_json(path / "run/run.json"), run);
 }
 
 TEST_F(RunDirectories, KeepingReplacesAnEarlierAttempt) {
@@ -254,6 +279,62 @@ TEST_F(RunDirectories, FreshDropsTheRunAndNothingElse) {
   EXPECT_FALSE(fs::exists(path / "run/cells/k"));
   EXPECT_EQ(read_json(path / "run/run.json"), run_of({"k", "l"}));
   EXPECT_EQ(read_file(path / "run/notes.txt"), "kept");
+}
+
+std::vector<Cell> cells_to_play() {
+  std::vector<Cell> cells;
+  for (const std::string scenario : {"a", "b", "c"})
+    for (const int n : {10, 50})
+      for (const char* method : {"quick", "slow"}) {
+        Cell cell;
+        cell.scenario = {{"id", scenario}};
+        cell.method.id = cell.method.name = method;
+        cell.demonstrations = n;
+        cells.push_back(cell);
+      }
+  return cells;
+}
+
+TEST(Shards, ArePartsWithAShareOfEachKindOfCell) {
+  const std::vector<Cell> cells = cells_to_play();
+  for (const int count : {1, 2, 3, 5, 20}) {
+    std::set<const Cell*> all;
+    std::set<std::size_t> sizes;
+    for (int i = 1; i <= count; ++i) {
+      const auto part = cells_of(cells, {i, count});
+      EXPECT_EQ(part, cells_of(cells, {i, count}));
+      all.insert(part.begin(), part.end());
+      sizes.insert(part.size());
+      const auto slow = std::count_if(part.begin(), part.end(), [](const Cell* cell) {
+        return cell->method.id == "slow" && cell->demonstrations == 50;
+      });
+      EXPECT_LE(slow, (3 + count - 1) / count) << "of three";
+      EXPECT_GE(slow, 3 / count);
+    }
+    EXPECT_EQ(all.size(), cells.size()) << count;
+    EXPECT_LE(*sizes.rbegin() - *sizes.begin(), 1u) << count;
+  }
+  EXPECT_EQ(read_shard("3/12").index, 3);
+  EXPECT_EQ(read_shard("3/12").count, 12);
+  for (const char* bad : {"", "1", "/", "1/", "0/1", "2/1", "-1/2", "1/2 ", "1/99999999999", "a/b"})
+    EXPECT_SAYS(message_of<InputError>([&] { read_shard(bad); }), "expected i/n");
+}
+
+TEST(Schedules, GiveLongCellsFirstOnceTheyAreKnown) {
+  const std::vector<Cell> cells = cells_to_play();
+  Schedule schedule(cells_of(cells, {}));
+  const Cell* first = schedule.next();
+  EXPECT_EQ(first->method.id + std::to_string(first->demonstrations), "quick50");
+  schedule.learn(*first, 5.);  // .1 s a demonstration
+  const Cell* unknown = schedule.next();
+  EXPECT_EQ(unknown->method.id + std::to_string(unknown->demonstrations), "slow50") << "it may take long";
+  schedule.learn(*unknown, 100.);  // 2 s a demonstration: ten take longer than the other's fifty
+  std::string order;
+  for (int i = 0; i < 10; ++i) {
+    const Cell* cell = schedule.next();
+    order += fmt::format("{}{} ", cell->method.id, cell->demonstrations);
+  }
+  EXPECT_EQ(order, "slow50 slow50 slow10 slow10 slow10 quick50 quick50 quick10 quick10 quick10 ");
 }
 
 }  // namespace

@@ -143,6 +143,7 @@ TEST(Guarded, KeepsInputErrorsAndBlamesEnginesForTheirOwn) {
             "plugin p: no such file");
   EXPECT_EQ(message_of<EngineError>([] { guarded<EngineError>("e", []() { throw std::bad_alloc(); }); }),
             "plugin e: std::bad_alloc");
+  EXPECT_THROW(guarded("p", []() { throw std::bad_alloc(); }), std::bad_alloc) << "the cell's end, not an episode's";
 }
 
 TEST(Options, DefaultsFillIn) {

@@ -33,9 +33,10 @@ void limit(int resource, long long value) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-// Before any plugin is loaded: a crash leaves no core, a loop or a leak ends with this process.
+// Before any plugin is loaded: a crash leaves no core; a loop, a leak or a log without end ends with this process.
 void apply_limits(const JsonReader& limits) {
   limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, 1LL << 28);
   limit(RLIMIT_CPU, limits.at("cpu_s").integer(1, 1LL << 40));
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory counts
   limit(RLIMIT_DATA, limits.at("data_bytes").integer(1, 1LL << 60));
@@ -85,6 +86,10 @@ void add_cell(CLI::App& app, int&) {
     } catch (const PluginError& e) {
       complain(e, "plugin");
       throw;
+    } catch (const std::bad_alloc&) {
+      const MethodError e("out of memory (the limit is --memory)");
+      complain(e, "plugin");
+      throw e;
     } catch (const std::exception& e) {
       complain(e, "host");
       throw;

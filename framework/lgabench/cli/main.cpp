@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   cli::add_list(app, exit);
   cli::add_info(app, exit);
   cli::add_run(app, exit);
+  cli::add_merge(app, exit);
   cli::add_report(app, exit);
   for (const auto& [verb, summary] : worker_verbs) app.add_subcommand(verb, summary);
   return cli::dispatch(app, argc, argv, exit);

@@ -7,22 +7,20 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
-#include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
 namespace {
 
-using Words = std::vector<std::string>;
-
 struct Arguments {
-  std::string suite, preset, answers = "recorded", out, cache;
+  std::string suite, preset, answers = "recorded", out, cache, shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
   int jobs = 0, limit = 0;  // 0: as many as there are cores, all cells
-  double timeout_s = 3600;
+  double timeout_s = 3600, memory_gib = 0;
   bool resume = false, fresh = false, no_reference = false, json = false;
 };
 
@@ -81,34 +79,6 @@ fs::path default_cache() {
   return fs::temp_directory_path() / "lgabench-cache";
 }
 
-std::string shell_quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=./:,@%") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-// As typed.
-Words command_line() {
-  const std::string bytes = read_file("/proc/self/cmdline");
-  Words words;
-  for (std::size_t at = 0; at < bytes.size();) {
-    const std::size_t end = std::min(bytes.find('\0', at), bytes.size());
-    words.push_back(bytes.substr(at, end - at));
-    at = end + 1;
-  }
-  return words;
-}
-
-std::string joined(const Words& words) {
-  Words quoted;
-  std::transform(words.begin(), words.end(), std::back_inserter(quoted), shell_quoted);
-  return fmt::format("{}", fmt::join(quoted, " "));
-}
-
 // The command that takes this run up again, wherever its default directory was.
 std::string resuming_command(const Arguments& a, const fs::path& out) {
   Words words = command_line();
@@ -120,6 +90,17 @@ std::string resuming_command(const Arguments& a, const fs::path& out) {
   return joined(words);
 }
 
+void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
+  fmt::print(stderr, "{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused,
+             outcome.failed.size());
+  if (outcome.computed) fmt::print(stderr, "{}\n", outcome.time.text(plan.pool.jobs));
+  if (outcome.elsewhere)
+    fmt::print(stderr, "shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
+               plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
+  for (const FailedCell& cell : outcome.failed)
+    fmt::print(stderr, "failed: {}: {} ({})\n", cell.title, cell.reason, cell.log.string());
+}
+
 int run(const Arguments& a) {
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
@@ -127,6 +108,7 @@ int run(const Arguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
+  plan.shard = read_shard(a.shard);
   plan.cells = expand(suite, grid, variation, catalogue);
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
     plan.cells.resize(static_cast<std::size_t>(a.limit));
@@ -140,26 +122,27 @@ int run(const Arguments& a) {
   plan.command = joined(command_line());
   plan.out = a.out;
   if (a.out.empty())
-    plan.out = fs::path("runs") / fmt::format("{}{}-{}", suite.id, a.preset.empty() ? "" : "-" + a.preset,
-                                              run_hash(plan.cells, catalogue));
+    plan.out =
+        fs::path("runs") /
+        fmt::format("{}{}-{}{}", suite.id, a.preset.empty() ? "" : "-" + a.preset, run_hash(plan.cells, catalogue),
+                    plan.shard.count == 1 ? "" : fmt::format("-{}of{}", plan.shard.index, plan.shard.count));
   plan.cache = a.cache.empty() ? default_cache() : fs::path(a.cache);
   plan.existing = a.fresh ? Existing::fresh : a.resume ? Existing::resume : Existing::same;
   plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   plan.pool.timeout_s = a.timeout_s;
+  plan.pool.memory_gib = a.memory_gib;
 
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
     fmt::print(stderr, "interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
-  report::write_report(plan.out);
-  if (a.json)
-    fmt::print("{}", read_file(plan.out / "summary.json"));
-  else
-    fmt::print("{}\nreport: {}\n", report::table_text(plan.out), (plan.out / "report.md").string());
-  fmt::print(stderr, "{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused, outcome.failed);
+  if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+  print_counts(outcome, plan);
+  if (!outcome.failed.empty())
+    fmt::print(stderr, "To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
   if (outcome.plugin_refused) return plugin_refused;
-  return outcome.failed ? cells_failed : ok;
+  return outcome.failed.empty() ? ok : cells_failed;
 }
 
 }  // namespace
@@ -183,8 +166,13 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
       ->check(CLI::Range(1.0, 1e7))
       ->capture_default_str();
+  verb->add_option("--memory", a->memory_gib,
+                   "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
+      ->check(CLI::Range(.1, 1e6));
+  verb->add_option("--shard", a->shard,
+                   "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
-  verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH)");
+  verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
   verb->add_option("--cache", a->cache,
                    "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
   auto* resume = verb->add_flag("--resume", a->resume, "Go on in --out; cells of another build are computed again");
@@ -202,7 +190,8 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
-      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared");
+      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared\n"
+      "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }
 

@@ -11,6 +11,7 @@ enum Exit { ok = 0, regression = 1, usage = 2, cells_failed = 3, plugin_refused 
 void add_list(CLI::App& app, int& exit);
 void add_info(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
+void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <random>
 
 #include <lgabench/core/error.hpp>
 
@@ -58,24 +59,24 @@ void write_file(const fs::path& file, std::string_view bytes) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 
-  const fs::path temporary = fmt::format("{}.{}.tmp", file.string(), ::getpid());
-  {
-    const Descriptor out{::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
-    if (out.fd < 0) fail(file, "cannot be written");
-    if (!write_all(out.fd, bytes)) {
-      const int reason = errno;
-      ::unlink(temporary.c_str());
-      errno = reason;
-      fail(file, "cannot be written");
-    }
-    if (::fsync(out.fd) != 0) fail(file, "cannot be written to disk");
-  }
-  if (::rename(temporary.c_str(), file.c_str()) != 0) {
+  // A name that no other process takes, on no machine that shares the directory.
+  fs::path temporary;
+  Descriptor out{-1};
+  std::random_device random;
+  do {
+    temporary = fmt::format("{}.{:08x}.tmp", file.string(), random());
+    out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  } while (out.fd < 0 && errno == EEXIST);
+  if (out.fd < 0) fail(file, "cannot be written");
+  const auto give_up = [&](const char* wanted) {
     const int reason = errno;
     ::unlink(temporary.c_str());
     errno = reason;
-    fail(file, "cannot be written");
-  }
+    fail(file, wanted);
+  };
+  if (!write_all(out.fd, bytes)) give_up("cannot be written");
+  if (::fsync(out.fd) != 0) give_up("cannot be written to disk");
+  if (::rename(temporary.c_str(), file.c_str()) != 0) give_up("cannot be written");
 }
 
 void append_file(const fs::path& file, std::string_view bytes) {
@@ -88,6 +89,14 @@ void append_file(const fs::path& file, std::string_view bytes) {
   errno = reason;
   fail(file, "cannot be written");
 }
+
+void remove_temporaries(const fs::path& directory) {
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(directory, none_there))
+    if (is_temporary(entry.path())) fs::remove(entry.path(), none_there);
+}
+
+bool is_temporary(const fs::path& file) { return file.extension() == ".tmp"; }
 
 std::vector<std::string> json_names(const fs::path& directory, std::error_code& error) {
   std::vector<std::string> names;

@@ -21,6 +21,11 @@ void write_file(const fs::path& file, std::string_view bytes);
 /// @throws InputError naming the file and the system's reason.
 void append_file(const fs::path& file, std::string_view bytes);
 
+/// Whether write_file() left it behind when its process was killed; removing those of a directory that nobody writes
+/// into.
+bool is_temporary(const fs::path& file);
+void remove_temporaries(const fs::path& directory);
+
 /// Names, without their ending, of the .json files in a directory, sorted; as many as could be read where `error` is
 /// set.
 std::vector<std::string> json_names(const fs::path& directory, std::error_code& error);

@@ -1,6 +1,7 @@
 #include <lgabench/harness/run_cell.hpp>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -105,8 +106,10 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   return scenes;
 }
 
-// Writes the files and, last, status.json with their hashes: a directory without it is not a result.
-void record(const CellJob& job, const std::vector<std::pair<std::string, std::string>>& files) {
+// Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
+// `self` does: a plugin may have forked another one that came here as well.
+void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files) {
+  if (::getpid() != self) ::_exit(1);
   Json hashes = Json::object();
   for (const auto& [name, bytes] : files) {
     write_file(job.directory / name, bytes);
@@ -121,6 +124,7 @@ void record(const CellJob& job, const std::vector<std::pair<std::string, std::st
 }  // namespace
 
 void run_cell(const CellJob& job, const PhaseReport& report) {
+  const pid_t self = ::getpid();
   const Cell& cell = job.cell;
   const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
   if (data_hashes(scenario) != cell.data)
@@ -206,11 +210,12 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     commands.push_back({{"utterance", utterances[c]},
                         {"selection", to_json(instructions[c].selection)},
                         {"quality", quality(instructions[c].selection, scenario.commands[c].truth)}});
-  record(job, {{"cell.json", canonical(to_json(cell)) + '\n'},
-               {"selection.json", canonical({{"commands", commands}}) + '\n'},
-               {"training.jsonl", training.lines},
-               {"episodes.jsonl", episode_lines},
-               {"timing.json", canonical(phases.seconds()) + '\n'}});
+  record(job, self,
+         {{"cell.json", canonical(to_json(cell)) + '\n'},
+          {"selection.json", canonical({{"commands", commands}}) + '\n'},
+          {"training.jsonl", training.lines},
+          {"episodes.jsonl", episode_lines},
+          {"timing.json", canonical(phases.seconds()) + '\n'}});
 }
 
 }  // namespace lgabench

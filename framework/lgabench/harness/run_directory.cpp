@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 #include <lgabench/core/hash.hpp>
@@ -25,9 +26,23 @@ void remove_tree(const fs::path& path) {
   if (error) throw InputError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
 }
 
-// Which setting of the two runs differs first; data and versions may differ where no setting does.
+// Whether there is anything besides what a run that was killed before its run.json left behind.
+bool has_content(const fs::path& directory) {
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(directory, none_there))
+    if (!is_temporary(entry.path())) return true;
+  return false;
+}
+
+bool other_programs(const Json& there, const Json& wanted) {
+  const auto differs = [&](const char* member) { return there.value(member, Json()) != wanted.value(member, Json()); };
+  return differs("build") || differs("plugins");
+}
+
+}  // namespace
+
 std::string difference(const Json& there, const Json& wanted) {
-  const Json before = there.value("request", Json::object()), now = wanted.at("request");
+  const Json before = there.value("request", Json::object()), now = wanted.value("request", Json::object());
   for (const auto& item : now.items())
     if (before.value(item.key(), Json()) != item.value())
       return fmt::format("{} {} there, {} wanted", item.key(), canonical(before.value(item.key(), Json())),
@@ -35,7 +50,43 @@ std::string difference(const Json& there, const Json& wanted) {
   return "same settings, other data or versions";
 }
 
-}  // namespace
+CellState cell_state(const fs::path& cell, const std::string& key, const Json& build) {
+  CellState state;
+  if (!fs::exists(cell)) return state;
+  const auto not_its_own = [&](const fs::path& file) {
+    state.why = fmt::format("{} does not have the bytes that were written", file.string());
+    return state;
+  };
+  try {
+    const Json status = read_json(cell / "status.json");
+    const JsonReader reader(status, (cell / "status.json").string());
+    if (reader.at("state").string() != "ok") {
+      state.failed = true;
+      state.why = "failed: " + reader.at("reason").string();
+      return state;
+    }
+    const Json& files = reader.at("files").json();
+    for (const char* name : result_files) reader.at("files").at(name).string();
+    reader.at("files").at("timing.json").string();
+    for (const auto& file : files.items())
+      if (sha256_file(cell / file.key()) != file.value()) return not_its_own(cell / file.key());
+    if (sha256(canonical(read_json(cell / "cell.json"))).substr(0, key.size()) != key)
+      return not_its_own(cell / "cell.json");
+    const Json& there = reader.at("build").json();
+    for (const auto& file : build.items())
+      if (there.value(file.key(), Json()) != file.value()) {
+        state.other_build = true;
+        state.why = fmt::format("computed by another build ({} differs)", file.key());
+        return state;
+      }
+    state.complete = true;
+  } catch (const InputError& e) {
+    state.why = e.what();
+  } catch (const Json::exception& e) {  // a member of another type
+    state.why = fmt::format("{}: {}", (cell / "status.json").string(), e.what());
+  }
+  return state;
+}
 
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   static const Json programs = [] {
@@ -52,8 +103,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
 }
 
 RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing existing) : path_(path) {
-  std::error_code error;
-  const bool was_there = fs::exists(path, error) && !fs::is_empty(path, error);
+  const bool was_there = has_content(path);
   make_directory(path);
   lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) throw InputError(fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(errno)));
@@ -61,21 +111,25 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
       throw InputError(fmt::format("{}: another run is writing into it", path.string()));
     const fs::path record = path / "run.json";
+    Json there = run;
     if (was_there && !fs::exists(record))
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
       for (const char* name : {"cells", "summary.json", "summary.csv", "report.md", "figures", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
-      const Json there = read_json(record);
+      there = read_json(record);
       if (!there.is_object() || there.value("cells", Json()) != run.at("cells"))
         throw InputError(fmt::format("{}: holds another run ({}); choose another --out, or --fresh to drop it",
                                      path.string(), difference(there, run)));
     }
+    // What was half-written when a run was killed goes. run.json comes before all else: it makes the directory a run.
+    for (const fs::path& directory : {path, path / "figures"}) remove_temporaries(directory);
+    if (!fs::exists(record) || (existing == Existing::resume && other_programs(there, run)))
+      write_file(record, run.dump(1) + '\n');
     make_directory(path / "cells");
     for (const auto& entry : fs::directory_iterator(path / "cells"))
-      if (entry.path().filename().string()[0] == '.') remove_tree(entry.path());  // half-written when a run was killed
-    if (!fs::exists(record)) write_file(record, run.dump(1) + '\n');
+      if (entry.path().filename().string()[0] == '.') remove_tree(entry.path());
   } catch (...) {
     ::close(lock_);
     throw;
@@ -83,36 +137,6 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
 }
 
 RunDirectory::~RunDirectory() { ::close(lock_); }
-
-RunDirectory::State RunDirectory::state(const std::string& key, const Json& build) const {
-  const fs::path cell = path_ / "cells" / key;
-  State state;
-  if (!fs::exists(cell / "status.json")) return state;
-  try {
-    const Json status = read_json(cell / "status.json");
-    const JsonReader reader(status, (cell / "status.json").string());
-    if (reader.at("state").string() != "ok") {
-      state.why = "failed: " + reader.at("reason").string();
-      return state;
-    }
-    for (const auto& file : reader.at("files").json().items())
-      if (sha256_file(cell / file.key()) != file.value()) {
-        state.why = fmt::format("{} does not have the bytes that were written", (cell / file.key()).string());
-        return state;
-      }
-    const Json& there = reader.at("build").json();
-    for (const auto& file : build.items())
-      if (there.value(file.key(), Json()) != file.value()) {
-        state.other_build = true;
-        state.why = fmt::format("computed by another build ({} differs)", file.key());
-        return state;
-      }
-    state.complete = true;
-  } catch (const InputError& e) {
-    state.why = e.what();
-  }
-  return state;
-}
 
 fs::path RunDirectory::hidden(const std::string& key, const char* what) const {
   return path_ / "cells" / fmt::format(".{}.{}{}", key, ::getpid(), what);
@@ -126,12 +150,15 @@ fs::path RunDirectory::scratch(const std::string& key) const {
 }
 
 void RunDirectory::keep(const std::string& key) const {
-  const fs::path cell = path_ / "cells" / key, old = hidden(key, ".old");
+  const fs::path made = hidden(key, ""), old = hidden(key, ".old"), there = cell(key);
   std::error_code error;
-  if (fs::exists(cell)) fs::rename(cell, old, error);
-  if (!error) fs::rename(hidden(key, ""), cell, error);
-  if (error) throw InputError(fmt::format("{}: cannot be written: {}", cell.string(), error.message()));
+  if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, there.c_str(), RENAME_EXCHANGE) != 0) {
+    if (fs::exists(there)) fs::rename(there, old, error);  // a file system that cannot exchange
+    if (!error) fs::rename(made, there, error);
+  }
+  if (error) throw InputError(fmt::format("{}: cannot be written: {}", there.string(), error.message()));
   remove_tree(old);
+  remove_tree(made);
   sync_directory(path_ / "cells");
 }
 

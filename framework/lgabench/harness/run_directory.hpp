@@ -1,5 +1,6 @@
 // A run's directory: what is complete in it, and how a finished cell gets in. The only state of a run.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,20 @@ namespace lgabench {
 /// no "method" for a reference row).
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method);
 
+/// The files of a finished cell that hold no clock: its results, bit by bit.
+constexpr std::array<const char*, 4> result_files{"cell.json", "selection.json", "training.jsonl", "episodes.jsonl"};
+
+/// Whether a cell is complete with this build, and if not, why: "" where it was never begun.
+struct CellState {
+  bool complete = false, failed = false, other_build = false;
+  std::string why;
+};
+/// Of the cell `key` in `directory`, read from its files alone.
+CellState cell_state(const fs::path& directory, const std::string& key, const Json& build);
+
+/// Which setting of two run.json differs first; data and versions may differ where no setting does.
+std::string difference(const Json& there, const Json& wanted);
+
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other
@@ -24,7 +39,7 @@ enum class Existing {
 class RunDirectory {
  public:
   /// Makes the directory or takes up the run in it: checks that it is a run of the same cells, removes what was left
-  /// half-written, writes run.json.
+  /// half-written, writes run.json (anew where a run of another build is resumed).
   /// @throws InputError, with nothing changed, if the directory holds something else or is in use.
   RunDirectory(const fs::path& path, const Json& run, Existing existing);
   ~RunDirectory();
@@ -33,16 +48,14 @@ class RunDirectory {
 
   const fs::path& path() const { return path_; }
 
-  /// Whether the cell is complete with this build, and if not, why: "" where it was never begun.
-  struct State {
-    bool complete = false, other_build = false;
-    std::string why;
-  };
-  State state(const std::string& key, const Json& build) const;
+  /// Where the cell is, or will be.
+  fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
+  CellState state(const std::string& key, const Json& build) const { return cell_state(cell(key), key, build); }
 
   /// A new empty directory for a worker to write into; a later start removes it unless kept.
   fs::path scratch(const std::string& key) const;
-  /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic but for that.
+  /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic (in place of an
+  /// earlier attempt only where the file system can exchange two names).
   void keep(const std::string& key) const;
 
  private:

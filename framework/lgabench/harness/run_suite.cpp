@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -81,14 +82,18 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
 
 // A worker that leaks meets its own limit before the machine's.
 Json limits(const PoolOptions& pool) {
-  constexpr double least = 4.0 * (1 << 30);
-  return {{"cpu_s", static_cast<long long>(pool.timeout_s) + 60},
-          {"data_bytes", static_cast<long long>(std::max(least, memory_bytes() / pool.jobs))}};
+  constexpr double gib = 1 << 30, least = 4 * gib;
+  const double memory = pool.memory_gib > 0 ? pool.memory_gib * gib : std::max(least, memory_bytes() / pool.jobs);
+  return {{"cpu_s", static_cast<long long>(pool.timeout_s) + 60}, {"data_bytes", static_cast<long long>(memory)}};
 }
 
 std::vector<std::string> tail(const fs::path& log) {
   constexpr std::size_t lines = 20, longest = 400;
+  constexpr std::uintmax_t most = 1 << 16;
   std::ifstream file(log, std::ios::binary);
+  std::error_code none;
+  if (const std::uintmax_t size = fs::file_size(log, none); !none && size > most)
+    file.seekg(static_cast<std::streamoff>(size - most));
   std::vector<std::string> last;
   for (std::string line; std::getline(file, line);) {
     if (line.size() > longest) line = line.substr(0, longest) + "...";
@@ -120,27 +125,52 @@ Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const 
           {"log_tail", tail(log)}};
 }
 
-// The cells still to be computed, long ones first; says why a cell that was there is computed again.
-std::vector<const Cell*> missing_cells(const RunPlan& plan, const Catalogue& catalogue, const RunDirectory& directory) {
-  std::vector<const Cell*> missing;
+double total_seconds(const fs::path& cell) {
+  const fs::path file = cell / "timing.json";
+  const Json timing = read_json(file);
+  return JsonReader(timing, file.string()).at("total_s").number();
+}
+
+// The shard's cells: those that are there, and those still to be computed. Says why one that was there is computed
+// again.
+struct ShardState {
+  std::vector<const Cell*> complete, missing;
+};
+ShardState shard_state(const RunPlan& plan, const Catalogue& catalogue, const RunDirectory& directory) {
+  ShardState all;
   std::size_t other_build = 0;
   std::string why;
-  for (const Cell& cell : plan.cells) {
-    const auto state = directory.state(key(cell), build_of(cell, catalogue));
+  for (const Cell* cell : cells_of(plan.cells, plan.shard)) {
+    const CellState state = directory.state(key(*cell), build_of(*cell, catalogue));
+    (state.complete ? all.complete : all.missing).push_back(cell);
     if (state.complete) continue;
-    missing.push_back(&cell);
     if (state.other_build)
       ++other_build, why = state.why;
     else if (!state.why.empty())
-      fmt::print(stderr, "{}: {}; computed again\n", cell.title(), state.why);
+      fmt::print(stderr, "{}: {}; computed again\n", cell->title(), state.why);
   }
   if (other_build && plan.existing == Existing::same)
     throw InputError(fmt::format("{}: {} cells were {}; --resume computes them again, --fresh drops the run",
                                  plan.out.string(), other_build, why));
   if (other_build) fmt::print(stderr, "{} cells were {}; computed again\n", other_build, why);
-  std::stable_sort(missing.begin(), missing.end(),
-                   [](const Cell* a, const Cell* b) { return a->demonstrations > b->demonstrations; });
-  return missing;
+  return all;
+}
+
+// The worker's own word that the cell is done, if its files bear it out; else status.json and nothing more. Returns the
+// reason of a failure, or "".
+std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scratch, const Json& build,
+                   double timeout_s) {
+  const bool ended_well = end.exit_code == 0 && end.signal == 0;
+  const CellState state =
+      ended_well && fs::exists(scratch / "status.json") ? cell_state(scratch, key(cell), build) : CellState();
+  if (state.complete) return "";
+  Json status = failure(end, timeout_s, scratch / "log.txt", build);
+  if (!state.why.empty()) status["reason"] = state.why;  // a plugin touched what was written
+  for (const auto& entry : fs::directory_iterator(scratch))
+    if (entry.path().filename() != "log.txt") fs::remove_all(entry.path());  // parts of a result are none
+  write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
+  write_file(scratch / "status.json", canonical(status) + '\n');
+  return status.at("reason");
 }
 
 }  // namespace
@@ -151,16 +181,33 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
   return sha256(all).substr(0, 8);
 }
 
+std::string TimeSpent::text(int jobs) const {
+  double all = 0;
+  for (const auto& phase : phase_s) all += phase.second;
+  std::string text;
+  for (const char* phase : {"select", "sample", "demonstrate", "learn", "evaluate"}) {
+    const auto spent = phase_s.find(phase + std::string("_s"));
+    const double share = spent == phase_s.end() || all <= 0 ? 0 : spent->second / all;
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", phase, 100 * share);
+  }
+  return fmt::format("{}; {} worker{} busy {:.0f} % of {:.1f} s", text, jobs, jobs == 1 ? "" : "s",
+                     wall_s > 0 ? 100 * workers_s / (jobs * wall_s) : 0, wall_s);
+}
+
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
-  const std::vector<const Cell*> missing = missing_cells(plan, catalogue, directory);
+  const auto [complete, missing] = shard_state(plan, catalogue, directory);
   RunOutcome outcome;
-  outcome.reused = plan.cells.size() - missing.size();
+  outcome.reused = complete.size();
+  Schedule schedule(missing);
+  for (const Cell* cell : complete) schedule.learn(*cell, total_seconds(directory.cell(key(*cell))));
 
   Progress progress(missing.size());
+  std::vector<const Cell*> played(missing.size());
   std::vector<fs::path> scratch(missing.size());
   const auto make = [&](std::size_t i) {
-    const Cell& cell = *missing[i];
+    played[i] = schedule.next();
+    const Cell& cell = *played[i];
     scratch[i] = directory.scratch(key(cell));
     Json job{{"cell", to_json(cell)},
              {"directory", fs::absolute(scratch[i]).string()},
@@ -172,29 +219,32 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     return WorkerTask{job, scratch[i] / "log.txt"};
   };
   PoolEvents events;
-  events.started = [&](std::size_t i) { progress.started(i, missing[i]->title()); };
+  events.started = [&](std::size_t i) { progress.started(i, played[i]->title()); };
   events.progress = [&](std::size_t i, const std::string& phase, long long n) { progress.phase(i, phase, n); };
   events.tick = [&] { progress.tick(); };
   events.ended = [&](std::size_t i, const WorkerEnd& end) {
-    const Cell& cell = *missing[i];
+    const Cell& cell = *played[i];
     constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
-    std::string reason;
-    if (end.exit_code != 0 || end.signal != 0 || !fs::exists(scratch[i] / "status.json")) {
-      const Json status = failure(end, plan.pool.timeout_s, scratch[i] / "log.txt", build_of(cell, catalogue));
-      for (const auto& entry : fs::directory_iterator(scratch[i]))
-        if (entry.path().filename() != "log.txt") fs::remove_all(entry.path());  // parts of a result are none
-      write_file(scratch[i] / "cell.json", canonical(to_json(cell)) + '\n');
-      write_file(scratch[i] / "status.json", canonical(status) + '\n');
-      reason = "failed: " + status.at("reason").get<std::string>();
-      ++outcome.failed;
-      outcome.plugin_refused |= end.exit_code == refused;
-    } else {
-      ++outcome.computed;
-    }
+    const std::string reason = settle(cell, end, scratch[i], build_of(cell, catalogue), plan.pool.timeout_s);
     directory.keep(key(cell));
-    progress.ended(i, reason);
+    outcome.time.workers_s += end.seconds;
+    const fs::path kept = directory.cell(key(cell));
+    if (reason.empty()) {
+      ++outcome.computed;
+      schedule.learn(cell, end.seconds);
+      const Json timing = read_json(kept / "timing.json");
+      for (const auto& phase : timing.items())
+        if (phase.key() != "total_s") outcome.time.phase_s[phase.key()] += phase.value().get<double>();
+    } else {
+      outcome.failed.push_back({cell.title(), reason, kept / "log.txt"});
+      outcome.plugin_refused |= end.exit_code == refused;
+    }
+    progress.ended(i, reason.empty() ? "" : "failed: " + reason);
   };
+  const auto start = std::chrono::steady_clock::now();
   outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
+  outcome.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const Cell& cell : plan.cells) outcome.elsewhere += !fs::exists(directory.cell(key(cell)) / "status.json");
   return outcome;
 }
 

@@ -1,17 +1,20 @@
 // A run: cells in, a directory of finished cells out.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 
 namespace lgabench {
 
 struct RunPlan {
-  std::vector<Cell> cells;
+  std::vector<Cell> cells;    // of the whole run
+  Shard shard;                // the part of them that is played here
   Json request;               // the settings that led to the cells, for run.json
   std::string command;        // as typed
   std::filesystem::path out;  // the run directory
@@ -20,8 +23,25 @@ struct RunPlan {
   PoolOptions pool;
 };
 
+struct FailedCell {
+  std::string title, reason;
+  std::filesystem::path log;
+};
+
+/// Where the time of the cells that were computed went.
+struct TimeSpent {
+  std::map<std::string, double> phase_s;  // as in timing.json, without total_s
+  double workers_s = 0;                   // from start to end of each worker, added up
+  double wall_s = 0;
+  /// "learn 80 %, ...; 2 workers busy 97 % of 63.1 s"
+  std::string text(int jobs) const;
+};
+
 struct RunOutcome {
-  std::size_t computed = 0, reused = 0, failed = 0;
+  std::size_t computed = 0, reused = 0;
+  std::size_t elsewhere = 0;  // cells of other shards that the directory lacks
+  std::vector<FailedCell> failed;
+  TimeSpent time;
   bool plugin_refused = false;  // a worker could not load a plugin
   bool interrupted = false;     // by a signal; all that was finished is kept
 };
@@ -30,7 +50,7 @@ struct RunOutcome {
 /// another configuration or build never meets its results.
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
 
-/// Computes the cells that the directory lacks, those with many demonstrations first. A cell that fails is recorded as
+/// Computes those of the shard's cells that the directory lacks, long ones first. A cell that fails is recorded as
 /// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.
 /// @throws InputError, with nothing overwritten, if the directory cannot be used; PluginError for a missing plugin.
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue);

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -38,13 +39,15 @@ struct Descriptor {
   }
 };
 
-// SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end.
+// SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end. Once one of them came, more
+// of them are ignored: who presses Ctrl-C twice still gets the orderly end.
 class Signals {
  public:
   Signals() {
     sigset_t wanted;
     sigemptyset(&wanted);
-    for (const int signal : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) sigaddset(&wanted, signal);
+    sigaddset(&wanted, SIGCHLD);
+    for (const int signal : enders) sigaddset(&wanted, signal);
     ::sigprocmask(SIG_BLOCK, &wanted, &before_);
     fd_ = ::signalfd(-1, &wanted, SFD_CLOEXEC | SFD_NONBLOCK);
     if (fd_ < 0) fail("signalfd");
@@ -63,10 +66,13 @@ class Signals {
     signalfd_siginfo info;
     bool stop = false;
     while (::read(fd_, &info, sizeof info) == sizeof info) stop |= info.ssi_signo != SIGCHLD;
+    if (stop)
+      for (const int signal : enders) ::signal(signal, SIG_IGN);
     return stop;
   }
 
  private:
+  static constexpr std::array<int, 3> enders{SIGINT, SIGTERM, SIGHUP};
   sigset_t before_{};
   int fd_ = -1;
 };
@@ -76,7 +82,7 @@ struct Worker {
   pid_t pid = -1;
   Descriptor messages;  // its fd 3
   std::string partial;  // of a line
-  Clock::time_point deadline;
+  Clock::time_point start, deadline;
   WorkerEnd end;
 };
 
@@ -143,9 +149,9 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
     ::_exit(127);
   }
   ::setpgid(pid, pid);  // whoever comes first
-  Worker worker{task, pid, std::move(reading), "", {}, {}};
+  Worker worker{task, pid, std::move(reading), "", Clock::now(), {}, {}};
   worker.deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s));
+      worker.start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s));
   return worker;
 }
 
@@ -165,10 +171,13 @@ void take_line(const std::string& line, Worker& worker, const PoolEvents& events
                   count != message.end() && count->is_number_integer() ? count->get<long long>() : 0);
 }
 
+// A full pipe at most: a plugin that writes there without end shall not hold up the others.
 void take_messages(Worker& worker, const PoolEvents& events) {
   constexpr std::size_t longest = 1 << 16;
   char block[4096];
-  for (ssize_t n; worker.messages.fd >= 0 && (n = ::read(worker.messages.fd, block, sizeof block)) >= 0;) {
+  for (std::size_t taken = 0; worker.messages.fd >= 0 && taken < longest; taken += sizeof block) {
+    const ssize_t n = ::read(worker.messages.fd, block, sizeof block);
+    if (n < 0) return;
     if (n == 0) worker.messages.close();  // all writers are gone: poll() shall not report that for ever
     worker.partial.append(block, static_cast<std::size_t>(n));
     for (std::size_t end; (end = worker.partial.find('\n')) != std::string::npos;) {
@@ -181,11 +190,15 @@ void take_messages(Worker& worker, const PoolEvents& events) {
 
 void kill_group(const Worker& worker) { ::kill(-worker.pid, SIGKILL); }
 
-// True once the worker is gone; its group goes with it.
+// True once the worker is gone; its group goes with it, while the number is still its own.
 bool reap(Worker& worker, const PoolEvents& events) {
-  int status = 0;
-  if (::waitpid(worker.pid, &status, WNOHANG) != worker.pid) return false;
+  siginfo_t ended{};
+  if (::waitid(P_PID, static_cast<id_t>(worker.pid), &ended, WEXITED | WNOHANG | WNOWAIT) != 0 || ended.si_pid == 0)
+    return false;
   kill_group(worker);
+  int status = 0;
+  ::waitpid(worker.pid, &status, 0);
+  worker.end.seconds = std::chrono::duration<double>(Clock::now() - worker.start).count();
   take_messages(worker, events);
   if (WIFSIGNALED(status)) worker.end.signal = WTERMSIG(status);
   if (WIFEXITED(status)) worker.end.exit_code = WEXITSTATUS(status);
@@ -209,6 +222,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
                  const PoolEvents& events) {
   const Signals signals;
   Crew crew;
+  Clock::time_point awake = Clock::now();
   for (std::size_t next = 0; next < tasks || !crew.workers.empty();) {
     while (next < tasks && crew.workers.size() < static_cast<std::size_t>(options.jobs)) {
       crew.workers.push_back(start(next, make(next), options, signals));
@@ -218,6 +232,11 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
     for (const Worker& worker : crew.workers) watched.push_back({worker.messages.fd, POLLIN, 0});
     ::poll(watched.data(), watched.size(), 200);
     if (signals.take()) return false;
+    // Time in which we did not run (stopped, suspended by a batch system) may have stopped the workers too.
+    const Clock::time_point now = Clock::now();
+    const auto asleep = now - std::exchange(awake, now);
+    if (asleep > std::chrono::seconds(1))
+      for (Worker& worker : crew.workers) worker.deadline += asleep;
     for (auto worker = crew.workers.begin(); worker != crew.workers.end();) {
       take_messages(*worker, events);
       if (!worker->end.timed_out && Clock::now() > worker->deadline) {

@@ -16,6 +16,7 @@ struct WorkerTask {
 
 /// How a worker ended.
 struct WorkerEnd {
+  double seconds = 0;  // of wall time
   int exit_code = 0;
   int signal = 0;          // that ended it, or 0
   bool timed_out = false;  // it was stopped after the limit
@@ -25,7 +26,8 @@ struct WorkerEnd {
 
 struct PoolOptions {
   int jobs = 1;
-  double timeout_s = 3600;  // of wall time, for one task
+  double timeout_s = 3600;  // of wall time, for one task; time in which this process was stopped does not count
+  double memory_gib = 0;    // of data, for one task; 0: its share of the machine's, 4 at least
 };
 
 /// Called in the calling thread. `task` indexes the tasks.
@@ -38,7 +40,8 @@ struct PoolEvents {
 
 /// Runs all tasks in order, `jobs` at once, each as a fresh process in its own process group that dies with this one.
 /// A task's end, good or bad, changes nothing for the others. `make` is called just before a task starts.
-/// @returns false if SIGINT, SIGTERM or SIGHUP came: all workers are then stopped and gone.
+/// @returns false if SIGINT, SIGTERM or SIGHUP came: all workers are then stopped and gone, and more of these signals
+/// are ignored from there on.
 /// @throws InputError if no process can be started. Uses the process's signal mask and children; one call at a time.
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);

@@ -1,7 +1,9 @@
 // Every call into a plugin goes through guarded().
 #pragma once
+#include <new>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <lgabench/core/error.hpp>
@@ -23,8 +25,9 @@ struct FlushDenormalsAgain {
 };
 
 /// Returns call(). Whatever it throws becomes a Fault that reads "plugin ID: ..."; only an InputError stays one, since
-/// then an option or a file is to be corrected, not the plugin. Use the default for methods and their policies (so a
-/// method cannot pass its failure off as the engine's), guarded<EngineError> for engines.
+/// then an option or a file is to be corrected, not the plugin, and a method's std::bad_alloc stays one: how much
+/// memory there is must not decide an episode. Use the default for methods and their policies (so a method cannot pass
+/// its failure off as the engine's), guarded<EngineError> for engines.
 template <class Fault = MethodError, class Call>
 decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
   const FlushDenormalsAgain on_every_way_out;
@@ -33,6 +36,9 @@ decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
     return std::forward<Call>(call)();
   } catch (const InputError&) {
     throw InputError(named());
+  } catch (const std::bad_alloc&) {
+    if constexpr (std::is_same_v<Fault, MethodError>) throw;
+    throw Fault(named());
   } catch (...) {
     throw Fault(named());
   }

@@ -1,0 +1,172 @@
+#include <lgabench/harness/merge.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include <lgabench/harness/run_directory.hpp>
+
+namespace lgabench {
+namespace {
+
+// A run to read from, which nobody writes into meanwhile.
+class Part {
+ public:
+  explicit Part(const fs::path& path) : path_(path), json_(read_json(path / "run.json")) {
+    const JsonReader reader(json_, (path / "run.json").string());
+    reader.at("cells").strings();
+    reader.at("command").string();
+    reader.at("started").string();
+    reader.at("machine").at("processor").string();
+    for (const JsonReader& plugin : reader.at("plugins").elements())
+      programs_[plugin.at("kind").string() + " " + plugin.at("id").string()] = plugin.at("sha256").string();
+    for (const auto& file : reader.at("build").json().items()) programs_[file.key()] = file.value();
+    lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0 || ::flock(lock_, LOCK_SH | LOCK_NB) != 0) {
+      ::close(lock_);
+      throw InputError(fmt::format("{}: a run is writing into it", path.string()));
+    }
+  }
+  ~Part() {
+    if (lock_ >= 0) ::close(lock_);
+  }
+  Part(Part&& other) noexcept
+      : path_(std::move(other.path_)),
+        json_(std::move(other.json_)),
+        programs_(std::move(other.programs_)),
+        lock_(std::exchange(other.lock_, -1)) {}
+  Part& operator=(Part&&) = delete;
+
+  const fs::path& path() const { return path_; }
+  const Json& json() const { return json_; }
+  const std::map<std::string, Json>& programs() const { return programs_; }
+  fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
+
+ private:
+  fs::path path_;
+  Json json_;
+  std::map<std::string, Json> programs_;  // file, or kind and id of a plugin -> sha256
+  int lock_ = -1;
+};
+
+void expect_one_run(const Part& first, const Part& other) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(
+        fmt::format("{} and {} are not parts of one run: {}", first.path().string(), other.path().string(), what));
+  };
+  if (first.json().at("cells") != other.json().at("cells"))
+    refuse("other cells: " + difference(first.json(), other.json()));
+  for (const auto& [program, hash] : first.programs()) {
+    const auto there = other.programs().find(program);
+    if (there == other.programs().end() || there->second != hash) refuse("other builds of " + program);
+  }
+}
+
+// What status.json says of a cell that the run's own programs computed.
+Json build_of(const Part& part, const std::string& key) {
+  const fs::path file = part.cell(key) / "cell.json";
+  const Json json = read_json(file);
+  const Cell cell = read_cell(json, file.string());
+  Json build = part.json().at("build");
+  const auto plugin = [&](const std::string& kind, const std::string& id) {
+    const auto found = part.programs().find(kind + " " + id);
+    if (found != part.programs().end()) build[kind] = found->second;
+  };
+  plugin("engine", cell.engine);
+  if (!cell.method.is_reference()) plugin("method", cell.method.id);
+  return build;
+}
+
+CellState state_of(const Part& part, const std::string& key) {
+  const fs::path cell = part.cell(key);
+  if (!fs::exists(cell)) return {};
+  try {
+    return cell_state(cell, key, build_of(part, key));
+  } catch (const InputError& e) {
+    CellState damaged;
+    damaged.why = e.what();
+    return damaged;
+  }
+}
+
+void expect_same_results(const fs::path& one, const fs::path& other) {
+  for (const char* file : result_files)
+    if (read_file(one / file) != read_file(other / file))
+      throw InputError(
+          fmt::format("{} and {}: other results of one cell: {} differs", one.string(), other.string(), file));
+}
+
+// The cell's directory to take: a finished one, else a failed one, else none.
+fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutcome& outcome) {
+  fs::path finished, failed;
+  for (const Part& part : parts) {
+    const CellState state = state_of(part, key);
+    if (state.complete) {
+      if (!finished.empty()) expect_same_results(finished, part.cell(key));
+      if (finished.empty()) finished = part.cell(key);
+    } else if (state.failed) {
+      if (failed.empty()) failed = part.cell(key);
+    } else if (!state.why.empty()) {
+      fmt::print(stderr, "{}: {}; left out\n", part.cell(key).string(), state.why);
+    }
+  }
+  ++(!finished.empty() ? outcome.finished : !failed.empty() ? outcome.failed : outcome.missing);
+  return !finished.empty() ? finished : failed;
+}
+
+Json merged_json(const std::vector<Part>& parts, const std::string& command) {
+  Json json = parts.front().json(), merged = Json::array();
+  for (const Part& part : parts) {
+    Json own = Json::object();
+    for (const char* member : {"command", "machine", "started"}) own[member] = part.json().at(member);
+    json["started"] = std::min(json["started"], own["started"]);
+    merged.push_back(own);
+    const Json &processor = own["machine"]["processor"], &first = json["machine"]["processor"];
+    if (processor != first)
+      fmt::print(stderr, "{}: computed on {}, {} on {}: its bits may differ from one machine's\n", part.path().string(),
+                 processor.get<std::string>(), parts.front().path().string(), first.get<std::string>());
+  }
+  json["command"] = command;
+  json["merged"] = merged;
+  return json;
+}
+
+// status.json last, as a worker does.
+void copy_cell(const fs::path& from, const fs::path& to) {
+  for (const auto& file : fs::directory_iterator(from))
+    if (file.is_regular_file() && file.path().filename() != "status.json")
+      write_file(to / file.path().filename(), read_file(file.path()));
+  sync_directory(to);
+  write_file(to / "status.json", read_file(from / "status.json"));
+  sync_directory(to);
+}
+
+}  // namespace
+
+MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, const std::string& command) {
+  std::vector<Part> parts;
+  for (const fs::path& run : runs) {
+    std::error_code not_there;
+    if (fs::equivalent(run, out, not_there))
+      throw InputError(fmt::format("{}: both to be read and to be written; expected another OUT", out.string()));
+    parts.emplace_back(run);
+    expect_one_run(parts.front(), parts.back());
+  }
+  MergeOutcome outcome;
+  std::map<std::string, fs::path> chosen;
+  for (const std::string key : parts.front().json().at("cells"))
+    if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
+
+  const RunDirectory directory(out, merged_json(parts, command), Existing::resume);
+  for (const auto& [key, from] : chosen) {
+    copy_cell(from, directory.scratch(key));
+    directory.keep(key);
+  }
+  return outcome;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,23 @@
+// The parts of a run, played in several directories, put together.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench {
+
+struct MergeOutcome {
+  std::size_t finished = 0, failed = 0;
+  std::size_t missing = 0;  // asked for by run.json, in none of them
+};
+
+/// Puts the cells of `runs` into `out`, a new directory or that of an earlier merge: of each cell a finished one,
+/// where there is none a failed one. run.json is the first run's, with `command`, the earliest start, and what the
+/// parts say of themselves under "merged". A cell that is damaged or of another build is left out, and that is said on
+/// stderr, as are differing processors.
+/// @throws InputError with nothing written: naming what differs, where the runs are not of the same cells and programs;
+/// naming the cell, where two of them hold other results of one.
+MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, const std::string& command);
+
+}  // namespace lgabench

@@ -1,0 +1,100 @@
+// Misbehaves once, in a way and a place that its options name. Where it survives that, it is StayPolicy.
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <list>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "../fixture.hpp"
+
+namespace {
+
+using namespace lgabench;
+
+[[noreturn]] void spin() {
+  for (volatile int i = 0;; i = i + 1) {
+  }
+}
+
+[[noreturn]] void allocate_without_end() {
+  for (std::list<std::vector<char>> held;;) held.emplace_back(std::size_t{1} << 24, 'x');
+}
+
+void misbehave(const std::string& how) {
+  if (how == "abort") std::abort();
+  if (how == "exit") std::exit(0);
+  if (how == "quick_exit") ::_exit(0);
+  if (how == "throw") throw std::runtime_error("the fixture's own failure");
+  if (how == "throw_int") throw 7;
+  if (how == "segfault") {
+    volatile char* nowhere = nullptr;
+    *nowhere = 'x';
+  }
+  if (how == "spin") spin();
+  if (how == "allocate") allocate_without_end();
+  if (how == "print") {
+    std::puts("{\"phase\": \"the fixture's own line\"}");
+    for (int i = 0; i < 100000; ++i) std::puts("the fixture prints and prints");
+  }
+  if (how == "messages")  // on the worker's own channel
+    std::thread([] {
+      for (const char line[] = "{\"phase\": \"the fixture's own\"}\n";;)
+        if (::write(3, line, std::strlen(line)) < 0) return;
+    }).detach();
+  if (how == "fork") {
+    [[maybe_unused]] const pid_t both_go_on = ::fork();
+  }
+  if (how == "fork_and_spin" && ::fork() == 0) spin();
+  if (how == "close")
+    for (int fd = 0; fd < 1024; ++fd) ::close(fd);
+  if (how == "thread") std::thread(spin).detach();
+}
+
+class Once : public fixture::StayPolicy {
+ public:
+  explicit Once(std::string how) : how_(std::move(how)) {}
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    const std::string how = std::exchange(how_, "");
+    misbehave(how);
+    Action action = StayPolicy::act(observation, instruction);
+    if (how == "nan") action.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
+    return action;
+  }
+
+ private:
+  std::string how_;
+};
+
+class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
+ public:
+  Selection select(const Command&, const FeatureSpace&, Services& services) override {
+    misbehave(how(services, "select"));
+    return {};
+  }
+  std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
+    misbehave(how(services, "learn"));
+    services.log.epoch(1, static_cast<long long>(demonstrations.size()), 0.0);
+    return std::make_unique<Once>(how(services, "act"));
+  }
+
+ private:
+  static std::string how(const Services& services, const char* place) {
+    return services.options.at("where") == place ? services.options.at("how").get<std::string>() : "";
+  }
+};
+
+}  // namespace
+
+LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
+  "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act"]},
+  "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
+    "quick_exit", "throw", "throw_int", "segfault", "spin", "allocate", "print", "messages", "fork", "fork_and_spin",
+    "close", "thread", "nan"]}
+})")

@@ -1,0 +1,58 @@
+"""What the integration tests share: the built programs, called in a directory of their own, and what they leave there.
+
+LGABENCH_BUILD names the build tree.
+"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
+PROGRAM = BUILD / "bin" / "lgabench"
+FIXTURES = BUILD / "tests" / "plugins"
+NO_CLOCK = ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
+        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
+
+    def call(self, *arguments, expect=0, **more):
+        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=self.environment,
+                              cwd=self.dir, timeout=300, **more)
+        self.assertEqual(done.returncode, expect, done.stderr[-3000:])
+        return done
+
+    def start(self, *arguments):
+        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                   text=True, env=self.environment, cwd=self.dir)
+        self.addCleanup(process.stderr.close)
+        return process
+
+    def cells(self, run):
+        """key -> (cell, status) of every finished cell."""
+        return {path.name: tuple(json.loads((path / name).read_text()) for name in ("cell.json", "status.json"))
+                for path in (self.dir / run / "cells").iterdir() if not path.name.startswith(".")}
+
+    def results(self, run):
+        """All bytes that must not depend on how the run went."""
+        bytes_of = {f"{path.name}/{name}": (path / name).read_bytes()
+                    for path in (self.dir / run / "cells").iterdir() for name in NO_CLOCK if (path / name).exists()}
+        for name in ("summary.json", "summary.csv"):
+            bytes_of[name] = (self.dir / run / name).read_bytes()
+        return bytes_of
+
+    def assert_same_results(self, run, other):
+        a, b = self.results(run), self.results(other)
+        self.assertEqual(sorted(a), sorted(b))
+        self.assertEqual([name for name in a if a[name] != b[name]], [])
+
+    def assert_matches_schemas(self, run):
+        done = subprocess.run([BUILD / "bin" / "schema_check", self.dir / run], capture_output=True, text=True,
+                              timeout=60)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)

@@ -1,0 +1,342 @@
+"""The fault campaign: whatever happens to a run, no finished result is lost or changed, the fault is named, and taking
+the run up again gives the bytes of an undisturbed one.
+
+LGABENCH_FULL=1 makes it longer. One CTest entry a class; by hand: python3 fault_test.py Killed
+"""
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import struct
+import subprocess
+import time
+import unittest
+
+from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM
+
+FULL = os.environ.get("LGABENCH_FULL") == "1"
+# Tiny but real: one method that trains, one that does not, the reference rows.
+RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga,fixture_constant", "--demos", "10", "--seeds", "0:2",
+       "--episodes", "3", "--set", "lga.epochs=10", "--plugin-path", FIXTURES / "good"]
+CELLS = 2 * 3 + 2
+# Tinier: a cell takes a tenth of a second.
+NO_TRAINING = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10", "--seeds", "0",
+               "--episodes", "2", "--no-reference", "--plugin-path", FIXTURES / "good"]
+
+
+class Faults(Case):
+    run_of_class = RUN
+
+    @classmethod
+    def setUpClass(cls):
+        cls.undisturbed = cls()
+        cls.undisturbed.setUp()
+        cls.addClassCleanup(cls.undisturbed.doCleanups)
+        cls.undisturbed.call(*cls.run_of_class, "--out", "out")
+
+    def runTest(self):
+        pass
+
+    def assert_as_undisturbed(self, run="out"):
+        self.assert_same_results(self.undisturbed.dir / "out", run)
+        left = [p.name for p in (self.dir / run).rglob("*") if p.name[0] == "." or p.suffix == ".tmp"]
+        self.assertEqual(left, [])
+
+    def finished(self, run="out"):
+        """All bytes of the cells that are there and went well."""
+        cells = self.dir / run / "cells"
+        if not cells.exists():
+            return {}
+        good = [key for key, (_, status) in self.cells(run).items() if status["state"] == "ok"]
+        return {f"{key}/{name}": (cells / key / name).read_bytes() for key in good for name in NO_CLOCK}
+
+    @staticmethod
+    def workers(parent):
+        try:
+            return [int(p) for p in pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text().split()]
+        except OSError:
+            return []
+
+    def first_worker(self, run):
+        while not self.workers(run.pid):
+            self.assertIsNone(run.poll())
+            time.sleep(.001)
+        return self.workers(run.pid)[0]
+
+    def left_behind(self):
+        """Processes of this test: their environment names its cache."""
+        mark, found = f"LGABENCH_CACHE={self.dir}/cache".encode(), []
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                if mark in (process / "environ").read_bytes():
+                    found.append(process.name)
+            except OSError:
+                pass
+        return found
+
+    def assert_nothing_left_behind(self):
+        deadline = time.monotonic() + 10
+        while self.left_behind():
+            self.assertLess(time.monotonic(), deadline, "a process outlived its run")
+            time.sleep(.01)
+
+
+class FaultyPlugins(Faults):
+    run_of_class = NO_TRAINING
+    # (where, how) -> the reason that is given; None where the cell goes well, "" where its first episode fails.
+    FAULTS = {
+        ("act", "not"): None, ("act", "print"): None, ("act", "messages"): None, ("act", "fork"): None,
+        ("act", "fork_and_spin"): None, ("act", "close"): None, ("act", "thread"): None,
+        ("act", "throw"): "", ("act", "throw_int"): "", ("act", "nan"): "",
+        ("act", "abort"): r"signal 6 .*in phase evaluate", ("act", "segfault"): r"signal 11 .*in phase evaluate",
+        ("act", "exit"): r"exited with 0 in phase evaluate", ("act", "quick_exit"): r"exited with 0 in phase evaluate",
+        ("act", "spin"): r"stopped after 4 s in phase evaluate", ("act", "allocate"): r"out of memory",
+        ("learn", "throw"): r"plugin fixture_faulty: the fixture's own failure",
+        ("learn", "throw_int"): r"plugin fixture_faulty: threw int", ("learn", "allocate"): r"out of memory",
+        ("learn", "fork"): None, ("select", "fork"): None, ("learn", "close"): None,
+        ("learn", "quick_exit"): r"exited with 0 in phase learn",
+        ("select", "throw_int"): r"plugin fixture_faulty: threw int",
+        ("select", "segfault"): r"signal 11 .*in phase select",
+    }
+
+    def test_each_costs_its_own_cell_alone(self):
+        methods = [f"fixture_faulty+where={where}+how={how}" for where, how in self.FAULTS]
+        done = self.call(*NO_TRAINING, "--methods", ",".join(methods), "--plugin-path", FIXTURES / "faulty",
+                         "--timeout", "4", "--memory", ".5", "--out", "out", expect=3)
+        self.assert_nothing_left_behind()
+        self.assert_matches_schemas("out")
+        report = (self.dir / "out/report.md").read_text()
+        summary = json.loads((self.dir / "out/summary.json").read_text())
+        reported = {cell["cell"]: cell["reason"] for cell in summary["failed_cells"]}
+        ended = {(cell["method"]["options"].get("where"), cell["method"]["options"].get("how")): (key, status)
+                 for key, (cell, status) in self.cells("out").items()}
+        good = (self.dir / "out/cells" / ended["act", "not"][0] / "episodes.jsonl").read_bytes()
+        for fault, expected in self.FAULTS.items():
+            key, status = ended[fault]
+            files = {p.name for p in (self.dir / "out/cells" / key).iterdir()}
+            with self.subTest(fault, status=status):
+                if not expected:
+                    self.assertEqual(status["state"], "ok")
+                    self.assertEqual(files, {*NO_CLOCK, "timing.json", "status.json", "log.txt"})
+                    episodes = (self.dir / "out/cells" / key / "episodes.jsonl").read_bytes()
+                    first, rest = episodes.split(b"\n", 1)
+                    self.assertEqual(rest, good.split(b"\n", 1)[1])
+                    self.assertEqual(b"method_error" in first if expected == "" else episodes == good, True, episodes)
+                else:
+                    self.assertEqual((status["state"], status["fault"]), ("failed", "plugin"))
+                    self.assertEqual(files, {"cell.json", "status.json", "log.txt"})
+                    self.assertRegex(status["reason"], expected)
+                    self.assertEqual(reported.pop(key), status["reason"])
+                    self.assertIn(f"{status['reason']} (out/cells/{key}/log.txt)", done.stderr)
+                    self.assertIn(status["reason"], report)
+        self.assertEqual(reported, {})
+        self.assertIn("the fixture prints", (self.dir / "out/cells" / ended["act", "print"][0] / "log.txt").read_text())
+        # The neighbour among them is as it is alone.
+        alone = self.finished(self.undisturbed.dir / "out")
+        self.assertEqual({name: self.finished()[name] for name in alone}, alone)
+
+        # The command that is printed computes what failed again, and nothing else.
+        command = done.stderr.splitlines()[-1].strip()
+        again = subprocess.run(["bash", "-c", command], capture_output=True, text=True, env=self.environment,
+                               cwd=self.dir)
+        self.assertEqual(again.returncode, 3, again.stderr)
+        failed = sum(1 for expected in self.FAULTS.values() if expected)
+        self.assertIn(f"0 cells computed, {1 + len(methods) - failed} were there, {failed} failed", again.stderr)
+
+
+class Killed(Faults):
+    def test_at_random_moments(self):
+        moments, kills, runs = random.Random(5), {"parent": 0, "worker": 0}, 0
+        while sum(kills.values()) < (200 if FULL else 20):
+            runs += 1
+            out = f"out{runs}"
+            self.environment["LGABENCH_CACHE"] = str(self.dir / f"cache/{runs}")
+            for disturbances in range(moments.randint(3, 8)):
+                before = self.finished(out)
+                run = self.start(*RUN, "--jobs", "2", "--out", out)
+                time.sleep(moments.choice([moments.uniform(0, .1), moments.uniform(.1, 1)]))
+                victims = self.workers(run.pid)
+                whom = moments.choice(["parent", "worker"])
+                if run.poll() is None and (whom == "parent" or victims):
+                    os.kill(run.pid if whom == "parent" else moments.choice(victims), signal.SIGKILL)
+                    kills[whom] += 1
+                    if whom == "parent":
+                        run.wait()
+                        self.assert_nothing_left_behind()
+                said = run.communicate(timeout=300)[1]
+                self.assertIn(run.returncode, (0, 3, -9), said)
+                after = self.finished(out)
+                self.assertEqual({name: after.get(name) for name in before}, before, "a finished result is lost")
+                if whom == "worker" and run.returncode == 3:
+                    failed = [s for _, s in self.cells(out).values() if s["state"] == "failed"]
+                    self.assertEqual({(s["signal"], s["fault"]) for s in failed}, {(9, "host")})
+                    self.assertIn("signal 9 (Killed)", (self.dir / out / "report.md").read_text())
+                if run.returncode == 0:
+                    break
+            self.call(*RUN, "--out", out)
+            self.assert_as_undisturbed(out)
+        self.assertGreater(min(kills.values()), 3, kills)
+
+    def interrupted(self, number, impatiently=False):
+        run = self.start(*RUN, "--jobs", "2")
+        self.first_worker(run)
+        run.send_signal(number)
+        while impatiently and run.poll() is None:
+            run.send_signal(number)
+        said = run.communicate(timeout=60)[1]
+        self.assertEqual(run.returncode, 130, said)
+        self.assert_nothing_left_behind()
+        command = said.splitlines()[-1].split()
+        self.assertEqual(command[-1], "--resume")
+        return command
+
+    def test_interrupted_prints_the_command_that_resumes(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            command = self.interrupted(number)
+        command = self.interrupted(signal.SIGINT, impatiently=True)
+        subprocess.run(command, check=True, env=self.environment, cwd=self.dir, capture_output=True, timeout=300)
+        shutil.move(self.dir / command[-2], self.dir / "out")
+        self.assert_as_undisturbed()
+
+    def test_two_runs_cannot_write_into_one_directory(self):
+        run = self.start(*RUN, "--out", "out")
+        self.first_worker(run)
+        self.assertIn("another run is writing into it", self.call(*RUN, "--out", "out", expect=2).stderr)
+        self.assertIn("a run is writing into it", self.call("merge", "other", "out", expect=2).stderr)
+        run.kill()
+        run.wait()
+
+    def test_before_its_first_file_is_whole(self):
+        for left in ("run.json.1.tmp", "run.json.0000002a.tmp"):
+            (self.dir / "out").mkdir(exist_ok=True)
+            (self.dir / "out" / left).write_text('{"suite": ')
+        self.call(*RUN, "--out", "out")
+        self.assert_as_undisturbed()
+
+
+class Stopped(Faults):
+    run_of_class = [*NO_TRAINING, "--seeds", "1,2"]
+
+    def test_a_worker_meets_its_time_limit(self):
+        run = self.start(*self.run_of_class, "--jobs", "2", "--timeout", "6", "--out", "out")
+        os.kill(self.first_worker(run), signal.SIGSTOP)
+        said = run.communicate(timeout=120)[1]
+        self.assertEqual(run.returncode, 3, said)
+        failed = [status["reason"] for _, status in self.cells("out").values() if status["state"] == "failed"]
+        self.assertEqual(len(failed), 1)
+        self.assertRegex(failed[0], r"stopped after 6 s")
+        self.call(*self.run_of_class, "--out", "out")
+        self.assert_as_undisturbed()
+
+    def test_the_whole_run_loses_nothing(self):
+        # As a batch system suspends it, for longer than the time limit.
+        run = self.start(*self.run_of_class, "--jobs", "2", "--timeout", "6", "--out", "out")
+        self.first_worker(run)
+        stopped = [run.pid, *self.workers(run.pid)]
+        for number, pause in ((signal.SIGSTOP, 7), (signal.SIGCONT, 0)):
+            for pid in stopped:
+                os.kill(pid, number)
+            time.sleep(pause)
+        said = run.communicate(timeout=120)[1]
+        self.assertEqual(run.returncode, 0, said)
+        self.assert_as_undisturbed()
+
+
+class FullDisk(Faults):
+    run_of_class = NO_TRAINING
+
+    def with_full_disk_at(self, number, stays):
+        count = self.dir / "count"
+        count.write_bytes(struct.pack("i", 0))
+        more = {"LD_PRELOAD": str(BUILD / "tests/full_disk.so"), "FULL_DISK_UNDER": str(self.dir / "disk"),
+                "FULL_DISK_COUNT": str(count), "FULL_DISK_AT": str(number)}
+        if stays:
+            more["FULL_DISK_STAYS"] = "1"
+        done = subprocess.run([PROGRAM, *map(str, NO_TRAINING), "--cache", "disk/cache", "--out", "disk/out"],
+                              timeout=60, capture_output=True, text=True, cwd=self.dir,
+                              env={**self.environment, **more})
+        return done, struct.unpack("i", count.read_bytes())[0]
+
+    def test_at_every_write(self):
+        done, writes = self.with_full_disk_at(0, False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertGreater(writes, 20)
+        self.assert_as_undisturbed("disk/out")
+        for number in range(1, writes + 1):
+            for stays in ((False, True) if FULL else (number % 2 == 0,)):
+                with self.subTest(number, stays=stays):
+                    shutil.rmtree(self.dir / "disk")
+                    done, _ = self.with_full_disk_at(number, stays)
+                    self.assertIn(done.returncode, (2, 3), done.stderr)
+                    self.assertRegex(done.stderr, r"disk/\S+: cannot be (written( to disk)?|synced): No space left")
+                    self.assertEqual([p for p in (self.dir / "disk/cache").rglob("*.tmp")], [])
+                    before = self.finished("disk/out")
+                    said = self.call(*NO_TRAINING, "--cache", "disk/cache", "--out", "disk/out").stderr
+                    self.assertEqual({**self.finished("disk/out"), **before}, self.finished("disk/out"))
+                    if before:
+                        self.assertIn("0 cells computed, 1 were there", said)
+                    self.assert_as_undisturbed("disk/out")
+
+
+class TornFiles(Faults):
+    run_of_class = NO_TRAINING
+
+    def test_every_kind_is_computed_again(self):
+        shutil.copytree(self.undisturbed.dir / "out", self.dir / "out")
+        self.environment["LGABENCH_CACHE"] = str(self.undisturbed.dir / "cache")
+        cell = next((self.dir / "out/cells").iterdir())
+        for file in sorted(cell.iterdir()):
+            if file.name == "log.txt":  # no result: anyone may add to it
+                continue
+            whole = file.read_bytes()
+            middle = len(whole) // 2
+            for damage, torn in {"truncated": whole[:middle], "empty": b"", "edited": whole.replace(b":", b";", 1),
+                                 "longer": whole + b"{}\n", "zeros": bytes(len(whole)), "missing": None}.items():
+                with self.subTest(file=file.name, damage=damage):
+                    file.unlink() if torn is None else file.write_bytes(torn)
+                    said = self.call(*NO_TRAINING, "--out", "out").stderr
+                    self.assertRegex(said, rf"{file.name}.*; computed again")
+                    self.assertIn("1 cells computed, 0 were there", said)
+                    self.assert_as_undisturbed()
+
+    def test_a_status_that_says_less(self):
+        for change in ({"files": {}}, {"files": 3}, {"files": {"a": 1}}, {"state": 1}, {"state": "failed"},
+                       {"build": 5}):
+            with self.subTest(change):
+                shutil.rmtree(self.dir / "out", ignore_errors=True)
+                shutil.copytree(self.undisturbed.dir / "out", self.dir / "out")
+                file = next((self.dir / "out/cells").glob("*/status.json"))
+                file.write_text(json.dumps({**json.loads(file.read_text()), **change}))
+                said = self.call(*NO_TRAINING, "--out", "out", "--resume").stderr
+                self.assertRegex(said, r"status.json: .*computed again|computed by another build.*computed again")
+                self.assert_as_undisturbed()
+
+    def test_a_cell_in_anothers_place(self):
+        seeds = [*NO_TRAINING, "--seeds", "1", "--out", "out"]
+        self.call(*seeds)
+        before = self.results("out")
+        one, other = sorted((self.dir / "out/cells").iterdir())
+        shutil.rmtree(one)
+        shutil.copytree(other, one)
+        self.assertRegex(self.call(*seeds).stderr, rf"{one.name}/cell.json does not have the bytes.*computed again")
+        self.assertEqual(self.results("out"), before)
+
+
+class SharedCache(Faults):
+    def test_two_runs_fill_it_at_once(self):
+        runs = [self.start(*RUN, "--jobs", "2", "--out", out) for out in ("a", "b")]
+        for run in runs:
+            said = run.communicate(timeout=300)[1]
+            self.assertEqual(run.returncode, 0, said)
+            self.assertNotIn("made again", said)
+        for out in ("a", "b"):
+            self.assert_as_undisturbed(out)
+        filled, wanted = ({p.name: p.read_bytes() for p in (case.dir / "cache").iterdir()}
+                          for case in (self, self.undisturbed))
+        self.assertEqual(filled, wanted)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
