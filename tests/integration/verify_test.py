@@ -1,0 +1,146 @@
+"""`lgabench verify`: a run made again by the build that made it, and runs whose records were changed.
+
+LGABENCH_BUILD names the build tree. By hand: python3 verify_test.py
+"""
+import hashlib
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = pathlib.Path(os.environ["LGABENCH_BUILD"]) / "bin" / "lgabench"
+# One cell that trains, for a second, and the three reference rows.
+RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "4",
+       "--set", "lga.epochs=20"]
+
+
+def canonical(value):
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False) + "\n"
+
+
+class Verify(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.base, ignore_errors=True)
+        cls.environment = dict(os.environ, LGABENCH_CACHE=str(cls.base / "cache"), TMPDIR=str(cls.base))
+        subprocess.run([PROGRAM, *RUN, "--out", cls.base / "run"], check=True, capture_output=True, env=cls.environment)
+
+    def setUp(self):
+        self.run_directory = pathlib.Path(tempfile.mkdtemp(dir=self.base)) / "run"
+        shutil.copytree(self.base / "run", self.run_directory)
+        self.cell = next(path.parent for path in self.run_directory.glob("cells/*/cell.json")
+                         if json.loads(path.read_text())["method"]["id"] == "lga")
+
+    def verify(self, *arguments, expect):
+        done = subprocess.run([PROGRAM, "verify", self.run_directory, *arguments], capture_output=True, text=True,
+                              env=self.environment, timeout=300)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        self.assertEqual(list(self.base.glob("lgabench-verify-*")), [], "scratch was left behind")
+        return done
+
+    def line_of_the_cell(self, output):
+        return next(line for line in output.splitlines() if self.cell.name in line)
+
+    def change(self, name, line, **members):
+        """Changes members of a line, and the checksum with it: nothing in the directory contradicts itself."""
+        lines = (self.cell / name).read_text().splitlines()
+        lines[line] = canonical({**json.loads(lines[line]), **members}).rstrip("\n")
+        (self.cell / name).write_text("\n".join(lines) + "\n")
+        self.change_status("files", name, hashlib.sha256((self.cell / name).read_bytes()).hexdigest())
+
+    def change_status(self, member, name, value):
+        status = json.loads((self.cell / "status.json").read_text())
+        status[member][name] = value
+        (self.cell / "status.json").write_text(canonical(status))
+
+    def test_a_run_of_this_build_is_bit_identical(self):
+        before = {p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}
+        said = self.verify("--all", expect=0).stdout
+        self.assertIn("4 of 4 finished cells computed again\nbuild, processor and data are those of the record", said)
+        self.assertEqual(said.count("bit-identical "), 4)
+        self.assertEqual({p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}, before)
+
+    def test_the_sample_is_the_seeds(self):
+        one, again = (json.loads(self.verify("--sample", "2", "--seed", "5", "--json", expect=0).stdout) for _ in "ab")
+        self.assertEqual(one, again)
+        self.assertEqual((len(one["cells"]), one["seed"], one["finished"]), (2, 5, 4))
+
+    def test_a_changed_episode_is_found(self):
+        episode = json.loads((self.cell / "episodes.jsonl").read_text().splitlines()[2])
+        other = (dict(success=False, failure="missed_object") if episode["success"]
+                 else dict(success=True, failure="none"))
+        self.change("episodes.jsonl", 2, **other)
+        said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
+        self.assertRegex(said, r"^differs +\w+ lga.*: from episodes.jsonl line 3, though build, processor and data are")
+
+    def test_a_changed_training_line_is_found(self):
+        self.change("training.jsonl", 0, loss=.125)
+        said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
+        self.assertRegex(said, r"^differs .*: from training.jsonl line 1, though")
+
+    def test_another_build_is_named_and_excuses_other_bytes(self):
+        self.change("training.jsonl", 0, loss=.125)
+        self.change_status("build", "liblgabench_learning.so", "0" * 64)
+        said = self.verify("--all", expect=0).stdout
+        self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
+        self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
+        self.assertEqual(said.count("bit-identical "), 3)
+
+    def test_another_processor_is_named(self):
+        run = json.loads((self.run_directory / "run.json").read_text())
+        run["machine"]["processor"] = "Z80"
+        (self.run_directory / "run.json").write_text(json.dumps(run))
+        said = self.verify("--sample", "1", expect=0).stdout
+        self.assertIn("\n  processor (Z80 there, ", said)
+
+    def test_an_edited_cell_is_said_before_anything_runs(self):
+        with open(self.cell / "episodes.jsonl", "a") as file:
+            file.write("\n")
+        done = self.verify("--all", expect=1)
+        self.assertRegex(done.stderr.splitlines()[0],
+                         rf"^edited: .*{self.cell.name}: episodes.jsonl differs from its checksum in status.json")
+        self.assertIn("3 of 3 finished cells", done.stdout)
+
+    def test_a_cell_under_another_name_is_edited(self):
+        cell = json.loads((self.cell / "cell.json").read_text())
+        cell["method"]["options"]["epochs"] += 1
+        (self.cell / "cell.json").write_text(canonical(cell))
+        self.change_status("files", "cell.json", hashlib.sha256((self.cell / "cell.json").read_bytes()).hexdigest())
+        self.assertIn("cell.json does not hash to the directory's name", self.verify("--sample", "1", expect=1).stderr)
+
+    def test_no_run(self):
+        shutil.rmtree(self.run_directory / "cells")
+        self.assertIn("no finished cell: nothing to verify", self.verify(expect=2).stderr)
+        (self.run_directory / "run.json").unlink()
+        self.assertIn("run.json: cannot be read", self.verify(expect=2).stderr)
+
+
+class Compare(unittest.TestCase):
+    def test_refuses_other_episodes_and_accepts_itself(self):
+        base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, base, ignore_errors=True)
+        environment = dict(os.environ, LGABENCH_CACHE=str(base / "cache"))
+
+        def call(*arguments, expect=0):
+            done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, env=environment, cwd=base,
+                                  timeout=300)
+            self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+            return done
+
+        small = ["--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--set", "lga.epochs=5"]
+        call("run", "q1", *small, "--episodes", "2", "--out", "a")
+        call("run", "q1", *small, "--episodes", "3", "--out", "b")
+        refused = call("compare", "a", "b", expect=2)
+        self.assertEqual(refused.stdout, "")
+        self.assertRegex(refused.stderr, r"^lgabench: the runs cannot be compared: .*2 episodes an arm in A, 3 in B\n$")
+        self.assertEqual(call("compare", "a", "a").stdout.count("same actions"), 4)
+        self.assertFalse(json.loads(call("compare", "a", "a", "--json").stdout)["regressed"])
+        self.assertIn("not tested", call("report", "a", "--claims").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
