@@ -6,12 +6,14 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
 import unittest
 
-PROGRAM = pathlib.Path(os.environ["LGABENCH_BUILD"]) / "bin" / "lgabench"
+BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
+PROGRAM = BUILD / "bin" / "lgabench"
 # One cell that trains, for a second, and the three reference rows.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "4",
        "--set", "lga.epochs=20"]
@@ -61,7 +63,7 @@ class Verify(unittest.TestCase):
         before = {p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}
         said = self.verify("--all", expect=0).stdout
         self.assertIn("4 of 4 finished cells computed again\nbuild, processor and data are those of the record", said)
-        self.assertEqual(said.count("bit-identical "), 4)
+        self.assertEqual(len(re.findall("^bit-identical ", said, re.M)), 4)
         self.assertEqual({p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}, before)
 
     def test_the_sample_is_the_seeds(self):
@@ -88,7 +90,16 @@ class Verify(unittest.TestCase):
         said = self.verify("--all", expect=0).stdout
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
-        self.assertEqual(said.count("bit-identical "), 3)
+        self.assertIn("\n3 bit-identical, 1 same outcomes\n", said)
+
+    def test_other_data_are_named(self):
+        shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")
+        with open(self.run_directory / "data" / "answers" / "gpt4.json", "a") as file:
+            file.write("\n")  # the same answers, other bytes
+        self.environment = {**self.environment, "LGABENCH_DATA": str(self.run_directory / "data")}
+        said = self.verify("--all", expect=0).stdout
+        self.assertRegex(said, r"not as recorded:\n  data: answers \([0-9a-f]{8} there, [0-9a-f]{8} here\)\n")
+        self.assertIn("\n4 bit-identical\n", said)
 
     def test_another_processor_is_named(self):
         run = json.loads((self.run_directory / "run.json").read_text())

@@ -146,6 +146,18 @@ Verdict judge(const Recorded& recorded, const fs::path& recomputed, bool excused
   return verdict;
 }
 
+// "14 bit-identical, 2 same outcomes"
+std::string counts(const std::vector<Verdict>& verdicts) {
+  using report::Agreement;
+  std::vector<std::string> parts;
+  for (const Agreement one :
+       {Agreement::identical, Agreement::same_outcomes, Agreement::within_interval, Agreement::differs})
+    if (const auto n = std::count_if(verdicts.begin(), verdicts.end(),
+                                     [one](const Verdict& v) { return v.agreement.agreement == one; }))
+      parts.push_back(fmt::format("{} {}", n, to_string(one)));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
            const std::set<std::string>& why, const std::vector<Verdict>& verdicts) {
   if (a.json) {
@@ -171,6 +183,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
   for (const Verdict& v : verdicts)
     fmt::print("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
                v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
+  if (verdicts.size() > 1) fmt::print("{}\n", counts(verdicts));
   if (inventory.failed) fmt::print("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) fmt::print("{} cells have not been played\n", inventory.not_played);
 }
