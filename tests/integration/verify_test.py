@@ -23,6 +23,15 @@ def canonical(value):
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False) + "\n"
 
 
+def rewrite(cell, name, change):
+    """Changes each line of a cell's file, and the checksum with it: nothing in the directory contradicts itself."""
+    lines = [change(json.loads(line)) for line in (cell / name).read_text().splitlines()]
+    (cell / name).write_text("".join(map(canonical, lines)))
+    status = json.loads((cell / "status.json").read_text())
+    status["files"][name] = hashlib.sha256((cell / name).read_bytes()).hexdigest()
+    (cell / "status.json").write_text(canonical(status))
+
+
 class Verify(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -48,11 +57,8 @@ class Verify(unittest.TestCase):
         return next(line for line in output.splitlines() if self.cell.name in line)
 
     def change(self, name, line, **members):
-        """Changes members of a line, and the checksum with it: nothing in the directory contradicts itself."""
-        lines = (self.cell / name).read_text().splitlines()
-        lines[line] = canonical({**json.loads(lines[line]), **members}).rstrip("\n")
-        (self.cell / name).write_text("\n".join(lines) + "\n")
-        self.change_status("files", name, hashlib.sha256((self.cell / name).read_bytes()).hexdigest())
+        lines = iter(range(len((self.cell / name).read_text().splitlines())))
+        rewrite(self.cell, name, lambda value: {**value, **members} if next(lines) == line else value)
 
     def change_status(self, member, name, value):
         status = json.loads((self.cell / "status.json").read_text())
@@ -117,10 +123,7 @@ class Verify(unittest.TestCase):
         self.assertIn("3 of 3 finished cells", done.stdout)
 
     def test_a_cell_under_another_name_is_edited(self):
-        cell = json.loads((self.cell / "cell.json").read_text())
-        cell["method"]["options"]["epochs"] += 1
-        (self.cell / "cell.json").write_text(canonical(cell))
-        self.change_status("files", "cell.json", hashlib.sha256((self.cell / "cell.json").read_bytes()).hexdigest())
+        self.change("cell.json", 0, training_seed=1)
         self.assertIn("cell.json does not hash to the directory's name", self.verify("--sample", "1", expect=1).stderr)
 
     def test_no_run(self):
@@ -131,26 +134,55 @@ class Verify(unittest.TestCase):
 
 
 class Compare(unittest.TestCase):
-    def test_refuses_other_episodes_and_accepts_itself(self):
-        base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
-        self.addCleanup(shutil.rmtree, base, ignore_errors=True)
-        environment = dict(os.environ, LGABENCH_CACHE=str(base / "cache"))
+    """Exit statuses of compare and report --claims."""
 
-        def call(*arguments, expect=0):
-            done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, env=environment, cwd=base,
-                                  timeout=300)
-            self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
-            return done
+    def setUp(self):
+        self.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, self.base, ignore_errors=True)
+        self.run_small("a")
 
-        small = ["--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--set", "lga.epochs=5"]
-        call("run", "q1", *small, "--episodes", "2", "--out", "a")
-        call("run", "q1", *small, "--episodes", "3", "--out", "b")
-        refused = call("compare", "a", "b", expect=2)
+    def call(self, *arguments, expect=0):
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, cwd=self.base, timeout=300,
+                              env=dict(os.environ, LGABENCH_CACHE=str(self.base / "cache")))
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done
+
+    def run_small(self, out, episodes="8"):
+        self.call("run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
+                  "--set", "lga.epochs=5", "--set", "gcbc_dart.epochs=1", "--episodes", episodes, "--out", out)
+
+    def make(self, run, method, success):
+        """Lets every episode of a method end so, under the name of the method as shipped."""
+        for path in (self.base / run).glob("cells/*/cell.json"):
+            if json.loads(path.read_text())["method"]["id"] == method:
+                rewrite(path.parent, "episodes.jsonl", lambda episode: {
+                    **episode, "success": success, "failure": "none" if success else "missed_object"})
+                rewrite(path.parent, "cell.json", lambda cell: {**cell, "method": {**cell["method"], "name": method}})
+
+    def test_compare(self):
+        self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 5)
+        self.assertFalse(json.loads(self.call("compare", "a", "a", "--json").stdout)["regressed"])
+        shutil.copytree(self.base / "a", self.base / "worse")
+        self.make("a", "oracle", True)
+        self.make("worse", "oracle", False)
+        self.assertRegex(self.call("compare", "a", "worse", expect=1).stdout, r"oracle .* -1.00 \[.* worse\n")
+        self.assertRegex(self.call("compare", "worse", "a").stdout, r"oracle .* better\n")
+
+    def test_compare_refuses_other_episodes(self):
+        self.run_small("b", episodes="2")
+        refused = self.call("compare", "a", "b", expect=2)
         self.assertEqual(refused.stdout, "")
-        self.assertRegex(refused.stderr, r"^lgabench: the runs cannot be compared: .*2 episodes an arm in A, 3 in B\n$")
-        self.assertEqual(call("compare", "a", "a").stdout.count("same actions"), 4)
-        self.assertFalse(json.loads(call("compare", "a", "a", "--json").stdout)["regressed"])
-        self.assertIn("not tested", call("report", "a", "--claims").stdout)
+        self.assertRegex(refused.stderr, r"^lgabench: the runs cannot be compared: .*8 episodes an arm in A, 2 in B\n$")
+
+    def test_claims(self):
+        self.assertIn("not tested: no row lga", self.call("report", "a", "--claims").stdout)
+        self.make("a", "lga", False)
+        self.make("a", "gcbc_dart", True)
+        said = self.call("report", "a", "--claims", expect=1).stdout
+        self.assertRegex(said, r"reversed +n=10 +test +LGA − GCBC-DART  -1.00 \[")
+        claims = json.loads(self.call("report", "a", "--claims", "--format", "json", expect=1).stdout)["claims"]
+        self.assertEqual([claim["verdict"] for claim in claims], ["reversed"] + 4 * ["not tested"])
+        self.call("report", "a")
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@
 #include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
-
 namespace {
 
 int print_claims(const fs::path& run, const std::string& format) {
@@ -21,6 +20,8 @@ int print_claims(const fs::path& run, const std::string& format) {
     fmt::print("{}", read_file(run / "claims.json"));
   else
     throw InputError("--claims: expected --format text or json");
+  if (results.not_run > 0) fmt::print(stderr, "{} cells of the run have not been played: not final\n", results.not_run);
+  if (results.smoke) fmt::print(stderr, "Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
   return reversed ? regression : ok;

@@ -63,7 +63,7 @@ std::string edited(const Recorded& cell) {
   for (const char* name : {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json"}) {
     std::error_code error;
     if (!fs::exists(cell.directory / name, error)) return fmt::format("{} is missing", name);
-    if (files.value(name, "") != sha256_file(cell.directory / name))
+    if (files.value(name, Json()) != sha256_file(cell.directory / name))
       return fmt::format("{} differs from its checksum in status.json", name);
   }
   if (key(cell.cell) != cell.directory.filename()) return "cell.json does not hash to the directory's name";
