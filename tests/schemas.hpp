@@ -36,7 +36,7 @@ inline std::vector<std::string> complaints(const std::string& schema_name, const
 
 /// Every file that a run must have and that has a schema.
 inline std::vector<fs::path> files_with_schema(const fs::path& run) {
-  std::vector<fs::path> files{run / "run.json", run / "summary.json"};
+  std::vector<fs::path> files{run / "run.json", run / "summary.json", run / "claims.json"};
   for (const auto& entry : fs::directory_iterator(run / "cells")) {
     const fs::path& cell = entry.path();
     if (cell.filename().string()[0] == '.') continue;  // a worker's, not yet kept

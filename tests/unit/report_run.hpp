@@ -41,6 +41,9 @@ class FabricatedRun : public TemporaryDirectory {
     std::string scenario = "heart";
     int demonstrations = 20, seed = 0;
     std::string kind = "method", layout = "cells", failure = "missed_object";
+    int first_scene = 0;  // hash of the first of 20 scenes
+    double learn_s = 4;
+    std::string provenance{};                              // of the Selections; "": the method's own
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
 
@@ -98,9 +101,10 @@ class FabricatedRun : public TemporaryDirectory {
     return {
         {"selection",
          {{"target", {{"object_types", {"heart"}}, {"textures", {"red", "tiger"}}}},
-          {"provenance", s.method == "lga" ? "recorded"
-                         : selects         ? "truth"
-                                           : "none"},
+          {"provenance", !s.provenance.empty() ? s.provenance
+                         : s.method == "lga"   ? "recorded"
+                         : selects             ? "truth"
+                                               : "none"},
           {"source", selects ? "gpt-4" : ""},
           {"asked_as", selects ? "fetch | heart" : ""},
           {"cost",
@@ -119,15 +123,15 @@ class FabricatedRun : public TemporaryDirectory {
             canonical({{"arm", arm.name},
                        {"index", i},
                        {"command", arm.commands[i % arm.commands.size()]},
-                       {"scene", hex(i)},
+                       {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
                        {"success", won},
                        {"failure", won ? "none" : s.failure},
                        {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
             '\n';
       }
     for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
-    const Json timing{{"select_s", 0.25}, {"sample_s", 0.5},   {"demonstrate_s", 1.0},
-                      {"learn_s", 4.0},   {"evaluate_s", 2.0}, {"total_s", 7.75}};
+    const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},
+                      {"learn_s", s.learn_s}, {"evaluate_s", 2.0}, {"total_s", 7.75}};
     const fs::path cell = new_cell(s);
     Json files;
     for (const auto& [name, text] :

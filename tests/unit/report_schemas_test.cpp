@@ -19,6 +19,8 @@ std::vector<std::pair<std::string, Json>> run_documents() {
   arms.arms = {{"test", 15}, {"hard", 10}};
   run.add(arms);
   run.add_failed({"gcbc_dart", 0}, "plugin");
+  run.add({"gcbc_dart", 5, "heart", 10});  // a claim's difference that is tested, and others that are not
+  run.add({"lga", 15, "heart", 10});
   run.save();
   report::write_report(run.path);
   std::vector<std::pair<std::string, Json>> all;
@@ -93,7 +95,11 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"summary", "/rows/0/shift", {{"difference", 0.5}}},
       {"summary", "/rows/0/phi", {{"quality", nullptr}}},
       {"summary", "/rows/0/failures", {{"bad_luck", 1}}},
-      {"summary", "/failed_cells/0/fault", nullptr}};
+      {"summary", "/failed_cells/0/fault", nullptr},
+      {"claims", "/claims/0/verdict", "maybe"},
+      {"claims", "/claims/0/claim", "C6"},
+      {"claims", "/claims/0/differences/0/p", 2},
+      {"claims", "/claims/0/differences/0/policies", nullptr}};
   const auto all = run_documents();
   for (const auto& [schema, where, value] : faults) {
     int tried = 0;

@@ -116,12 +116,86 @@ TEST(PairedDifference, HasASignAndStaysWithinOne) {
   EXPECT_EQ(paired_difference(0, 20, 20).high, 1);
 }
 
-TEST(ChangeInterval, IsTheWiderOfBootstrapAndPairedDifference) {
-  const Interval agree = change_interval({{0, 0, 0}}, 0, 0, 60, "x");
-  EXPECT_EQ(agree.low, paired_difference(0, 0, 60).low);
-  const Interval differ = change_interval({{0, 0, 0}, {-1, -1, -1}}, 60, 0, 120, "x");
-  EXPECT_EQ(differ.low, -1);
-  EXPECT_EQ(differ.high, 0);
+TEST(PairedChange, IsTheWiderOfBootstrapAndPairedDifference) {
+  const Change agree = paired_change({{0, 0, 0}}, 0, 0, 60, "x");
+  EXPECT_EQ(agree.interval.low, paired_difference(0, 0, 60).low);
+  EXPECT_EQ(agree.p, 1);
+  const Change differ = paired_change({{0, 0, 0}, {-1, -1, -1}}, 60, 0, 120, "x");
+  EXPECT_EQ(differ.difference, -.5);
+  EXPECT_EQ(differ.interval.low, -1);
+  EXPECT_EQ(differ.interval.high, 0);
+  EXPECT_NEAR(differ.p, .5, .05);  // a quarter of the resamples draw the first scenario alone
+}
+
+TEST(PairedChange, OfOnePolicyIsMcNemars) {
+  const Change one = paired_change({{.4}}, 1, 9, 20, "x");
+  EXPECT_EQ(one.p, mcnemar(1, 9));
+  EXPECT_EQ(one.interval.low, paired_difference(1, 9, 20).low);
+}
+
+// statistics_reference.py: the resampling distribution in exact fractions.
+TEST(PairedChange, PIsTwiceTheShareOfResamplesBeyondZero) {
+  const std::vector<Cluster> seeds{{-1, 1, 1, 1, 1, 1, 1, 1}};
+  EXPECT_NEAR(paired_change(seeds, 20, 140, 160, "test/p").p, .022495627403259277, 4 * .0015);  // 4 deviations
+  std::vector<Cluster> reversed = seeds;
+  for (double& d : reversed.front()) d = -d;
+  EXPECT_NEAR(paired_change(reversed, 140, 20, 160, "test/p").p, .022495627403259277, 4 * .0015);
+}
+
+TEST(PairedChange, PIsNowhereBelowMcNemars) {  // seeds that happen to agree: no resample is beyond zero
+  EXPECT_EQ(paired_change({{.1, .1, .1}}, 3, 9, 60, "x").p, mcnemar(3, 9));
+}
+
+// What follows: statistics_reference.py (SciPy, statsmodels), but where another source is named.
+TEST(Holm, ReferenceValuesInTheOrderGiven) {
+  const std::vector<double> p{.011, .3, .0004, .02, .02, .9, .013}, expected{.066, .6, .0028, .08, .08, .9, .066};
+  ASSERT_EQ(holm(p).size(), p.size());
+  for (std::size_t i = 0; i < p.size(); ++i) EXPECT_NEAR(holm(p)[i], expected[i], 1e-12) << i;
+  EXPECT_EQ(holm({.8, .9}), (std::vector<double>{1, 1}));
+  EXPECT_TRUE(holm({}).empty());
+}
+
+// Hollander and Wolfe (1973), p. 29: Hamilton depression scale before and after. V = 40, one-sided p .01953 (R's
+// manual).
+const std::vector<double> depression{1.83 - .878, .5 - .647,   1.62 - .598, 2.48 - 2.05, 1.68 - 1.06,
+                                     1.88 - 1.29, 1.55 - 1.06, 3.06 - 3.14, 1.3 - 1.29};
+// Student (1908): sleep gained by ten patients under two drugs.
+const std::vector<double> sleep{1.2, 2.4, 1.3, 1.3, 0, 1, 1.8, .8, 4.6, 1.4};
+
+std::vector<double> alternating(int n, double step) {
+  std::vector<double> d;
+  for (int i = 1; i <= n; ++i) d.push_back(step * i * (i % 3 == 1 ? -1 : 1));
+  return d;
+}
+
+TEST(Wilcoxon, ExactReferenceValues) {
+  EXPECT_NEAR(wilcoxon(depression), .0390625, 1e-15);
+  EXPECT_NEAR(wilcoxon(alternating(25, .5)), .23036134243011475, 1e-14);
+  EXPECT_NEAR(wilcoxon({1, 2, 3, 4, 5, 6}), .03125, 1e-15);
+  EXPECT_NEAR(wilcoxon({-1, -2, -3, -4, -5, -6}), .03125, 1e-15);
+}
+
+TEST(Wilcoxon, NormalApproximationWithTiesZerosAndContinuity) {
+  EXPECT_NEAR(wilcoxon(sleep), .009090698015925044, 1e-14);
+  std::vector<double> tied;
+  for (int i = 0; i < 60; ++i) tied.push_back(i % 7 - 2);
+  EXPECT_NEAR(wilcoxon(tied), .0015515548156511737, 1e-14);
+  EXPECT_NEAR(wilcoxon(alternating(26, .25)), .14072874277056632, 1e-14);
+  EXPECT_EQ(wilcoxon({0, 0}), 1);
+  EXPECT_EQ(wilcoxon({1, -1}), 1);
+}
+
+TEST(PairedT, ReferenceValues) {
+  const Change s = paired_t(sleep);  // R's manual: p .002833, interval .7001142 to 2.4598858
+  EXPECT_NEAR(s.difference, 1.58, 1e-12);
+  EXPECT_NEAR(s.interval.low, .7001142367230174, 1e-12);
+  EXPECT_NEAR(s.interval.high, 2.4598857632769824, 1e-12);
+  EXPECT_NEAR(s.p, .002832890197384273, 1e-12);
+  const Change a = paired_t(alternating(25, .5));
+  EXPECT_NEAR(a.interval.low, -1.21615309175715, 1e-12);
+  EXPECT_NEAR(a.p, .2279858673327479, 1e-12);
+  EXPECT_EQ(paired_t({0, 0}).p, 1);
+  EXPECT_EQ(paired_t({2, 2}).p, 0);
 }
 
 }  // namespace

@@ -193,12 +193,22 @@ TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
                   row.at("high").get<double>());
     known.insert(text);
   }
-  const std::regex number(R"(\d\.\d\d \[[^\]]*\])");
-  for (const std::string& page : {read_file(run.path / "report.md"), report::table_text(run.path)}) {
+  const std::regex number(R"([+-]?\d\.\d\d \[[^\]]*\])");
+  const auto numbers = [&number](const std::string& page) {
     std::set<std::string> shown;
     for (std::sregex_iterator it(page.begin(), page.end(), number), end; it != end; ++it) shown.insert(it->str());
-    EXPECT_EQ(shown, known);
-  }
+    return shown;
+  };
+  EXPECT_EQ(numbers(report::table_text(run.path)), known);
+  const Json claims = read_json(run.path / "claims.json");
+  for (const Json& d : claims.at("claims").at(0).at("differences"))
+    if (d.at("below") == "gcbc_dart") {
+      char text[64];
+      std::snprintf(text, sizeof text, "%+.2f [%+.2f, %+.2f]", d.at("difference").get<double>(),
+                    d.at("low").get<double>(), d.at("high").get<double>());
+      known.insert(text);
+    }
+  EXPECT_EQ(numbers(read_file(run.path / "report.md")), known);
 }
 
 TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {

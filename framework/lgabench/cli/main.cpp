@@ -46,6 +46,8 @@ int main(int argc, char** argv) {
   cli::add_run(app, exit);
   cli::add_merge(app, exit);
   cli::add_report(app, exit);
+  cli::add_compare(app, exit);
+  cli::add_verify(app, exit);
   for (const auto& [verb, summary] : worker_verbs) app.add_subcommand(verb, summary);
   return cli::dispatch(app, argc, argv, exit);
 }

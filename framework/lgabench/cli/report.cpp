@@ -1,15 +1,38 @@
 // lgabench report: makes a run's tables and figures anew, and prints them.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/claims.hpp>
 #include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
+namespace {
+
+int print_claims(const fs::path& run, const std::string& format) {
+  const report::RunResults results = report::read_run(run);
+  const std::vector<report::Claim> claims = report::test_claims(results);
+  if (format == "text")
+    fmt::print("{}", report::claims_text(results.suite, claims));
+  else if (format == "json")
+    fmt::print("{}", read_file(run / "claims.json"));
+  else
+    throw InputError("--claims: expected --format text or json");
+  if (results.not_run > 0) fmt::print(stderr, "{} cells of the run have not been played: not final\n", results.not_run);
+  if (results.smoke) fmt::print(stderr, "Smoke or limited run: not for the leaderboard.\n");
+  const bool reversed =
+      std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
+  return reversed ? regression : ok;
+}
+
+}  // namespace
 
 void add_report(CLI::App& app, int& exit) {
   struct Options {
     std::string run, format = "text";
+    bool claims = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand("report", "Make a run's tables and figures anew from its cells, and print them");
@@ -17,10 +40,18 @@ void add_report(CLI::App& app, int& exit) {
   verb->add_option("--format", options->format, "What to print: text, md, json or csv")
       ->check(CLI::IsMember({"text", "md", "json", "csv"}))
       ->capture_default_str();
-  verb->footer("Example: lgabench report runs/q1-smoke --format csv > table.csv");
+  verb->add_flag("--claims", options->claims,
+                 "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
+  verb->footer(
+      "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
+      "The paper's claims: lgabench report runs/q2 --claims");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
     report::write_report(run);
+    if (options->claims) {
+      exit = print_claims(run, options->format);
+      return;
+    }
     if (options->format == "text")
       fmt::print("{}", report::table_text(run));
     else if (options->format == "md")

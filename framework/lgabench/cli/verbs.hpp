@@ -13,6 +13,8 @@ void add_info(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
 void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
+void add_compare(CLI::App& app, int& exit);
+void add_verify(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);

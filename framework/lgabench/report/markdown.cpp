@@ -11,9 +11,7 @@
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
-namespace {
 
-// Text from a file inside a table's cell: it may neither end the cell nor the line.
 std::string plain(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -23,7 +21,11 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-std::string plain(const Json& value) { return plain(value.is_string() ? value.get<std::string>() : canonical(value)); }
+static std::string plain(const Json& value) {
+  return plain(value.is_string() ? value.get<std::string>() : canonical(value));
+}
+
+namespace {
 
 std::string row_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
 
@@ -276,8 +278,8 @@ constexpr const char* how_to_read =
 
 }  // namespace
 
-std::string markdown(const RunResults& run, const Summary& summary, const PaperValues& paper,
-                     const std::vector<std::vector<Figure>>& figures) {
+std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
+                     const PaperValues& paper, const std::vector<std::vector<Figure>>& figures) {
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
@@ -286,7 +288,8 @@ std::string markdown(const RunResults& run, const Summary& summary, const PaperV
                         paper.rates.count(mean_scenario)
                             ? "on the mean over its own scenarios, not only those of this run"
                             : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
-  return text + phi(run, summary) + failures(summary) + times(run) + failed_cells(summary) + how_to_read;
+  return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + times(run) + failed_cells(summary) +
+         how_to_read;
 }
 
 }  // namespace lgabench::report

@@ -21,10 +21,13 @@ void write_report(const fs::path& run) {
   write_file(run / "summary.json", canonical(to_json(summary)) + "\n");
   write_file(run / "summary.csv", to_csv(summary));
 
+  const std::vector<Claim> claims = test_claims(results);
+  write_file(run / "claims.json", canonical(to_json(summary.suite, claims)) + "\n");
+
   const PaperValues paper = paper_values(summary.suite);
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
-  write_file(run / "report.md", markdown(results, summary, paper, figures));
+  write_file(run / "report.md", markdown(results, summary, claims, paper, figures));
 }
 
 std::string table_text(const fs::path& run) {

@@ -43,6 +43,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     PlayedEpisode e;
     e.command =
         static_cast<std::size_t>(reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1));
+    e.scene = reader.at("scene").string();
     e.success = reader.at("success").boolean();
     e.failure = reader.at("failure").string();
     if (e.success != (e.failure == "none")) reader.at("failure").fail("\"none\" exactly on success");
@@ -97,6 +98,8 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
 }
 
+}  // namespace
+
 CellResult read_cell(const fs::path& directory) {
   CellResult cell;
   cell.key = directory.filename().string();
@@ -125,8 +128,6 @@ CellResult read_cell(const fs::path& directory) {
                                    (directory / name).string()));
   return cell;
 }
-
-}  // namespace
 
 std::vector<std::string> failure_words() {
   std::vector<std::string> words;

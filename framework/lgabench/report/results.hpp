@@ -23,6 +23,7 @@ struct CommandResult {
 
 struct PlayedEpisode {
   std::size_t command = 0;  // index into the cell's commands
+  std::string scene;        // its hash
   std::string failure;      // "none" exactly on success
   bool success = false;
   std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
@@ -54,6 +55,9 @@ struct RunResults {
 
 /// Every word that `failure` may be on an episode that was not won, in a fixed order.
 std::vector<std::string> failure_words();
+
+/// Reads a cell's directory. @throws InputError as read_run.
+CellResult read_cell(const fs::path& directory);
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
 /// @throws InputError naming file and line or place for a file that is missing, malformed, or not what status.json's

@@ -1,7 +1,10 @@
 #include <lgabench/report/statistics.hpp>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <lgabench/core/random.hpp>
@@ -11,15 +14,56 @@ namespace {
 
 constexpr double z = 1.959963984540054;  // standard normal quantile at .975
 
-// `chance`, what the episodes alone leave open; with several policies nowhere narrower than their bootstrap.
-Interval widened(const Interval& chance, const std::vector<Cluster>& clusters, std::string_view name) {
-  if (clusters.size() == 1 && clusters.front().size() == 1) return chance;
-  const Interval between = cluster_bootstrap(clusters, name);
-  return {std::min(chance.low, between.low), std::max(chance.high, between.high)};
+constexpr std::size_t resamples = 10000;
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-double mean(const Cluster& rates) {
-  return std::accumulate(rates.begin(), rates.end(), 0.0) / static_cast<double>(rates.size());
+bool one_policy(const std::vector<Cluster>& clusters) { return clusters.size() == 1 && clusters.front().size() == 1; }
+
+Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
+
+// cluster_mean of every resample, sorted.
+std::vector<double> resampled_means(const std::vector<Cluster>& clusters, std::string_view name) {
+  RandomStream random(name);
+  std::vector<double> means(resamples);
+  for (double& resampled : means) {
+    double sum = 0;
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+      const Cluster& rates = clusters[random.below(static_cast<std::uint32_t>(clusters.size()))];
+      const auto n = static_cast<std::uint32_t>(rates.size());
+      double within = 0;
+      for (std::uint32_t j = 0; j < n; ++j) within += rates[random.below(n)];
+      sum += within / n;
+    }
+    resampled = sum / static_cast<double>(clusters.size());
+  }
+  std::sort(means.begin(), means.end());
+  return means;
+}
+
+Interval percentile_interval(const std::vector<double>& sorted_means) {
+  constexpr std::size_t cut = resamples / 40;  // 2.5 % on either side
+  return {sorted_means[cut], sorted_means[resamples - 1 - cut]};
+}
+
+// Two-sided, that the mean is 0.
+double percentile_p(const std::vector<double>& sorted_means) {
+  constexpr double rounding = 1e-12;  // of a mean that is 0
+  const auto up_to_zero = std::upper_bound(sorted_means.begin(), sorted_means.end(), rounding) - sorted_means.begin();
+  const auto from_zero = sorted_means.end() - std::lower_bound(sorted_means.begin(), sorted_means.end(), -rounding);
+  return std::min(1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) / (resamples + 1));
+}
+
+// Of n ranks 1..n with random signs: the probability that the positive ones sum to `sum` at most.
+double signed_rank_tail(std::size_t n, std::size_t sum) {
+  std::vector<double> ways(n * (n + 1) / 2 + 1);  // whole numbers up to 2^25
+  ways[0] = 1;
+  for (std::size_t rank = 1; rank <= n; ++rank)
+    for (std::size_t s = ways.size(); s-- > rank;) ways[s] += ways[s - rank];
+  return std::accumulate(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(sum) + 1, 0.0) /
+         std::pow(2.0, static_cast<double>(n));
 }
 
 }  // namespace
@@ -56,31 +100,70 @@ double cluster_mean(const std::vector<Cluster>& clusters) {
 }
 
 Interval cluster_bootstrap(const std::vector<Cluster>& clusters, std::string_view name) {
-  constexpr std::size_t resamples = 10000, cut = resamples / 40;  // 2.5 % on either side
-  RandomStream random(name);
-  std::vector<double> means(resamples);
-  for (double& resampled : means) {
-    double sum = 0;
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-      const Cluster& rates = clusters[random.below(static_cast<std::uint32_t>(clusters.size()))];
-      const auto n = static_cast<std::uint32_t>(rates.size());
-      double within = 0;
-      for (std::uint32_t j = 0; j < n; ++j) within += rates[random.below(n)];
-      sum += within / n;
-    }
-    resampled = sum / static_cast<double>(clusters.size());
-  }
-  std::sort(means.begin(), means.end());
-  return {means[cut], means[resamples - 1 - cut]};
+  return percentile_interval(resampled_means(clusters, name));
 }
 
 Interval success_interval(const std::vector<Cluster>& clusters, int episodes, std::string_view name) {
-  return widened(wilson(cluster_mean(clusters) * episodes, episodes), clusters, name);
+  const Interval chance = wilson(cluster_mean(clusters) * episodes, episodes);
+  return one_policy(clusters) ? chance : hull(chance, cluster_bootstrap(clusters, name));
 }
 
-Interval change_interval(const std::vector<Cluster>& differences, int only_first, int only_second, int episodes,
-                         std::string_view name) {
-  return widened(paired_difference(only_first, only_second, episodes), differences, name);
+Change paired_change(const std::vector<Cluster>& differences, int only_first, int only_second, int episodes,
+                     std::string_view name) {
+  Change change{cluster_mean(differences), paired_difference(only_first, only_second, episodes),
+                mcnemar(only_first, only_second)};
+  if (one_policy(differences)) return change;
+  const std::vector<double> means = resampled_means(differences, name);
+  change.interval = hull(change.interval, percentile_interval(means));
+  change.p = std::max(change.p, percentile_p(means));
+  return change;
+}
+
+std::vector<double> holm(const std::vector<double>& p) {
+  std::vector<std::size_t> ascending(p.size());
+  std::iota(ascending.begin(), ascending.end(), 0);
+  std::sort(ascending.begin(), ascending.end(), [&p](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size());
+  double largest = 0;  // so far: one that is refused later cannot have a smaller value
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(p.size() - i) * p[ascending[i]]));
+    adjusted[ascending[i]] = largest;
+  }
+  return adjusted;
+}
+
+double wilcoxon(const std::vector<double>& differences) {
+  std::vector<double> d;
+  std::copy_if(differences.begin(), differences.end(), std::back_inserter(d), [](double x) { return x != 0; });
+  if (d.empty()) return 1;
+  std::sort(d.begin(), d.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto n = static_cast<double>(d.size());
+  double positive = 0, ties = 0;  // sum of their ranks; sum of t^3 - t over groups of t equals
+  for (std::size_t begin = 0, end; begin < d.size(); begin = end) {
+    for (end = begin + 1; end < d.size() && std::abs(d[end]) == std::abs(d[begin]);) ++end;
+    const auto t = static_cast<double>(end - begin);
+    ties += t * t * t - t;
+    for (std::size_t i = begin; i < end; ++i)
+      if (d[i] > 0) positive += static_cast<double>(begin + end + 1) / 2;  // the mean of the ranks begin+1..end
+  }
+  const double all = n * (n + 1) / 2;
+  constexpr std::size_t exact_up_to = 25;
+  if (d.size() <= exact_up_to && ties == 0)
+    return std::min(1.0, 2 * signed_rank_tail(d.size(), static_cast<std::size_t>(std::min(positive, all - positive))));
+  const double off = std::max(0.0, std::abs(positive - all / 2) - 0.5);
+  const double deviation = std::sqrt(n * (n + 1) * (2 * n + 1) / 24 - ties / 48);
+  return 2 * boost::math::cdf(boost::math::complement(boost::math::normal(), off / deviation));
+}
+
+Change paired_t(const std::vector<double>& differences) {
+  const double m = mean(differences), freedom = static_cast<double>(differences.size()) - 1;
+  double squares = 0;
+  for (const double d : differences) squares += (d - m) * (d - m);
+  if (squares == 0) return {m, {m, m}, m == 0 ? 1.0 : 0.0};
+  const double error = std::sqrt(squares / freedom / (freedom + 1));
+  const boost::math::students_t t(freedom);
+  const double half = boost::math::quantile(t, 0.975) * error;
+  return {m, {m - half, m + half}, 2 * boost::math::cdf(boost::math::complement(t, std::abs(m) / error))};
 }
 
 }  // namespace lgabench::report

@@ -141,10 +141,9 @@ void estimate(Draft& draft, const std::string& first_arm) {
   row.success = cluster_mean(rates);
   row.interval = success_interval(rates, row.episodes, stream_name("report", row));
   if (row.arm == first_arm || !all.paired) return;
-  row.shift =
-      Shift{first_arm, cluster_mean(differences),
-            change_interval(differences, all.only_first, all.only_here, row.episodes, stream_name("report/shift", row)),
-            all.same_actions};
+  const Change change =
+      paired_change(differences, all.only_first, all.only_here, row.episodes, stream_name("report/shift", row));
+  row.shift = Shift{first_arm, change.difference, change.interval, all.same_actions};
 }
 
 // The row of `cells`: all seeds of one (scenario, method, demonstrations).

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/report/claims.hpp>
 #include <lgabench/report/figure.hpp>
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/summary.hpp>
@@ -34,9 +35,12 @@ std::string shift_text(const Row* row);
 /// people, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
+/// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.
+std::string plain(const std::string& text);
+
 /// report.md. `figures` of each of the summary's tables, in their order.
-std::string markdown(const RunResults& run, const Summary& summary, const PaperValues& paper,
-                     const std::vector<std::vector<Figure>>& figures);
+std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
+                     const PaperValues& paper, const std::vector<std::vector<Figure>>& figures);
 
 /// The terminal's table.
 std::string plain_text(const RunResults& run, const Summary& summary);

@@ -1,0 +1,31 @@
+// lgabench compare: is run B worse than run A?
+#include <fmt/format.h>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/report/compare.hpp>
+
+namespace lgabench::cli {
+
+void add_compare(CLI::App& app, int& exit) {
+  struct Options {
+    std::string a, b;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand(
+      "compare",
+      "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
+  verb->add_option("A", options->a, "A run's directory")->required();
+  verb->add_option("B", options->b, "Another's, with the same suite, scenes and episodes")->required();
+  verb->add_flag("--json", options->json, "Print JSON instead of tables");
+  verb->footer("Example: lgabench compare runs/before runs/after");
+  verb->callback([options, &exit] {
+    const report::RunComparison comparison =
+        report::compare_runs(report::read_run(options->a), report::read_run(options->b));
+    fmt::print("{}",
+               options->json ? canonical(report::to_json(comparison)) + '\n' : report::comparison_text(comparison));
+    exit = comparison.regressed() ? regression : ok;
+  });
+}
+
+}  // namespace lgabench::cli

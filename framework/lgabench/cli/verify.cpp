@@ -1,0 +1,269 @@
+// lgabench verify: computes cells of a finished run again, and says whether they are what was recorded.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <set>
+#include <thread>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/harness/run_suite.hpp>
+#include <lgabench/report/agreement.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  fs::path run;
+  int sample = 3, jobs = 0;  // jobs 0: as many as there are cores
+  std::optional<std::uint32_t> seed;
+  bool all = false, json = false;
+  double timeout_s = 3600;
+  std::vector<fs::path> plugin_path;
+};
+
+// A directory that is gone when this is.
+struct Scratch {
+  fs::path path;
+  Scratch() {
+    std::string pattern = (fs::temp_directory_path() / "lgabench-verify-XXXXXX").string();
+    if (!::mkdtemp(pattern.data())) throw InputError(fmt::format("{}: {}", pattern, std::strerror(errno)));
+    path = pattern;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+};
+
+struct Recorded {
+  fs::path directory;
+  Cell cell;
+  Json status;
+};
+
+// What the run holds, sorted by key.
+struct Inventory {
+  std::vector<Recorded> cells;
+  std::vector<std::string> edited;  // a line for each cell that is not what its worker wrote
+  int failed = 0, not_played = 0;
+};
+
+// Why the cell is not what its worker wrote; empty if it is.
+std::string edited(const Recorded& cell) {
+  const Json& files = cell.status.at("files");
+  for (const char* name : {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json"}) {
+    std::error_code error;
+    if (!fs::exists(cell.directory / name, error)) return fmt::format("{} is missing", name);
+    if (files.value(name, Json()) != sha256_file(cell.directory / name))
+      return fmt::format("{} differs from its checksum in status.json", name);
+  }
+  if (key(cell.cell) != cell.directory.filename()) return "cell.json does not hash to the directory's name";
+  return "";
+}
+
+Inventory take_stock(const fs::path& run, const Json& record) {
+  const std::vector<std::string> listed = JsonReader(record, (run / "run.json").string()).at("cells").strings();
+  Inventory inventory;
+  for (const std::string& name : std::set<std::string>(listed.begin(), listed.end())) {
+    const fs::path directory = run / "cells" / name;
+    if (!fs::exists(directory / "status.json")) {
+      ++inventory.not_played;
+      continue;
+    }
+    try {
+      const std::string status_file = (directory / "status.json").string();
+      Recorded cell{directory, {}, read_json(status_file)};
+      const JsonReader status(cell.status, status_file);
+      if (status.at("state").string() == "failed") {
+        ++inventory.failed;
+        continue;
+      }
+      if (!status.at("files").json().is_object()) status.at("files").fail("an object");
+      if (!status.at("build").json().is_object()) status.at("build").fail("an object");
+      cell.cell = read_cell(read_json(directory / "cell.json"), (directory / "cell.json").string());
+      if (const std::string why = edited(cell); why.empty())
+        inventory.cells.push_back(std::move(cell));
+      else
+        inventory.edited.push_back(fmt::format("{}: {}", directory.string(), why));
+    } catch (const InputError& e) {
+      inventory.edited.emplace_back(e.what());
+    }
+  }
+  return inventory;
+}
+
+std::vector<Recorded> sampled(std::vector<Recorded> cells, std::size_t wanted, std::uint32_t seed) {
+  if (wanted >= cells.size()) return cells;
+  std::vector<int> order = RandomStream(fmt::format("verify/{}", seed)).permutation(static_cast<int>(cells.size()));
+  order.resize(wanted);
+  std::sort(order.begin(), order.end());
+  std::vector<Recorded> chosen;
+  for (const int i : order) chosen.push_back(std::move(cells[static_cast<std::size_t>(i)]));
+  return chosen;
+}
+
+// "WHAT abcdef01 there, 23456789 here" for every hash that differs.
+void add_differences(std::set<std::string>& why, const Json& there, const Json& here, const std::string& prefix) {
+  for (const auto& [name, hash] : here.items()) {
+    const std::string before = there.is_object() && there.contains(name) && there[name].is_string()
+                                   ? there[name].get<std::string>().substr(0, 8)
+                                   : "none";
+    if (!there.is_object() || there.value(name, Json()) != hash)
+      why.insert(fmt::format("{}{} ({} there, {} here)", prefix, name, before, hash.get<std::string>().substr(0, 8)));
+  }
+}
+
+// The cell as this installation's data make it; the worker refuses to compute with other data than the cell names.
+Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
+  Cell cell = recorded.cell;
+  const std::string file = (recorded.directory / "cell.json").string();
+  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"));
+  add_differences(why, recorded.cell.data, cell.data, "data: ");
+  return cell;
+}
+
+struct Verdict {
+  std::string key, title;
+  report::CellAgreement agreement;
+};
+
+Verdict judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
+  Verdict verdict{recorded.directory.filename().string(), recorded.cell.title(), {}};
+  const Json status = read_json(recomputed / "status.json");
+  verdict.agreement =
+      status.at("state") == "failed"
+          ? report::CellAgreement{report::Agreement::differs, "fails now: " + status.at("reason").get<std::string>()}
+          : report::compare_cells(recorded.directory, recomputed, excused);
+  return verdict;
+}
+
+// "14 bit-identical, 2 same outcomes"
+std::string counts(const std::vector<Verdict>& verdicts) {
+  using report::Agreement;
+  std::vector<std::string> parts;
+  for (const Agreement one :
+       {Agreement::identical, Agreement::same_outcomes, Agreement::within_interval, Agreement::differs})
+    if (const auto n = std::count_if(verdicts.begin(), verdicts.end(),
+                                     [one](const Verdict& v) { return v.agreement.agreement == one; }))
+      parts.push_back(fmt::format("{} {}", n, to_string(one)));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
+           const std::set<std::string>& why, const std::vector<Verdict>& verdicts) {
+  if (a.json) {
+    Json cells = Json::array();
+    for (const Verdict& v : verdicts)
+      cells.push_back({{"cell", v.key},
+                       {"title", v.title},
+                       {"agreement", to_string(v.agreement.agreement)},
+                       {"detail", v.agreement.detail}});
+    fmt::print("{}\n", canonical({{"cells", cells},
+                                  {"edited", inventory.edited},
+                                  {"other", why},
+                                  {"seed", seed},
+                                  {"finished", of},
+                                  {"failed", inventory.failed},
+                                  {"not_played", inventory.not_played}}));
+    return;
+  }
+  fmt::print("{} of {} finished cells computed again{}\n", verdicts.size(), of,
+             verdicts.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
+  fmt::print("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
+  for (const std::string& line : why) fmt::print("  {}\n", line);
+  for (const Verdict& v : verdicts)
+    fmt::print("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
+               v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
+  if (verdicts.size() > 1) fmt::print("{}\n", counts(verdicts));
+  if (inventory.failed) fmt::print("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
+  if (inventory.not_played) fmt::print("{} cells have not been played\n", inventory.not_played);
+}
+
+int verify(const Arguments& a) {
+  const Json record = read_json(a.run / "run.json");
+  const Inventory inventory = take_stock(a.run, record);
+  for (const std::string& line : inventory.edited) fmt::print(stderr, "edited: {}\n", line);
+  if (inventory.cells.empty() && inventory.edited.empty())
+    throw InputError((a.run / "cells").string() + ": no finished cell: nothing to verify");
+
+  const std::uint32_t seed = a.seed ? *a.seed : std::random_device()();
+  const std::size_t of = inventory.cells.size();
+  const std::vector<Recorded> cells = sampled(inventory.cells, a.all ? of : static_cast<std::size_t>(a.sample), seed);
+  std::set<std::string> why;  // of all cells
+  std::vector<Verdict> verdicts;
+  if (!cells.empty()) {
+    const Scratch scratch;
+    RunPlan plan;
+    std::vector<std::set<std::string>> excuses(cells.size());  // of each cell: why the same bytes are not owed
+    for (std::size_t i = 0; i < cells.size(); ++i) plan.cells.push_back(with_present_data(cells[i], excuses[i]));
+    plan.request = {{"suite", cells.front().cell.suite}, {"preset", ""}};
+    plan.command = "lgabench verify";
+    plan.out = scratch.path / "run";
+    plan.cache = scratch.path / "cache";
+    plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    plan.pool.timeout_s = a.timeout_s;
+    if (run_suite(plan, scan_plugins(plugin_directories(a.plugin_path))).interrupted) return interrupted;
+
+    const auto processor = [](const Json& run) {
+      return JsonReader(run, "run.json").at("machine").at("processor").string();
+    };
+    const std::string there = processor(record), here = processor(read_json(plan.out / "run.json"));
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Cell& cell = cells[i].cell;
+      const fs::path recomputed = plan.out / "cells" / key(plan.cells[i]);
+      if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
+      Json build = read_json(recomputed / "status.json").at("build"), before = cells[i].status.at("build");
+      for (const auto& [plugin, id] : {std::pair("engine", cell.engine), {"method", cell.method.id}})
+        for (Json* hashes : {&build, &before})
+          if (hashes->contains(plugin)) {
+            (*hashes)[fmt::format("{} {}", plugin, id)] = (*hashes)[plugin];
+            hashes->erase(plugin);
+          }
+      add_differences(excuses[i], before, build, "build: ");
+      verdicts.push_back(judge(cells[i], recomputed, !excuses[i].empty()));
+      why.insert(excuses[i].begin(), excuses[i].end());
+    }
+  }
+  print(a, inventory, seed, of, why, verdicts);
+  const bool differs = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) {
+    return v.agreement.agreement == report::Agreement::differs;
+  });
+  return differs || !inventory.edited.empty() ? regression : ok;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand(
+      "verify", "Compute cells of a finished run again with this build, and say whether they are what was recorded");
+  verb->add_option("RUN", a->run, "The run's directory")->required();
+  auto* sample = verb->add_option("--sample", a->sample, "How many cells, drawn at random")
+                     ->check(CLI::Range(1, 1 << 30))
+                     ->capture_default_str();
+  verb->add_option("--seed", a->seed, "Of the draw (default: another each time; it is printed)");
+  verb->add_flag("--all", a->all, "Every finished cell")->excludes(sample);
+  verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
+  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
+      ->check(CLI::Range(1.0, 1e7))
+      ->capture_default_str();
+  verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
+  verb->add_flag("--json", a->json, "Print JSON instead of lines");
+  verb->footer(
+      "Example: lgabench verify runs/q1 --sample 5\n"
+      "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
+      "differs. With the recorded build, processor and data the same bytes are owed. Exit 1 if a cell differs or was\n"
+      "edited.");
+  verb->callback([a, &exit] { exit = verify(*a); });
+}
+
+}  // namespace lgabench::cli

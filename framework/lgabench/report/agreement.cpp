@@ -1,0 +1,75 @@
+#include <lgabench/report/agreement.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include <lgabench/report/pairs.hpp>
+#include <lgabench/report/results.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// "episodes.jsonl line 3"; empty for equal files.
+std::string first_difference(const fs::path& a, const fs::path& b) {
+  const std::string x = read_file(a), y = read_file(b);
+  if (x == y) return "";
+  const auto at = std::mismatch(x.begin(), x.end(), y.begin(), y.end()).first;
+  return fmt::format("{} line {}", a.filename().string(), 1 + std::count(x.begin(), at, '\n'));
+}
+
+bool same_endings(const CellResult& a, const CellResult& b, const std::string& arm) {
+  const auto &x = a.episodes.at(arm), &y = b.episodes.at(arm);
+  return std::equal(x.begin(), x.end(), y.begin(), y.end(),
+                    [](const PlayedEpisode& e, const PlayedEpisode& f) { return e.failure == f.failure; });
+}
+
+// Of two cells whose bytes differ for a reason.
+CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& recomputed) {
+  if (recorded.arms != recomputed.arms) return {Agreement::differs, "other arms"};
+  bool same = true;
+  std::vector<double> p;
+  std::string changed;
+  for (const std::string& arm : recorded.arms) {
+    PolicyPair pair;
+    try {
+      pair = pair_policies(recorded, recomputed, arm);
+    } catch (const InputError& e) {  // other scenes or commands
+      return {Agreement::differs, e.what()};
+    }
+    same = same && same_endings(recorded, recomputed, arm);
+    p.push_back(mcnemar(pair.only_first, pair.only_second));
+    if (pair.only_first + pair.only_second > 0)
+      changed += fmt::format("{}arm {}: {} of {} won there, {} here (McNemar p = {:.3f})", changed.empty() ? "" : "; ",
+                             arm, pair.won_first, pair.episodes, pair.won_second, p.back());
+  }
+  if (same) return {Agreement::same_outcomes, ""};
+  if (changed.empty()) changed = "episodes failed otherwise";
+  const std::vector<double> adjusted = holm(p);
+  const bool chance = std::all_of(adjusted.begin(), adjusted.end(), [](double value) { return value > 0.05; });
+  return {chance ? Agreement::within_interval : Agreement::differs, changed};
+}
+
+}  // namespace
+
+std::string to_string(Agreement agreement) {
+  constexpr const char* words[] = {"bit-identical", "same outcomes", "within interval", "differs"};
+  return words[static_cast<int>(agreement)];
+}
+
+CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused) {
+  std::vector<std::string> differences;
+  for (const char* name : {"selection.json", "training.jsonl", "episodes.jsonl"})
+    if (std::string where = first_difference(recorded / name, recomputed / name); !where.empty())
+      differences.push_back(std::move(where));
+  if (differences.empty()) return {Agreement::identical, ""};
+  const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
+  if (!excused) return {Agreement::differs, where + ", though build, processor and data are those of the record"};
+  if (differences.front().rfind("selection.json", 0) == 0) return {Agreement::differs, where};
+  CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
+  outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);
+  return outcomes;
+}
+
+}  // namespace lgabench::report

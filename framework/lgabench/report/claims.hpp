@@ -1,0 +1,47 @@
+// The paper's claims, tested on a run.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/report/results.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::report {
+
+/// held, reversed: the data say so beyond chance. undecided: they do not. not_tested: they cannot.
+enum class Verdict { held, reversed, undecided, not_tested };
+/// "not tested", for readers.
+std::string to_string(Verdict verdict);
+
+/// Two rows on the mean over scenarios, paired by scenario, training seed and scene.
+struct ClaimedDifference {
+  std::string above, below, arm;  // rows; the change is above minus below
+  int demonstrations = 0;
+  Verdict verdict = Verdict::not_tested;
+  std::string reason;            // why not tested; else empty
+  std::optional<Change> change;  // none where not tested
+  double p_holm = 1;             // over the rows compared for this claim in this arm at this number of demonstrations
+  int scenarios = 0, policies = 0;
+};
+
+/// A claim on one (layout, engine).
+struct Claim {
+  std::string id, statement, layout, engine;
+  Verdict verdict = Verdict::not_tested;
+  std::string reason;  // why not tested; else empty
+  std::vector<ClaimedDifference> differences;
+};
+
+/// C1 to C5 for every (layout, engine) of the run. An ordering is held if the 95 % interval of the difference is above
+/// 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if the interval lies within the margin,
+/// reversed if outside. A claim is what the worst of its differences is: reversed, undecided, not tested, held.
+/// Deterministic. @throws InputError where cells of the run did not play the same scenes.
+std::vector<Claim> test_claims(const RunResults& run);
+
+/// claims.json (docs/formats), the terminal's table, and the section of report.md.
+Json to_json(const std::string& suite, const std::vector<Claim>& claims);
+std::string claims_text(const std::string& suite, const std::vector<Claim>& claims);
+std::string claims_markdown(const std::vector<Claim>& claims);
+
+}  // namespace lgabench::report

@@ -1,0 +1,159 @@
+#include <lgabench/report/compare.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include <lgabench/report/names.hpp>
+
+namespace lgabench::report {
+namespace {
+
+constexpr double refuse_up_to = 0.05;
+
+struct CellPair {
+  const CellResult *a, *b;
+};
+
+auto measures(const CellResult& c) {
+  return std::tuple(c.layout, c.engine, c.scenario, c.method, c.demonstrations, c.training_seed);
+}
+
+// Cells that finished in both runs; the others are counted.
+std::vector<CellPair> pair_cells(const RunResults& a, const RunResults& b, RunComparison& comparison) {
+  std::map<decltype(measures(a.cells.front())), const CellResult*> unpaired;
+  for (const CellResult& cell : b.cells) unpaired[measures(cell)] = &cell;
+  std::vector<CellPair> pairs;
+  for (const CellResult& cell : a.cells) {
+    const auto other = unpaired.find(measures(cell));
+    if (other == unpaired.end()) {
+      comparison.only_a += cell.failed ? 0 : 1;
+      continue;
+    }
+    const CellResult& there = *other->second;
+    unpaired.erase(other);
+    comparison.failed_a += cell.failed && !there.failed ? 1 : 0;
+    comparison.failed_b += there.failed && !cell.failed ? 1 : 0;
+    if (!cell.failed && !there.failed) pairs.push_back({&cell, &there});
+  }
+  for (const auto& item : unpaired) comparison.only_b += item.second->failed ? 0 : 1;
+  return pairs;
+}
+
+void expect_same_tests(const CellPair& pair) {
+  const CellResult &a = *pair.a, &b = *pair.b;
+  const auto refuse = [&a](const std::string& what) {
+    throw InputError(fmt::format("the runs cannot be compared: {}, layout {}: {}", a.scenario, a.layout, what));
+  };
+  if (a.arms != b.arms) refuse(fmt::format("arms {} in A, {} in B", fmt::join(a.arms, ", "), fmt::join(b.arms, ", ")));
+  if (a.episodes_per_arm != b.episodes_per_arm)
+    refuse(fmt::format("{} episodes an arm in A, {} in B", a.episodes_per_arm, b.episodes_per_arm));
+}
+
+using RowPlace = std::tuple<std::string, std::string, std::size_t, std::string, int, std::string, int>;
+
+std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
+  struct Draft {
+    ComparedRow row;
+    PairedRow policies;
+    std::vector<double> p;       // McNemar's, of each pair of cells
+    std::vector<int> direction;  // only_second - only_first
+  };
+  std::map<RowPlace, Draft> drafts;
+  for (const CellPair& pair : pairs) {
+    expect_same_tests(pair);
+    const CellResult& a = *pair.a;
+    for (std::size_t arm = 0; arm < a.arms.size(); ++arm) {
+      Draft& draft = drafts[{a.layout, a.engine, arm, a.kind, display_rank(a.method), a.method, a.demonstrations}];
+      ComparedRow& row = draft.row;
+      row.layout = a.layout, row.engine = a.engine, row.method = a.method, row.kind = a.kind;
+      row.arm = a.arms[arm];
+      row.demonstrations = a.demonstrations;
+      const PolicyPair policies = pair_policies(a, *pair.b, a.arms[arm]);
+      draft.policies.add(a.scenario, policies);
+      draft.p.push_back(mcnemar(policies.only_first, policies.only_second));
+      draft.direction.push_back(policies.only_second - policies.only_first);
+    }
+  }
+  std::vector<ComparedRow> rows;
+  std::vector<double> p;
+  for (auto& [place, draft] : drafts) {
+    ComparedRow& row = draft.row;
+    row.success_a = draft.policies.first_success();
+    row.success_b = draft.policies.second_success();
+    row.change = draft.policies.change(
+        fmt::format("compare/{}/{}/{}/{}/{}", row.layout, row.engine, row.method, row.demonstrations, row.arm));
+    row.scenarios = draft.policies.scenarios();
+    row.total = draft.policies.total();
+    row.cells = draft.policies.policies();
+    const std::vector<double> adjusted = holm(draft.p);
+    for (std::size_t i = 0; i < adjusted.size(); ++i)
+      if (adjusted[i] <= refuse_up_to) ++(draft.direction[i] < 0 ? row.cells_worse : row.cells_better);
+    p.push_back(row.change.p);
+    rows.push_back(std::move(row));
+  }
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].p_holm = adjusted[i];
+  return rows;
+}
+
+std::vector<ComparedTime> compare_times(const std::vector<CellPair>& pairs) {
+  std::map<std::tuple<std::string, std::string, int, std::string>, std::vector<CellPair>> methods;
+  for (const CellPair& pair : pairs)
+    methods[{pair.a->layout, pair.a->engine, display_rank(pair.a->method), pair.a->method}].push_back(pair);
+  std::vector<ComparedTime> times;
+  std::vector<double> p;
+  for (const auto& [place, cells] : methods)
+    for (const char* phase : phases) {
+      ComparedTime time;
+      std::tie(time.layout, time.engine, std::ignore, time.method) = place;
+      time.phase = phase;
+      time.cells = static_cast<int>(cells.size());
+      std::vector<double> differences;
+      for (const CellPair& pair : cells) {
+        const double a = pair.a->timing.at(phase), b = pair.b->timing.at(phase);
+        time.mean_a += a / time.cells;
+        time.mean_b += b / time.cells;
+        differences.push_back(b - a);
+      }
+      if (differences.size() > 1) {
+        time.change = paired_t(differences);
+        time.change.p = wilcoxon(differences);
+      } else {
+        time.change = {differences.front(), {}, 1};  // one pair says nothing about chance
+      }
+      p.push_back(time.change.p);
+      times.push_back(std::move(time));
+    }
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < times.size(); ++i) times[i].p_holm = adjusted[i];
+  return times;
+}
+
+}  // namespace
+
+bool ComparedRow::worse() const { return p_holm <= refuse_up_to && change.interval.high < 0; }
+bool ComparedRow::better() const { return p_holm <= refuse_up_to && change.interval.low > 0; }
+
+bool RunComparison::regressed() const {
+  return failed_b > 0 || std::any_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return row.worse(); });
+}
+
+RunComparison compare_runs(const RunResults& a, const RunResults& b) {
+  if (a.suite != b.suite)
+    throw InputError(fmt::format("the runs cannot be compared: suite {} in A, {} in B", a.suite, b.suite));
+  RunComparison comparison;
+  comparison.suite = a.suite;
+  const std::vector<CellPair> pairs = pair_cells(a, b, comparison);
+  if (pairs.empty() && comparison.failed_a + comparison.failed_b == 0)
+    throw InputError(
+        "the runs cannot be compared: no cell finished in both (scenario, layout, engine, method, demonstrations, "
+        "training seed)");
+  comparison.rows = compare_rows(pairs);
+  comparison.times = compare_times(pairs);
+  return comparison;
+}
+
+}  // namespace lgabench::report

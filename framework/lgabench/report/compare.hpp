@@ -1,0 +1,57 @@
+// Two runs of the same suite, cell by cell.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/report/pairs.hpp>
+#include <lgabench/report/results.hpp>
+
+namespace lgabench::report {
+
+/// Success of a row in run A and in run B, on the mean over the scenarios that both hold.
+struct ComparedRow {
+  std::string layout, engine, method, kind, arm;
+  int demonstrations = 0;
+  double success_a = 0, success_b = 0;
+  Change change;      // B minus A
+  double p_holm = 1;  // over all rows of the comparison
+  int scenarios = 0;
+  PolicyPair total;  // over all pairs of cells; first is A
+  // Pairs of cells, and those of them where B is worse or better by McNemar's exact test, Holm's p within the row.
+  int cells = 0, cells_worse = 0, cells_better = 0;
+
+  bool worse() const;   // than A beyond chance
+  bool better() const;  // likewise
+};
+
+/// Seconds of a phase in the pairs of cells of a row, whatever their scenario, demonstrations and seed.
+struct ComparedTime {
+  std::string layout, engine, method, phase;
+  int cells = 0;
+  double mean_a = 0, mean_b = 0;
+  Change change;      // B minus A by the paired t test; p is Wilcoxon's
+  double p_holm = 1;  // over all rows and phases
+};
+
+struct RunComparison {
+  std::string suite;
+  std::vector<ComparedRow> rows;    // by layout, engine, arm, kind, method, demonstrations
+  std::vector<ComparedTime> times;  // by layout, engine, method; phases in their order
+  int only_a = 0, only_b = 0;       // finished cells that measure what the other run does not
+  int failed_a = 0, failed_b = 0;   // cells that finished in the other run alone
+
+  /// Some row is worse in B beyond chance, or a cell that finished in A failed in B.
+  bool regressed() const;
+};
+
+/// Pairs cells by what they measure: scenario, layout, engine, row, demonstrations, training seed; their episodes by
+/// arm and index. Deterministic.
+/// @throws InputError, in one line that says what differs, for runs of other suites, episodes, arms, scenes or
+/// commands, and for runs that have no cell in common.
+RunComparison compare_runs(const RunResults& a, const RunResults& b);
+
+/// Every member, under its name; and tables for a terminal.
+Json to_json(const RunComparison& comparison);
+std::string comparison_text(const RunComparison& comparison);
+
+}  // namespace lgabench::report

@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/report/compare.hpp>
+#include <lgabench/report/names.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// Fixed-width columns, the first `words` to the left.
+class Columns {
+ public:
+  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  std::string text() const {
+    std::vector<std::size_t> wide(rows_.front().size());
+    for (const auto& row : rows_)
+      for (std::size_t i = 0; i < row.size(); ++i) wide[i] = std::max(wide[i], row[i].size());
+    std::string all;
+    for (const auto& row : rows_) {
+      std::string line;
+      for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("  {:<{}}", row[i], wide[i]);
+      all += line.erase(line.find_last_not_of(' ') + 1) + '\n';
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<std::string>> rows_;
+};
+
+std::string verdict(const ComparedRow& row) {
+  return row.worse() ? "worse" : row.better() ? "better" : row.total.same_actions ? "same actions" : "";
+}
+
+Json interval_json(const Interval& interval) { return {interval.low, interval.high}; }
+
+std::string seconds_interval(const ComparedTime& time) {
+  return time.cells < 2 ? fmt::format("{:+.3f}", time.change.difference)
+                        : fmt::format("{:+.3f} [{:+.3f}, {:+.3f}]", time.change.difference, time.change.interval.low,
+                                      time.change.interval.high);
+}
+
+}  // namespace
+
+Json to_json(const RunComparison& comparison) {
+  Json rows = Json::array(), times = Json::array();
+  for (const ComparedRow& r : comparison.rows)
+    rows.push_back({{"layout", r.layout},
+                    {"engine", r.engine},
+                    {"method", r.method},
+                    {"method_kind", r.kind},
+                    {"arm", r.arm},
+                    {"demonstrations", r.demonstrations},
+                    {"success_a", r.success_a},
+                    {"success_b", r.success_b},
+                    {"difference", r.change.difference},
+                    {"interval", interval_json(r.change.interval)},
+                    {"p", r.change.p},
+                    {"p_holm", r.p_holm},
+                    {"scenarios", r.scenarios},
+                    {"cells", r.cells},
+                    {"cells_worse", r.cells_worse},
+                    {"cells_better", r.cells_better},
+                    {"episodes", r.total.episodes},
+                    {"only_a", r.total.only_first},
+                    {"only_b", r.total.only_second},
+                    {"same_actions", r.total.same_actions},
+                    {"worse", r.worse()},
+                    {"better", r.better()}});
+  for (const ComparedTime& t : comparison.times)
+    times.push_back({{"layout", t.layout},
+                     {"engine", t.engine},
+                     {"method", t.method},
+                     {"phase", t.phase},
+                     {"cells", t.cells},
+                     {"mean_a", t.mean_a},
+                     {"mean_b", t.mean_b},
+                     {"difference", t.change.difference},
+                     {"interval", t.cells < 2 ? Json(nullptr) : interval_json(t.change.interval)},
+                     {"p", t.change.p},
+                     {"p_holm", t.p_holm}});
+  return {{"suite", comparison.suite},
+          {"rows", rows},
+          {"times", times},
+          {"regressed", comparison.regressed()},
+          {"only_a", comparison.only_a},
+          {"only_b", comparison.only_b},
+          {"failed_a", comparison.failed_a},
+          {"failed_b", comparison.failed_b}};
+}
+
+std::string comparison_text(const RunComparison& comparison) {
+  std::string text;
+  if (!comparison.rows.empty()) {
+    text += fmt::format("{}: success, B - A [95 % interval], Holm's p over all rows\n\n", comparison.suite);
+    Columns rows;
+    rows.add({"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p", "cells worse/better", ""});
+    for (const ComparedRow& r : comparison.rows)
+      rows.add({display_name(r.method), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
+                fmt::format("{:.2f}", r.success_a), fmt::format("{:.2f}", r.success_b), change_text(r.change),
+                p_text(r.p_holm), fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), verdict(r)});
+    text += rows.text() +
+            "\nSeconds of a cell's phases, B - A [95 % interval of Student's t], Holm's p of Wilcoxon's test\n\n";
+    Columns times;
+    times.add({"method", "layout", "engine", "phase", "A", "B", "B - A", "p", "cells"});
+    for (const ComparedTime& t : comparison.times)
+      times.add({display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2),
+                 fmt::format("{:.3f}", t.mean_a), fmt::format("{:.3f}", t.mean_b), seconds_interval(t),
+                 p_text(t.p_holm), std::to_string(t.cells)});
+    text += times.text() + '\n';
+  }
+  for (const auto& [n, what] : {std::pair(comparison.only_a, "in A alone: not compared"),
+                                {comparison.only_b, "in B alone: not compared"},
+                                {comparison.failed_a, "failed in A and finished in B"},
+                                {comparison.failed_b, "finished in A and failed in B"}})
+    if (n > 0) text += fmt::format("{} {} {}\n", n, n == 1 ? "cell" : "cells", what);
+  return text;
+}
+
+}  // namespace lgabench::report

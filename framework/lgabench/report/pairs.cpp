@@ -1,0 +1,61 @@
+#include <lgabench/report/pairs.hpp>
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+namespace lgabench::report {
+
+PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm) {
+  const std::vector<PlayedEpisode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(
+        fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, what));
+  };
+  if (a.size() != b.size()) refuse(fmt::format("{} and {} episodes", a.size(), b.size()));
+  PolicyPair pair;
+  pair.episodes = static_cast<int>(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].scene != b[i].scene) refuse(fmt::format("scenes {} and {} at index {}", a[i].scene, b[i].scene, i));
+    if (a[i].command != b[i].command)
+      refuse(fmt::format("commands {} and {} at index {}", a[i].command, b[i].command, i));
+    pair.won_first += a[i].success ? 1 : 0;
+    pair.won_second += b[i].success ? 1 : 0;
+    pair.only_first += a[i].success && !b[i].success ? 1 : 0;
+    pair.only_second += b[i].success && !a[i].success ? 1 : 0;
+    pair.same_actions = pair.same_actions && a[i].action == b[i].action;
+  }
+  return pair;
+}
+
+void PairedRow::add(const std::string& scenario, const PolicyPair& pair) {
+  const std::size_t at = index_.emplace(scenario, differences_.size()).first->second;
+  for (auto* clusters : {&first_, &second_, &differences_})
+    if (at == clusters->size()) clusters->emplace_back();
+  first_[at].push_back(static_cast<double>(pair.won_first) / pair.episodes);
+  second_[at].push_back(static_cast<double>(pair.won_second) / pair.episodes);
+  differences_[at].push_back(pair.difference());
+  total_.episodes += pair.episodes;
+  total_.won_first += pair.won_first;
+  total_.won_second += pair.won_second;
+  total_.only_first += pair.only_first;
+  total_.only_second += pair.only_second;
+  total_.same_actions = total_.same_actions && pair.same_actions;
+}
+
+int PairedRow::policies() const {
+  return std::accumulate(differences_.begin(), differences_.end(), 0,
+                         [](int n, const Cluster& seeds) { return n + static_cast<int>(seeds.size()); });
+}
+
+Change PairedRow::change(const std::string& name) const {
+  return paired_change(differences_, total_.only_first, total_.only_second, total_.episodes, name);
+}
+
+std::string change_text(const Change& change) {
+  return fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", change.difference, change.interval.low, change.interval.high);
+}
+
+std::string p_text(double p) { return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
+
+}  // namespace lgabench::report

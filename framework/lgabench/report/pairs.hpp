@@ -1,0 +1,50 @@
+// Policies that played the same scenes, paired episode by episode.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include <lgabench/report/results.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::report {
+
+/// Two policies on the scenes of one arm.
+struct PolicyPair {
+  int episodes = 0, won_first = 0, won_second = 0;
+  int only_first = 0, only_second = 0;  // scenes that one alone won
+  bool same_actions = true;             // in every scene the same, bit for bit
+
+  double difference() const { return static_cast<double>(only_second - only_first) / episodes; }
+};
+
+/// @throws InputError, in one line, where the two did not play the same scenes with the same commands. @pre both cells
+/// finished and have the arm
+PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm);
+
+/// Pairs of policies of one row of a table: scenarios, and training seeds within each.
+class PairedRow {
+ public:
+  void add(const std::string& scenario, const PolicyPair& pair);
+
+  const PolicyPair& total() const { return total_; }  // of all pairs
+  int scenarios() const { return static_cast<int>(differences_.size()); }
+  int policies() const;
+  /// Mean over scenarios of the mean over training seeds of the policies' success.
+  double first_success() const { return cluster_mean(first_); }
+  double second_success() const { return cluster_mean(second_); }
+  /// paired_change of second minus first; `name` seeds its random stream. @pre not empty
+  Change change(const std::string& name) const;
+
+ private:
+  std::map<std::string, std::size_t> index_;  // of each scenario in what follows
+  std::vector<Cluster> first_, second_, differences_;
+  PolicyPair total_;
+};
+
+/// "+0.10 [-0.03, +0.23]"
+std::string change_text(const Change& change);
+/// "p = 0.013", "p < 0.001"
+std::string p_text(double p);
+
+}  // namespace lgabench::report

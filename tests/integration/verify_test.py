@@ -1,0 +1,189 @@
+"""`lgabench verify`: a run made again by the build that made it, and runs whose records were changed.
+
+LGABENCH_BUILD names the build tree. By hand: python3 verify_test.py
+"""
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
+PROGRAM = BUILD / "bin" / "lgabench"
+# One cell that trains, for a second, and the three reference rows.
+RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "4",
+       "--set", "lga.epochs=20"]
+
+
+def canonical(value):
+    return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False) + "\n"
+
+
+def rewrite(cell, name, change):
+    """Changes each line of a cell's file, and the checksum with it: nothing in the directory contradicts itself."""
+    lines = [change(json.loads(line)) for line in (cell / name).read_text().splitlines()]
+    (cell / name).write_text("".join(map(canonical, lines)))
+    status = json.loads((cell / "status.json").read_text())
+    status["files"][name] = hashlib.sha256((cell / name).read_bytes()).hexdigest()
+    (cell / "status.json").write_text(canonical(status))
+
+
+class Verify(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.base, ignore_errors=True)
+        cls.environment = dict(os.environ, LGABENCH_CACHE=str(cls.base / "cache"), TMPDIR=str(cls.base))
+        subprocess.run([PROGRAM, *RUN, "--out", cls.base / "run"], check=True, capture_output=True, env=cls.environment)
+
+    def setUp(self):
+        self.run_directory = pathlib.Path(tempfile.mkdtemp(dir=self.base)) / "run"
+        shutil.copytree(self.base / "run", self.run_directory)
+        self.cell = next(path.parent for path in self.run_directory.glob("cells/*/cell.json")
+                         if json.loads(path.read_text())["method"]["id"] == "lga")
+
+    def verify(self, *arguments, expect):
+        done = subprocess.run([PROGRAM, "verify", self.run_directory, *arguments], capture_output=True, text=True,
+                              env=self.environment, timeout=300)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        self.assertEqual(list(self.base.glob("lgabench-verify-*")), [], "scratch was left behind")
+        return done
+
+    def line_of_the_cell(self, output):
+        return next(line for line in output.splitlines() if self.cell.name in line)
+
+    def change(self, name, line, **members):
+        lines = iter(range(len((self.cell / name).read_text().splitlines())))
+        rewrite(self.cell, name, lambda value: {**value, **members} if next(lines) == line else value)
+
+    def change_status(self, member, name, value):
+        status = json.loads((self.cell / "status.json").read_text())
+        status[member][name] = value
+        (self.cell / "status.json").write_text(canonical(status))
+
+    def test_a_run_of_this_build_is_bit_identical(self):
+        before = {p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}
+        said = self.verify("--all", expect=0).stdout
+        self.assertIn("4 of 4 finished cells computed again\nbuild, processor and data are those of the record", said)
+        self.assertEqual(len(re.findall("^bit-identical ", said, re.M)), 4)
+        self.assertEqual({p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}, before)
+
+    def test_the_sample_is_the_seeds(self):
+        one, again = (json.loads(self.verify("--sample", "2", "--seed", "5", "--json", expect=0).stdout) for _ in "ab")
+        self.assertEqual(one, again)
+        self.assertEqual((len(one["cells"]), one["seed"], one["finished"]), (2, 5, 4))
+
+    def test_a_changed_episode_is_found(self):
+        episode = json.loads((self.cell / "episodes.jsonl").read_text().splitlines()[2])
+        other = (dict(success=False, failure="missed_object") if episode["success"]
+                 else dict(success=True, failure="none"))
+        self.change("episodes.jsonl", 2, **other)
+        said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
+        self.assertRegex(said, r"^differs +\w+ lga.*: from episodes.jsonl line 3, though build, processor and data are")
+
+    def test_a_changed_training_line_is_found(self):
+        self.change("training.jsonl", 0, loss=.125)
+        said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
+        self.assertRegex(said, r"^differs .*: from training.jsonl line 1, though")
+
+    def test_another_build_is_named_and_excuses_other_bytes(self):
+        self.change("training.jsonl", 0, loss=.125)
+        self.change_status("build", "liblgabench_learning.so", "0" * 64)
+        said = self.verify("--all", expect=0).stdout
+        self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
+        self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
+        self.assertIn("\n3 bit-identical, 1 same outcomes\n", said)
+
+    def test_other_data_are_named(self):
+        shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")
+        with open(self.run_directory / "data" / "answers" / "gpt4.json", "a") as file:
+            file.write("\n")  # the same answers, other bytes
+        self.environment = {**self.environment, "LGABENCH_DATA": str(self.run_directory / "data")}
+        said = self.verify("--all", expect=0).stdout
+        self.assertRegex(said, r"not as recorded:\n  data: answers \([0-9a-f]{8} there, [0-9a-f]{8} here\)\n")
+        self.assertIn("\n4 bit-identical\n", said)
+
+    def test_another_processor_is_named(self):
+        run = json.loads((self.run_directory / "run.json").read_text())
+        run["machine"]["processor"] = "Z80"
+        (self.run_directory / "run.json").write_text(json.dumps(run))
+        said = self.verify("--sample", "1", expect=0).stdout
+        self.assertIn("\n  processor (Z80 there, ", said)
+
+    def test_an_edited_cell_is_said_before_anything_runs(self):
+        with open(self.cell / "episodes.jsonl", "a") as file:
+            file.write("\n")
+        done = self.verify("--all", expect=1)
+        self.assertRegex(done.stderr.splitlines()[0],
+                         rf"^edited: .*{self.cell.name}: episodes.jsonl differs from its checksum in status.json")
+        self.assertIn("3 of 3 finished cells", done.stdout)
+
+    def test_a_cell_under_another_name_is_edited(self):
+        self.change("cell.json", 0, training_seed=1)
+        self.assertIn("cell.json does not hash to the directory's name", self.verify("--sample", "1", expect=1).stderr)
+
+    def test_no_run(self):
+        shutil.rmtree(self.run_directory / "cells")
+        self.assertIn("no finished cell: nothing to verify", self.verify(expect=2).stderr)
+        (self.run_directory / "run.json").unlink()
+        self.assertIn("run.json: cannot be read", self.verify(expect=2).stderr)
+
+
+class Compare(unittest.TestCase):
+    """Exit statuses of compare and report --claims."""
+
+    def setUp(self):
+        self.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, self.base, ignore_errors=True)
+        self.run_small("a")
+
+    def call(self, *arguments, expect=0):
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, cwd=self.base, timeout=300,
+                              env=dict(os.environ, LGABENCH_CACHE=str(self.base / "cache")))
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done
+
+    def run_small(self, out, episodes="8"):
+        self.call("run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
+                  "--set", "lga.epochs=5", "--set", "gcbc_dart.epochs=1", "--episodes", episodes, "--out", out)
+
+    def make(self, run, method, success):
+        """Lets every episode of a method end so, under the name of the method as shipped."""
+        for path in (self.base / run).glob("cells/*/cell.json"):
+            if json.loads(path.read_text())["method"]["id"] == method:
+                rewrite(path.parent, "episodes.jsonl", lambda episode: {
+                    **episode, "success": success, "failure": "none" if success else "missed_object"})
+                rewrite(path.parent, "cell.json", lambda cell: {**cell, "method": {**cell["method"], "name": method}})
+
+    def test_compare(self):
+        self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 5)
+        self.assertFalse(json.loads(self.call("compare", "a", "a", "--json").stdout)["regressed"])
+        shutil.copytree(self.base / "a", self.base / "worse")
+        self.make("a", "oracle", True)
+        self.make("worse", "oracle", False)
+        self.assertRegex(self.call("compare", "a", "worse", expect=1).stdout, r"oracle .* -1.00 \[.* worse\n")
+        self.assertRegex(self.call("compare", "worse", "a").stdout, r"oracle .* better\n")
+
+    def test_compare_refuses_other_episodes(self):
+        self.run_small("b", episodes="2")
+        refused = self.call("compare", "a", "b", expect=2)
+        self.assertEqual(refused.stdout, "")
+        self.assertRegex(refused.stderr, r"^lgabench: the runs cannot be compared: .*8 episodes an arm in A, 2 in B\n$")
+
+    def test_claims(self):
+        self.assertIn("not tested: no row lga", self.call("report", "a", "--claims").stdout)
+        self.make("a", "lga", False)
+        self.make("a", "gcbc_dart", True)
+        said = self.call("report", "a", "--claims", expect=1).stdout
+        self.assertRegex(said, r"reversed +n=10 +test +LGA − GCBC-DART  -1.00 \[")
+        claims = json.loads(self.call("report", "a", "--claims", "--format", "json", expect=1).stdout)["claims"]
+        self.assertEqual([claim["verdict"] for claim in claims], ["reversed"] + 4 * ["not tested"])
+        self.call("report", "a")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

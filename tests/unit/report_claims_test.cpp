@@ -1,0 +1,218 @@
+// The paper's claims on fabricated runs.
+#include <gtest/gtest.h>
+
+#include <lgabench/report/claims.hpp>
+#include <lgabench/report/report.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+using report::Claim;
+using report::ClaimedDifference;
+using report::Verdict;
+using Spec = FabricatedRun::Spec;
+
+Claim claim_of(const FabricatedRun& run, const std::string& id, const std::string& layout = "cells") {
+  Claim found;
+  for (Claim& claim : report::test_claims(report::read_run(run.save().path)))
+    if (claim.id == id && claim.layout == layout) {
+      EXPECT_EQ(found.id, "") << "twice";
+      found = std::move(claim);
+    }
+  EXPECT_EQ(found.id, id);
+  return found;
+}
+
+const ClaimedDifference& between(const Claim& claim, const std::string& above, const std::string& below,
+                                 const std::string& arm = "test", int n = 20) {
+  for (const ClaimedDifference& d : claim.differences)
+    if (d.above == above && d.below == below && d.arm == arm && d.demonstrations == n) return d;
+  ADD_FAILURE() << "no difference " << above << " " << below << " " << arm << " " << n;
+  static const ClaimedDifference none;
+  return none;
+}
+
+// Three seeds of two scenarios; `won` of 20 in each.
+void add_row(FabricatedRun& run, const std::string& method, int won, int demonstrations = 20) {
+  for (const char* scenario : {"heart", "letter"})
+    for (int seed = 0; seed < 3; ++seed) run.add({method, won, scenario, demonstrations, seed});
+}
+
+TEST(Claims, C1HeldAtEveryNumberOfDemonstrations) {
+  FabricatedRun run;
+  for (const int n : {10, 20}) {
+    add_row(run, "lga", 18, n);
+    add_row(run, "gcbc_seg", 9, n);
+    add_row(run, "gcbc_dart", 2, n);
+  }
+  const Claim c1 = claim_of(run, "C1");
+  EXPECT_EQ(c1.verdict, Verdict::held);
+  EXPECT_EQ(c1.differences.size(), 4u);
+  const ClaimedDifference& d = between(c1, "lga", "gcbc_seg", "test", 10);
+  EXPECT_NEAR(d.change->difference, .45, 1e-12);
+  EXPECT_EQ(d.scenarios, 2);
+  EXPECT_EQ(d.policies, 6);
+  EXPECT_EQ(claim_of(run, "C3").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C3").reason, "needs a run of suite q2");
+  EXPECT_EQ(claim_of(run, "C5").reason, "no human data");
+}
+
+TEST(Claims, OneReversedDifferenceReversesTheClaim) {
+  FabricatedRun run;
+  add_row(run, "lga", 18, 10);
+  add_row(run, "gcbc_seg", 9, 10);
+  add_row(run, "gcbc_dart", 2, 10);
+  add_row(run, "lga", 5, 20);
+  add_row(run, "gcbc_seg", 15, 20);
+  add_row(run, "gcbc_dart", 2, 20);
+  const Claim c1 = claim_of(run, "C1");
+  EXPECT_EQ(c1.verdict, Verdict::reversed);
+  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 20).verdict, Verdict::reversed);
+  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 10).verdict, Verdict::held);
+}
+
+TEST(Claims, UndecidedWhereChanceMayHaveDoneIt) {
+  FabricatedRun run;
+  run.add({"lga", 12});
+  run.add({"gcbc_seg", 9});
+  run.add({"gcbc_dart", 2});
+  const Claim c1 = claim_of(run, "C1");
+  EXPECT_EQ(c1.verdict, Verdict::undecided);
+  EXPECT_EQ(between(c1, "lga", "gcbc_dart").verdict, Verdict::held);
+}
+
+// Six scenes that one alone won: McNemar's p is .03125, beyond chance alone, but not as one of two.
+TEST(Claims, HolmCountsTheRowsCompared) {
+  FabricatedRun run;
+  run.add({"lga", 12});
+  run.add({"gcbc_seg", 6});
+  EXPECT_EQ(between(claim_of(run, "C1"), "lga", "gcbc_seg").verdict, Verdict::held);
+  run.add({"gcbc_dart", 6});
+  const ClaimedDifference d = between(claim_of(run, "C1"), "lga", "gcbc_seg");
+  EXPECT_NEAR(d.change->p, .03125, 1e-12);
+  EXPECT_NEAR(d.p_holm, .0625, 1e-12);
+  EXPECT_EQ(d.verdict, Verdict::undecided);
+}
+
+TEST(Claims, NotTestedSaysWhatIsMissing) {
+  FabricatedRun run;
+  add_row(run, "lga", 18);
+  add_row(run, "gcbc_dart", 2);
+  EXPECT_EQ(claim_of(run, "C1").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C1").reason, "no row gcbc_seg");
+  // A variant is not the method as the paper has it.
+  add_row(run, "gcbc_seg+dart=none", 2);
+  EXPECT_EQ(claim_of(run, "C1").reason, "no row gcbc_seg");
+  // A policy that failed has no pair: who fails on hard scenarios would gain by it.
+  add_row(run, "gcbc_seg", 2);
+  EXPECT_EQ(claim_of(run, "C1").verdict, Verdict::held);
+  run.add({"lga", 18, "bowl"});
+  run.add({"gcbc_dart", 2, "bowl"});
+  run.add_failed({"gcbc_seg", 18, "bowl"}, "plugin");
+  EXPECT_EQ(claim_of(run, "C1").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C1").reason, "6 of 7 policies finished in both rows");
+}
+
+TEST(Claims, OfEachLayout) {
+  FabricatedRun run;
+  for (const auto& [method, cells, continuous] :
+       {std::tuple("lga", 18, 2), {"gcbc_seg", 2, 18}, {"gcbc_dart", 2, 18}}) {
+    run.add({method, cells});
+    run.add({method, continuous, "heart", 20, 0, "method", "continuous"});
+  }
+  EXPECT_EQ(claim_of(run, "C1", "cells").verdict, Verdict::held);
+  EXPECT_EQ(claim_of(run, "C1", "continuous").verdict, Verdict::reversed);
+}
+
+void add_human(FabricatedRun& run, const std::string& provenance, int lga, int human) {
+  for (const auto& [method, won] : {std::pair("lga", lga), {"human", human}})
+    for (const char* scenario : {"heart", "letter", "bowl", "ring", "star"})
+      for (int seed = 0; seed < 3; ++seed) {
+        Spec spec{method, won, scenario, 50, seed};
+        if (spec.method == "human") spec.provenance = provenance;
+        run.add(spec);
+      }
+}
+
+TEST(Claims, C2NeedsPeople) {
+  FabricatedRun run;
+  add_human(run, "", 18, 18);  // the truth, standing in for a person
+  EXPECT_EQ(claim_of(run, "C2").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C2").reason, "no human data at 50 demonstrations");
+}
+
+TEST(Claims, C2IsAnEquivalenceWithinATenth) {
+  for (const auto& [human, verdict] :
+       {std::pair(18, Verdict::held), {14, Verdict::reversed}, {16, Verdict::undecided}}) {
+    FabricatedRun run;
+    add_human(run, "human", 18, human);
+    EXPECT_EQ(claim_of(run, "C2").verdict, verdict) << human;
+  }
+}
+
+// As q2: three seeds of two scenarios, two arms.
+void add_shifted(FabricatedRun& run, const std::string& method, int control, int texture) {
+  for (const char* scenario : {"q2_heart", "q2_bowl"})
+    for (int seed = 0; seed < 3; ++seed) {
+      Spec spec{method, 0, scenario, 50, seed};
+      spec.arms = {{"control", control}, {"texture", texture}};
+      run.add(spec);
+    }
+}
+
+TEST(Claims, C3TakesTheBetterLgaLInEachArm) {
+  FabricatedRun run;
+  run.run["suite"] = "q2";
+  add_shifted(run, "lga", 20, 20);
+  add_shifted(run, "lga_s", 19, 19);
+  add_shifted(run, "gcbc_dart", 3, 1);
+  add_shifted(run, "lga_l", 4, 9);
+  EXPECT_EQ(claim_of(run, "C3").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C3").reason, "no row lga_l+image=rgb");
+  add_shifted(run, "lga_l+image=rgb", 12, 2);
+  const Claim c3 = claim_of(run, "C3");
+  EXPECT_EQ(c3.verdict, Verdict::held);
+  EXPECT_EQ(c3.differences.size(), 8u);
+  EXPECT_NEAR(between(c3, "lga", "lga_l+image=rgb", "control", 50).change->difference, .4, 1e-12);
+  EXPECT_NEAR(between(c3, "lga_s", "lga_l", "texture", 50).change->difference, .5, 1e-12);
+}
+
+TEST(Claims, C4LooksAtUnseenCommandsAlone) {
+  FabricatedRun run;
+  run.run["suite"] = "q3";
+  for (const auto& [method, seen, unseen] :
+       {std::tuple("lga", 2, 20), {"lga_s", 2, 20}, {"gcbc_dart", 20, 3}, {"lga_l", 20, 4}, {"lga_l+image=rgb", 20, 5}})
+    for (int seed = 0; seed < 3; ++seed) {
+      Spec spec{method, 0, "q3_fruit", 50, seed};
+      spec.arms = {{"named", seen, {0, 1}}, {"kind", unseen, {2}}};
+      spec.commands = {{"Bring me a tomato.", true}, {"Bring me an apple.", true}, {"Bring me a fruit.", false}};
+      run.add(spec);
+    }
+  const Claim c4 = claim_of(run, "C4");
+  EXPECT_EQ(c4.verdict, Verdict::held);
+  EXPECT_EQ(c4.differences.size(), 4u);
+  EXPECT_NEAR(between(c4, "lga", "lga_l+image=rgb", "kind", 50).change->difference, .75, 1e-12);
+}
+
+TEST(Claims, StandInTheReportAndInClaimsJson) {
+  FabricatedRun run;
+  run.add({"lga", 20});
+  run.add({"gcbc_seg", 2});
+  run.add({"gcbc_dart", 2});
+  report::write_report(run.save().path);
+  const std::string page = read_file(run.path / "report.md");
+  EXPECT_SAYS(page, "## The paper's claims");
+  EXPECT_SAYS(page, "| cells | mujoco | **held** |");
+  EXPECT_SAYS(page, "| C1 | cells | mujoco | test | 20 | LGA − GCBC-SEG | +0.90 [");
+  const Json json = read_json(run.path / "claims.json");
+  EXPECT_EQ(json.at("claims").at(0).at("verdict"), "held");
+  EXPECT_NEAR(json.at("claims").at(0).at("differences").at(0).at("difference").get<double>(), .9, 1e-12);
+  const std::string before = read_file(run.path / "claims.json");
+  report::write_report(run.path);
+  EXPECT_EQ(read_file(run.path / "claims.json"), before);
+}
+
+}  // namespace
+}  // namespace lgabench

@@ -1,0 +1,191 @@
+// Comparisons of fabricated runs, and of a cell with itself computed again.
+#include <gtest/gtest.h>
+
+#include <lgabench/report/agreement.hpp>
+#include <lgabench/report/compare.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+using report::Agreement;
+using report::ComparedRow;
+using report::RunComparison;
+using Spec = FabricatedRun::Spec;
+
+RunComparison compared(const FabricatedRun& a, const FabricatedRun& b) {
+  return report::compare_runs(report::read_run(a.save().path), report::read_run(b.save().path));
+}
+
+std::string refusal(const FabricatedRun& a, const FabricatedRun& b) {
+  try {
+    compared(a, b);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Compare, EqualRunsDifferInNothing) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.add({"oracle", 20, "heart", 0, 0, "reference"});
+  const RunComparison comparison = compared(run, run);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  for (const ComparedRow& row : comparison.rows) {
+    EXPECT_EQ(row.change.difference, 0);
+    EXPECT_EQ(row.p_holm, 1);
+    EXPECT_TRUE(row.total.same_actions);
+  }
+  EXPECT_FALSE(comparison.regressed());
+  for (const auto& time : comparison.times) EXPECT_EQ(time.change.difference, 0);
+}
+
+TEST(Compare, FindsTheRowThatIsWorse) {
+  FabricatedRun a, b;
+  for (int seed = 0; seed < 3; ++seed) {
+    a.add({"lga", 18, "heart", 20, seed});
+    b.add({"lga", 8, "heart", 20, seed});
+    a.add({"gcbc_dart", 2, "heart", 20, seed});
+    b.add({"gcbc_dart", 3, "heart", 20, seed});
+  }
+  const RunComparison comparison = compared(a, b);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  const ComparedRow &lga = comparison.rows[0], &dart = comparison.rows[1];
+  EXPECT_EQ(lga.method, "lga");
+  EXPECT_NEAR(lga.change.difference, -.5, 1e-12);
+  EXPECT_TRUE(lga.worse());
+  EXPECT_EQ(lga.cells, 3);
+  EXPECT_EQ(lga.cells_worse, 3);  // ten scenes against none in each: p = .002
+  EXPECT_EQ(lga.total.only_first, 30);
+  EXPECT_FALSE(dart.worse() || dart.better());
+  EXPECT_EQ(dart.cells_worse + dart.cells_better, 0);
+  EXPECT_TRUE(comparison.regressed());
+  EXPECT_FALSE(compared(b, a).regressed());
+  EXPECT_TRUE(compared(b, a).rows[0].better());
+}
+
+// Six scenes that A alone won: p = .03125, which is chance among two rows.
+TEST(Compare, HolmCountsTheRows) {
+  FabricatedRun a, b;
+  a.add({"lga", 12});
+  b.add({"lga", 6});
+  EXPECT_TRUE(compared(a, b).regressed());
+  a.add({"gcbc_dart", 12});
+  b.add({"gcbc_dart", 6});
+  EXPECT_FALSE(compared(a, b).regressed());
+}
+
+TEST(Compare, TestsTimesInPairs) {
+  FabricatedRun a, b;
+  for (int seed = 0; seed < 12; ++seed) {
+    Spec spec{"lga", 15, "heart", 20, seed};
+    spec.learn_s = 4 + seed;
+    a.add(spec);
+    spec.learn_s += 1 + .01 * seed;
+    b.add(spec);
+  }
+  for (const auto& time : compared(a, b).times) {
+    if (time.phase == "learn_s") {
+      EXPECT_NEAR(time.change.difference, 1.055, 1e-12);
+      EXPECT_GT(time.change.interval.low, 1);
+      EXPECT_NEAR(time.change.p, 2 / 4096., 1e-12);  // all of 12 ranks on one side
+      EXPECT_NEAR(time.p_holm, 6 * 2 / 4096., 1e-12);
+    } else {
+      EXPECT_EQ(time.p_holm, 1) << time.phase;
+    }
+  }
+  EXPECT_FALSE(compared(a, b).regressed()) << "seconds are no regression: they depend on the machine";
+}
+
+TEST(Compare, RefusesOtherTests) {
+  FabricatedRun a, b;
+  a.add({"lga", 15});
+  Spec other{"lga", 15};
+  other.first_scene = 1;
+  b.add(other);
+  EXPECT_SAYS(refusal(a, b), "scenes 0000000000000000 and 0000000000000001 at index 0");
+  FabricatedRun suite;
+  suite.run["suite"] = "q2";
+  suite.add({"lga", 15});
+  EXPECT_SAYS(refusal(a, suite), "suite q1 in A, q2 in B");
+  FabricatedRun arms;
+  other = {"lga", 15};
+  other.arms = {{"test", 15}, {"hard", 10}};
+  arms.add(other);
+  EXPECT_SAYS(refusal(a, arms), "heart, layout cells: arms test in A, test, hard in B");
+  FabricatedRun nothing;
+  nothing.add({"lga", 15, "letter"});
+  EXPECT_SAYS(refusal(a, nothing), "no cell finished in both");
+}
+
+TEST(Compare, CountsWhatOneRunAloneHas) {
+  FabricatedRun a, b;
+  a.add({"lga", 15});
+  b.add({"lga", 15});
+  a.add({"lga", 15, "letter"});
+  b.add({"gcbc_dart", 15});
+  RunComparison comparison = compared(a, b);
+  EXPECT_EQ(comparison.only_a, 1);
+  EXPECT_EQ(comparison.only_b, 1);
+  EXPECT_FALSE(comparison.regressed());
+  b.add_failed({"lga", 15, "letter"}, "plugin");
+  comparison = compared(a, b);
+  EXPECT_EQ(comparison.only_a, 0);
+  EXPECT_EQ(comparison.failed_b, 1);
+  EXPECT_TRUE(comparison.regressed());
+}
+
+// A cell recorded as `there` that is computed as `here`.
+report::CellAgreement agreement(const Spec& there, const Spec& here, bool excused) {
+  FabricatedRun a, b;
+  return report::compare_cells(a.add(there), b.add(here), excused);
+}
+
+TEST(CompareCells, SameBytes) {
+  EXPECT_EQ(agreement({"lga", 15}, {"lga", 15}, false).agreement, Agreement::identical);
+  EXPECT_EQ(agreement({"lga", 15}, {"lga", 15}, false).detail, "");
+}
+
+TEST(CompareCells, OtherBytesNeedAnExcuse) {
+  Spec there{"lga", 15}, here{"lga", 15};
+  there.arms = {{"test", 15}};
+  here.arms = {{"test", 15, {0}, 0.25}};  // other actions
+  EXPECT_EQ(agreement(there, here, true).agreement, Agreement::same_outcomes);
+  const report::CellAgreement owed = agreement(there, here, false);
+  EXPECT_EQ(owed.agreement, Agreement::differs);
+  EXPECT_SAYS(owed.detail, "from episodes.jsonl line 1, though");
+}
+
+TEST(CompareCells, OutcomesWithinChanceOrNot) {
+  const report::CellAgreement chance = agreement({"lga", 15}, {"lga", 11}, true);
+  EXPECT_EQ(chance.agreement, Agreement::within_interval);
+  EXPECT_SAYS(chance.detail, "arm test: 15 of 20 won there, 11 here (McNemar p = 0.125)");
+  EXPECT_SAYS(chance.detail, "from episodes.jsonl line 12");
+  EXPECT_EQ(agreement({"lga", 15}, {"lga", 5}, true).agreement, Agreement::differs);
+  Spec otherwise{"lga", 15};
+  otherwise.failure = "wrong_object";
+  EXPECT_EQ(agreement({"lga", 15}, otherwise, true).agreement, Agreement::within_interval);
+}
+
+TEST(CompareCells, NothingExcusesOtherScenesOrSelections) {
+  Spec scenes{"lga", 15}, selection{"lga", 15};
+  scenes.first_scene = 1;
+  selection.provenance = "human";
+  EXPECT_EQ(agreement({"lga", 15}, scenes, true).agreement, Agreement::differs);
+  EXPECT_SAYS(agreement({"lga", 15}, scenes, true).detail, "scenes 0000000000000000 and");
+  EXPECT_EQ(agreement({"lga", 15}, selection, true).agreement, Agreement::differs);
+  EXPECT_SAYS(agreement({"lga", 15}, selection, true).detail, "selection.json line 1");
+}
+
+// Each arm has its say: worse in one and better in the other is not the same.
+TEST(CompareCells, ArmsDoNotCancelOut) {
+  Spec there{"lga", 15}, here{"lga", 15};
+  there.arms = {{"control", 18}, {"texture", 4}};
+  here.arms = {{"control", 4}, {"texture", 18}};
+  EXPECT_EQ(agreement(there, here, true).agreement, Agreement::differs);
+}
+
+}  // namespace
+}  // namespace lgabench
