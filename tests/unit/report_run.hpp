@@ -41,6 +41,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string scenario = "heart";
     int demonstrations = 20, seed = 0;
     std::string kind = "method", layout = "cells", failure = "missed_object";
+    std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
 
@@ -122,6 +123,7 @@ class FabricatedRun : public TemporaryDirectory {
                        {"scene", hex(i)},
                        {"success", won},
                        {"failure", won ? "none" : s.failure},
+                       {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
                        {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
             '\n';
       }

@@ -21,12 +21,11 @@ Action random_object(const Environment& environment, const Scene& scene, const O
   return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
 }
 
-// The arm has no part in it: more noise adds errors to those that less of it makes.
+}  // namespace
+
 RandomStream perception_stream(const Scene& scene) {
   return RandomStream(fmt::format("textualization/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index));
 }
-
-}  // namespace
 
 Json to_json(const Episode& e) {
   return {{"arm", e.arm},

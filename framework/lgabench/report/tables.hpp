@@ -1,5 +1,6 @@
 // The texts of a report, from its values.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,25 @@ std::string shift_text(const Row* row);
 /// What a reader of the tables must know, one line each: what †, ‡ and = say, whose Selections are no measurement of
 /// people, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
+
+/// Mean seconds of each of `phases` over the finished cells of a row's name, in the order of tables.
+struct PhaseTimes {
+  std::string layout, engine, method;
+  int cells = 0;
+  std::array<double, phases.size()> mean_s{};
+};
+std::vector<PhaseTimes> phase_times(const RunResults& run);
+
+/// The Selections of all rows, equal ones of a scenario and method (of other layouts, demonstrations, arms) once, as
+/// the index into their row's phi.
+struct PhiOfRow {
+  const Row* row;
+  std::size_t command;
+};
+std::vector<PhiOfRow> distinct_phi(const Summary& summary);
+
+/// Whether a command of the run is tested only: then each says which it is.
+bool has_unseen(const RunResults& run);
 
 /// report.md. `figures` of each of the summary's tables, in their order.
 std::string markdown(const RunResults& run, const Summary& summary, const PaperValues& paper,
