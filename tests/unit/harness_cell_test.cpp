@@ -1,6 +1,7 @@
 // Demonstrations, their file and cache, the evaluator and the reference rows: what a worker does.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include <lgabench/core/files.hpp>
@@ -220,6 +221,45 @@ TEST_F(Play, WithoutAnAbstractionAnEpisodeIsNotPlayed) {
     EXPECT_EQ(episodes[i].failure, i == 2 ? Failure::abstraction_empty : Failure::none);
   EXPECT_EQ(episodes[2].scene, scenes[2].scene.hash());
   EXPECT_FALSE(episodes[2].action);
+}
+
+// Wins where the Selection it is told is that of `key`, else takes nothing.
+class OnlyWith : public Policy {
+ public:
+  OnlyWith(FeatureSet key, std::function<Action()> oracle) : key_(std::move(key)), oracle_(std::move(oracle)) {}
+  Action act(const Observation&, const Instruction& instruction) override {
+    Action nothing;
+    nothing.pose0.position_m = nothing.pose1.position_m = {.26, .49};
+    return instruction.selection.target == key_ ? oracle_() : nothing;
+  }
+
+ private:
+  FeatureSet key_;
+  std::function<Action()> oracle_;
+};
+
+TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
+  const FeatureSet truth{{"heart"}, {"red"}}, other{{"star"}, {"red"}}, third{{"bowl"}, {"red"}};
+  const auto attributions = [&](const FeatureSet& wins_with, const FeatureSet& told) {
+    OnlyWith policy(wins_with, [] { return environment->expert_action(); });
+    Selection selected, true_one;
+    selected.target = told;
+    true_one.target = truth;
+    const std::vector<Instruction> instructions{{"u", selected}}, true_ones{{"u", true_one}};
+    auto scenes = tests(*scenario, 3);
+    scenes[2].abstraction_empty = true;
+    auto episodes =
+        evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    EXPECT_TRUE(to_json(episodes[0]).at("attribution").is_null());
+    attribute_failures(*environment, scenario->space, scenes, policy_actor(policy, true_ones, "p"), episodes);
+    std::vector<std::string> all;
+    for (const Episode& e : episodes) all.push_back(e.attribution);
+    return all;
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(attributions(other, other), (Words{"", "", "abstraction"})) << "won, or nothing selected";
+  EXPECT_EQ(attributions(truth, other), (Words{"abstraction", "abstraction", "abstraction"}));
+  EXPECT_EQ(attributions(third, other), (Words{"policy", "policy", "abstraction"}));
 }
 
 // Takes note of what it is given.

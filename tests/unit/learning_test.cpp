@@ -393,26 +393,51 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
   }
 }
 
-TEST(ShippedMethods, SelectLearnAndActThroughThePlugin) {
+struct Shipped {
+  const char* id;
+  Provenance provenance;
+  int queries;
+  bool mask_alone;  // nothing else hides the star
+};
+void PrintTo(const Shipped& method, std::ostream* out) { *out << method.id; }
+
+class ShippedMethods : public testing::TestWithParam<Shipped> {};
+
+TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
   const Scenario scenario = load_scenario("red_heart");
-  for (const char* id : {"lga", "gcbc_dart", "gcbc_seg"}) {
-    const PluginInfo& plugin = catalogue.find("method", id);
-    const Json options = resolve_options(plugin, {{"epochs", 3}});
-    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
-    TruthAsHuman human(scenario.commands);
-    Lines log;
-    Services services{lm, human, options, 0, log};
-    const auto method = load_method(plugin);
-    const Selection selection = method->select(scenario.command(0), scenario.space, services);
-    EXPECT_EQ(selection.cost.lm_queries, id == std::string("lga") ? 112 : 0);
-    EXPECT_EQ(selection.provenance, id == std::string("lga") ? Provenance::recorded : Provenance::none);
-    const auto policy = method->learn(demonstrations(10), services);
-    const Observation probe = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150);
-    const bool same = to_vector(policy->act(probe, instruction())) == to_vector(policy->act(star_moved, instruction()));
-    EXPECT_EQ(same, id == std::string("lga"));  // only the goal mask hides the star
+  const PluginInfo& plugin = catalogue.find("method", GetParam().id);
+  const Json options = resolve_options(plugin, {{"epochs", 3}});
+  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  Services services{lm, human, options, 0, log};
+  const auto method = load_method(plugin);
+  const Selection selection = method->select(scenario.command(0), scenario.space, services);
+  EXPECT_EQ(selection.cost.lm_queries, GetParam().queries);
+  EXPECT_EQ(selection.provenance, GetParam().provenance);
+  if (selection.provenance != Provenance::none) {
+    EXPECT_EQ(selection.target.object_types, std::vector<std::string>{"heart"});
+    EXPECT_EQ(selection.target.textures == scenario.commands[0].truth.target.textures,
+              selection.provenance == Provenance::truth)
+        << "GPT-4's textures are not quite the true ones, and a simulated edit leaves them";
   }
+  const auto policy = method->learn(demonstrations(10), services);
+  const Observation probe = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150),
+                    heart_moved = scene(30, 10, 80, 30);
+  const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
+  EXPECT_EQ(action(probe) == action(star_moved), GetParam().mask_alone);
+  EXPECT_NE(action(probe), action(heart_moved));
 }
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,
+                         testing::Values(Shipped{"lga", Provenance::recorded, 112, true},
+                                         Shipped{"lga_hill", Provenance::simulated_edit, 112, true},
+                                         Shipped{"human", Provenance::truth, 0, true},
+                                         Shipped{"lga_s", Provenance::recorded, 112, false},
+                                         Shipped{"gcbc_dart", Provenance::none, 0, false},
+                                         Shipped{"gcbc_seg", Provenance::none, 0, false}),
+                         [](const auto& instance) { return std::string(instance.param.id); });
 
 }  // namespace
 }  // namespace lgabench

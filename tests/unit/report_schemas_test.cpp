@@ -50,6 +50,20 @@ TEST(Schemas, DescribeTheShiftOfAnArm) {
   EXPECT_EQ(shifts, 2);  // the scenario's and the mean's: AcceptTheFilesOfARun has seen one
 }
 
+TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
+  for (const auto& [folder, schema] : {std::pair{"scenarios", "scenario"}, std::pair{"suites", "suite"}}) {
+    int files = 0;
+    for (const auto& entry : fs::directory_iterator(data_directory() / folder)) {
+      ++files;
+      Json document = read_json(entry.path());
+      EXPECT_EQ(complaints(schema, document), Complaints()) << entry.path();
+      document["surprise"] = 1;
+      EXPECT_NE(complaints(schema, document), Complaints());
+    }
+    EXPECT_GT(files, 3);
+  }
+}
+
 // What each kind of file may not be: a JSON pointer and the value put there.
 TEST(Schemas, RefuseBrokenFiles) {
   const std::vector<std::tuple<std::string, std::string, Json>> faults{

@@ -21,6 +21,23 @@ Action random_object(const Environment& environment, const Scene& scene, const O
   return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
 }
 
+Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
+  const Scene& scene = test.scene;
+  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, std::nullopt, ""};
+  if (test.abstraction_empty) return episode;
+  const Observation observation =
+      imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
+  try {
+    const Action action = actor(environment, scene, observation);
+    episode.failure = environment.step(action).failure;  // refuses an action that is not finite
+    episode.action = to_vector(action);
+  } catch (const MethodError& e) {
+    fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+    episode.failure = Failure::method_error;
+  }
+  return episode;
+}
+
 }  // namespace
 
 RandomStream perception_stream(const Scene& scene) {
@@ -34,7 +51,8 @@ Json to_json(const Episode& e) {
           {"scene", hex(e.scene)},
           {"success", e.failure == Failure::none},
           {"failure", to_string(e.failure)},
-          {"action", e.action ? Json(*e.action) : Json(nullptr)}};
+          {"action", e.action ? Json(*e.action) : Json(nullptr)},
+          {"attribution", e.attribution.empty() ? Json(nullptr) : Json(e.attribution)}};
 }
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
@@ -61,25 +79,21 @@ std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& spac
   std::vector<Episode> episodes;
   episodes.reserve(scenes.size());
   for (const TestScene& test : scenes) {
-    const Scene& scene = test.scene;
-    Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::method_error, std::nullopt};
-    if (test.abstraction_empty) {
-      episode.failure = Failure::abstraction_empty;
-    } else {
-      const Observation observation =
-          imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
-      try {
-        const Action action = actor(environment, scene, observation);
-        episode.failure = environment.step(action).failure;  // refuses an action that is not finite
-        episode.action = to_vector(action);
-      } catch (const MethodError& e) {
-        fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
-      }
-    }
-    episodes.push_back(episode);
+    episodes.push_back(play(environment, space, test, actor));
     done(static_cast<int>(episodes.size()));
   }
   return episodes;
+}
+
+void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
+                        const Actor& with_truth, std::vector<Episode>& episodes) {
+  for (std::size_t i = 0; i < episodes.size(); ++i) {
+    Episode& episode = episodes[i];
+    if (episode.failure == Failure::none) continue;
+    const bool saved = episode.failure == Failure::abstraction_empty ||
+                       play(environment, space, scenes.at(i), with_truth).failure == Failure::none;
+    episode.attribution = saved ? "abstraction" : "policy";
+  }
 }
 
 }  // namespace lgabench

@@ -19,6 +19,7 @@ struct Episode {
   std::uint64_t scene = 0;  // hash
   Failure failure = Failure::none;
   std::optional<ActionVector> action;  // none where the actor gave none
+  std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
 };
 
 /// A line of episodes.jsonl.
@@ -51,5 +52,12 @@ Actor reference_actor(const std::string& id);
 /// of the method.
 std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
                               const Actor& actor, const std::function<void(int)>& done);
+
+/// Says of every failed episode whether the Selection or the policy failed (PROTOCOL, section 5): "abstraction" where
+/// `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was selected;
+/// else "policy". Arguments as of evaluate(), `episodes` what it returned.
+/// @throws EngineError if the engine fails.
+void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
+                        const Actor& with_truth, std::vector<Episode>& episodes);
 
 }  // namespace lgabench

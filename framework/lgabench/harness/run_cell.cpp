@@ -189,8 +189,14 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const Actor actor = policy              ? policy_actor(*policy, instructions, id)
                       : abstraction_empty ? Actor()
                                           : reference_actor(id);
-  const std::vector<Episode> episodes =
-      evaluate(*environment, scenario.space, tests, actor, [&](int n) { phases.count(n); });
+  std::vector<Episode> episodes = evaluate(*environment, scenario.space, tests, actor, [&](int n) { phases.count(n); });
+  const auto selects = [](const Instruction& i) { return i.selection.provenance != Provenance::none; };
+  if (std::all_of(instructions.begin(), instructions.end(), selects)) {  // else there is no abstraction to blame
+    std::vector<Instruction> true_ones;
+    for (const ScenarioCommand& command : scenario.commands) true_ones.push_back({command.utterance, command.truth});
+    attribute_failures(*environment, scenario.space, tests, policy ? policy_actor(*policy, true_ones, id) : Actor(),
+                       episodes);
+  }
 
   // 6 record: no clock but in timing.json.
   std::string episode_lines;
