@@ -41,7 +41,7 @@ function(lgabench_link_data)
   file(MAKE_DIRECTORY ${share})
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
                answers:framework/lgabench/abstraction/answers embeddings:framework/lgabench/learning/embeddings
-               paper:results/paper formats:docs/formats)
+               paper:results/paper formats:docs/formats page:framework/lgabench/report/page)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)
