@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 #include <lgabench/report/html_parts.hpp>
 #include <lgabench/report/names.hpp>
@@ -53,7 +54,7 @@ std::string table(const std::string& caption, const std::vector<std::string>& he
   std::string head;
   for (const std::string& one : heads) head += fmt::format("<th scope=col>{}</th>", one);
   return fmt::format(
-      "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption>{0}</caption>\n<thead><tr>{2}</tr>"
+      "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n<thead><tr>{2}</tr>"
       "</thead>\n<tbody>\n{3}</tbody></table></div>\n",
       caption, sortable ? " class=sortable" : "", head, body);
 }
@@ -83,6 +84,18 @@ std::string pictures_note(const Pictures& pictures) {
   return text + (pictures.problem.empty() ? "." : fmt::format("; others could not be drawn: {}.", pictures.problem));
 }
 
+// Who said which features matter, a line each: what is a measurement of people or of a language model, and what is not.
+std::set<std::string> sources(const Summary& summary) {
+  std::set<std::string> lines;
+  for (const PhiOfRow& of : distinct_phi(summary)) {
+    const Json& phi = of.row->phi.at(of.command);
+    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance), source = phi.at("source");
+    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? provenance : words,
+                             source.empty() ? "" : ", " + source));
+  }
+  return lines;
+}
+
 // Cells, notes, and the commands that were given.
 std::string what_was_run(const RunResults& run, const Summary& summary, const Pictures& pictures) {
   std::string text = "<ul class=cards>";
@@ -99,6 +112,7 @@ std::string what_was_run(const RunResults& run, const Summary& summary, const Pi
   card(episodes, "episodes played");
   text += "</ul><ul class=notes>";
   for (const std::string& note : notes(run, summary)) text += fmt::format("<li>{}</li>", escaped(note));
+  for (const std::string& line : sources(summary)) text += fmt::format("<li>{}</li>", escaped(line));
   if (const std::string note = pictures_note(pictures); !note.empty()) text += fmt::format("<li>{}</li>", escaped(note));
   text += "</ul>";
 

@@ -70,7 +70,7 @@ std::string axes(const std::vector<Place>& along, const std::string& axis) {
                     : fmt::format("<text x={:.1f} y={} text-anchor=middle>{}</text>", place.x, height - bottom + 18,
                                   escaped(place.label));
   if (!slanted)
-    text += fmt::format("<text x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2, height - 6, axis);
+    text += fmt::format("<text class=axis x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2, height - 6, axis);
   return text + "</g>";
 }
 

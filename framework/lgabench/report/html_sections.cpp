@@ -64,7 +64,7 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
           const auto place = [&](const char* member) {
             return fmt::format("phi/{}/quality/{}/{}/{}", of.command, about, group, member);
           };
-          cells.push_back(*number == 's' ? fmt::format("{} of {}", phi_value(row, numbers, place("size"), "{:.4g}"),
+          cells.push_back(*number == 's' ? fmt::format("<small class=size>{} of {}</small>", phi_value(row, numbers, place("size"), "{:.4g}"),
                                                        phi_value(row, numbers, place("true_size"), "{:.4g}"))
                                          : phi_value(row, numbers, place(number), "{:.2f}"));
         }
@@ -90,7 +90,7 @@ std::string failures(const Summary& summary, const RowNumbers& numbers) {
       for (const auto& item : row.failures) used.insert(item.first);
   if (used.empty()) return "";
 
-  std::vector<std::string> shown, heads{"arm", "method", "demonstrations", "of all episodes", "episodes"};
+  std::vector<std::string> shown, heads{"arm", "method", "demon&shy;strations", "of all episodes", "episodes"};
   std::vector<std::string> css;
   std::string key = "<ul class=legend>";
   const std::vector<std::string> all = failure_words();
@@ -130,7 +130,7 @@ std::string attribution(const Summary& summary, const RowNumbers& numbers) {
     for (const Row& row : table_.rows) {
       if (row.attributed() == 0) continue;
       std::vector<Part> parts;
-      std::vector<std::string> cells{escaped(table_.title(row.scenario)), escaped(row.arm), named(row.method),
+      std::vector<std::string> cells{row.is_mean() ? "all" : escaped(row.scenario), escaped(row.arm), named(row.method),
                                      demonstrations(row, numbers), ""};
       for (const char* to : attributions) {
         parts.push_back({to, to, row.attribution.at(to)});
@@ -140,7 +140,7 @@ std::string attribution(const Summary& summary, const RowNumbers& numbers) {
       (row.is_mean() ? mean : each) += row_of(cells, 3);
     }
     if (mean.empty()) continue;
-    const std::vector<std::string> heads{"scenario", "arm", "method", "demonstrations", "share of failures",
+    const std::vector<std::string> heads{"scenario", "arm", "method", "demon&shy;strations", "share of failures",
                                          "<span class=\"swatch abstraction\"></span>abstraction",
                                          "<span class=\"swatch policy\"></span>policy"};
     text += table(fmt::format("Failures laid to abstraction or policy, {}", escaped(table_.title())), heads, mean) +

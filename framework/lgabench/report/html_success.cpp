@@ -104,18 +104,20 @@ std::string of_paper(const PaperValues& paper) {
 std::string success(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers) {
   std::string text;
   for (const Table& table : summary.tables) {
-    text += fmt::format("<h3>{}</h3>{}<div class=charts>", escaped(table.title()), legend(table, paper));
+    text += fmt::format("<h3>{}</h3>{}<div class=beside><div class=charts>", escaped(table.title()), legend(table, paper));
     const bool curves = table.demonstrations().size() > 1;
     for (const std::string& arm : table.arms) {
       text += chart(table, arm, mean_scenario, paper, numbers);
       if (!curves) break;  // a single chart holds every arm
     }
     text += "</div>";
-    if (table.arms.size() > 1) continue;  // the next section's
-    for (const View& view : views(table))
+    for (const View& view : views(table)) {
+      if (table.arms.size() > 1) break;  // the next section's
       text += rates(fmt::format("Success [95 % interval], {}, {}; columns: {}", table.title(mean_scenario),
                                 escaped(table.title()), corner(view, table)),
                     table, view.columns, {mean_scenario}, paper, numbers);
+    }
+    text += "</div>";
   }
   return section("success", "Success against demonstrations", text + of_paper(paper));
 }
