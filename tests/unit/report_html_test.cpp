@@ -90,7 +90,8 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
       }
       if (row.at("scenario") != "(mean)") continue;
       for (const auto& item : row.at("failures").items()) EXPECT_EQ(shown.count(place + "failures/" + item.key()), 1u);
-      const int blamed = row.at("attribution").at("abstraction").get<int>() + row.at("attribution").at("policy").get<int>();
+      const int blamed =
+          row.at("attribution").at("abstraction").get<int>() + row.at("attribution").at("policy").get<int>();
       EXPECT_EQ(shown.count(place + "attribution/policy"), blamed > 0 ? 1u : 0u);
     }
     EXPECT_EQ(shown.count("/rows/0/phi/0/quality/target/textures/recall"), 1u);
@@ -187,8 +188,7 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   report::Pictures pictures;
   pictures.wanted = 1;
   pictures.scenes[hex(19)] = "PNG";
-  const std::string page =
-      report::html(results, report::summarize(results), report::paper_values("q1"), pictures);
+  const std::string page = report::html(results, report::summarize(results), report::paper_values("q1"), pictures);
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));

@@ -23,8 +23,7 @@ namespace {
 std::string base64(const std::string& bytes) {
   std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
   const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
-  const int size =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), from, static_cast<int>(bytes.size()));
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), from, static_cast<int>(bytes.size()));
   text.resize(static_cast<std::size_t>(size));
   return text;
 }
@@ -55,8 +54,8 @@ class Pictures {
       throw InputError("this version samples another scene than the run played");
 
     const Observation seen = renderer_.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
-    const Observation perceived = imperfect_textualization(seen, played.scenario.space, noise(played.scenario, arm),
-                                                           perception_stream(scene));
+    const Observation perceived =
+        imperfect_textualization(seen, played.scenario.space, noise(played.scenario, arm), perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
       const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
@@ -91,7 +90,8 @@ void add_pictures(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("pictures", "Draw the scenes listed as JSON on stdin, a line of JSON each");
   verb->group("");  // `lgabench report` starts it
   verb->footer(
-      "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": \"HASH\",\n"
+      "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": "
+      "\"HASH\",\n"
       "                \"selections\": []}]' | lgabench-worker pictures");
   verb->callback([] {
     const std::string text((std::istreambuf_iterator<char>(std::cin)), {});

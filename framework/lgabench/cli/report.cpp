@@ -1,4 +1,4 @@
-// lgabench report: makes a run's tables and figures anew, and prints them.
+// lgabench report: makes a run's tables, figures and page anew, and prints the tables.
 #include <fmt/format.h>
 
 #include <lgabench/cli/verbs.hpp>
@@ -12,12 +12,17 @@ void add_report(CLI::App& app, int& exit) {
     std::string run, format = "text";
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("report", "Make a run's tables and figures anew from its cells, and print them");
+  CLI::App* verb = app.add_subcommand(
+      "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb->add_option("RUN", options->run, "The run's directory")->required();
   verb->add_option("--format", options->format, "What to print: text, md, json or csv")
       ->check(CLI::IsMember({"text", "md", "json", "csv"}))
       ->capture_default_str();
-  verb->footer("Example: lgabench report runs/q1-smoke --format csv > table.csv");
+  verb->footer(
+      "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv\n"
+      "and figures/.\n"
+      "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
+      "         xdg-open runs/q1-smoke/report.html");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
     report::write_report(run);
@@ -27,7 +32,7 @@ void add_report(CLI::App& app, int& exit) {
       fmt::print("{}", read_file(run / "report.md"));
     else
       fmt::print("{}", read_file(run / ("summary." + options->format)));
-    fmt::print(stderr, "{}\n", (run / "report.md").string());
+    fmt::print(stderr, "{}\n", (run / "report.html").string());
     exit = ok;
   });
 }

@@ -156,7 +156,7 @@ int run(const Arguments& a) {
   if (a.json)
     fmt::print("{}", read_file(plan.out / "summary.json"));
   else
-    fmt::print("{}\nreport: {}\n", report::table_text(plan.out), (plan.out / "report.md").string());
+    fmt::print("{}\nreport: {}\n", report::table_text(plan.out), (plan.out / "report.html").string());
   fmt::print(stderr, "{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused, outcome.failed);
   if (outcome.plugin_refused) return plugin_refused;
   return outcome.failed ? cells_failed : ok;

@@ -64,7 +64,7 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
     if (was_there && !fs::exists(record))
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
-      for (const char* name : {"cells", "summary.json", "summary.csv", "report.md", "figures", "run.json"})
+      for (const char* name : {"cells", "summary.json", "summary.csv", "report.md", "report.html", "figures", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
       const Json there = read_json(record);

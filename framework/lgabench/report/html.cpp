@@ -54,7 +54,8 @@ std::string table(const std::string& caption, const std::vector<std::string>& he
   std::string head;
   for (const std::string& one : heads) head += fmt::format("<th scope=col>{}</th>", one);
   return fmt::format(
-      "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n<thead><tr>{2}</tr>"
+      "<div class=frame tabindex=0 role=region "
+      "aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n<thead><tr>{2}</tr>"
       "</thead>\n<tbody>\n{3}</tbody></table></div>\n",
       caption, sortable ? " class=sortable" : "", head, body);
 }
@@ -78,9 +79,10 @@ std::string definition(const std::string& name, const Json& value) {
 std::string pictures_note(const Pictures& pictures) {
   if (pictures.wanted == 0) return "";
   if (pictures.scenes.empty()) return fmt::format("No pictures of scenes: {}.", pictures.problem);
-  std::string text = fmt::format("Pictures: {} of the {} scenes in which a method failed (at most {}, each scenario’s "
-                                 "first)",
-                                 pictures.scenes.size(), pictures.wanted, most_pictures);
+  std::string text = fmt::format(
+      "Pictures: {} of the {} scenes in which a method failed (at most {}, each scenario’s "
+      "first)",
+      pictures.scenes.size(), pictures.wanted, most_pictures);
   return text + (pictures.problem.empty() ? "." : fmt::format("; others could not be drawn: {}.", pictures.problem));
 }
 
@@ -89,7 +91,8 @@ std::set<std::string> sources(const Summary& summary) {
   std::set<std::string> lines;
   for (const PhiOfRow& of : distinct_phi(summary)) {
     const Json& phi = of.row->phi.at(of.command);
-    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance), source = phi.at("source");
+    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance),
+                      source = phi.at("source");
     lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? provenance : words,
                              source.empty() ? "" : ", " + source));
   }
@@ -113,7 +116,8 @@ std::string what_was_run(const RunResults& run, const Summary& summary, const Pi
   text += "</ul><ul class=notes>";
   for (const std::string& note : notes(run, summary)) text += fmt::format("<li>{}</li>", escaped(note));
   for (const std::string& line : sources(summary)) text += fmt::format("<li>{}</li>", escaped(line));
-  if (const std::string note = pictures_note(pictures); !note.empty()) text += fmt::format("<li>{}</li>", escaped(note));
+  if (const std::string note = pictures_note(pictures); !note.empty())
+    text += fmt::format("<li>{}</li>", escaped(note));
   text += "</ul>";
 
   const bool tell = has_unseen(run);
@@ -121,14 +125,14 @@ std::string what_was_run(const RunResults& run, const Summary& summary, const Pi
   for (const CellResult& cell : run.cells)
     for (const CommandResult& command : cell.commands) {
       const std::string row =
-          row_of({escaped(cell.scenario), escaped(command.utterance) + (!tell         ? ""
+          row_of({escaped(cell.scenario), escaped(command.utterance) + (!tell          ? ""
                                                                         : command.seen ? " <small>seen</small>"
                                                                                        : " <small>unseen</small>")});
       if (std::find(commands.begin(), commands.end(), row) == commands.end()) commands.push_back(row);
     }
-  text += fmt::format("<details{}><summary>The commands</summary>{}</details>", commands.size() <= 4 ? " open" : "",
-                      table("Scenarios and their commands", {"scenario", "command"},
-                            fmt::format("{}", fmt::join(commands, ""))));
+  text += fmt::format(
+      "<details{}><summary>The commands</summary>{}</details>", commands.size() <= 4 ? " open" : "",
+      table("Scenarios and their commands", {"scenario", "command"}, fmt::format("{}", fmt::join(commands, ""))));
   return section("run", "What was run", text);
 }
 

@@ -52,8 +52,8 @@ std::vector<Place> places(const Table& table, const std::string& arm) {
   } else {
     const double step = (width - left - right) / static_cast<double>(table.arms.size());
     for (std::size_t i = 0; i < table.arms.size(); ++i)
-      all.push_back({table.arms[i], table.arms[i], demonstrations.front(),
-                     left + step * (static_cast<double>(i) + 0.5)});
+      all.push_back(
+          {table.arms[i], table.arms[i], demonstrations.front(), left + step * (static_cast<double>(i) + 0.5)});
   }
   return all;
 }
@@ -65,12 +65,15 @@ std::string axes(const std::vector<Place>& along, const std::string& axis) {
                         y_of(tenth / 10.0), width - right, left - 8, y_of(tenth / 10.0) + 4, tenth / 10.0);
   const bool slanted = along.size() > 5 && along.front().arm != along.back().arm;
   for (const Place& place : along)
-    text += slanted ? fmt::format("<text class=slanted transform=\"translate({:.1f} {}) rotate(-20)\" text-anchor=end>{}</text>",
-                                  place.x + 6, height - bottom + 16, escaped(place.label))
-                    : fmt::format("<text x={:.1f} y={} text-anchor=middle>{}</text>", place.x, height - bottom + 18,
-                                  escaped(place.label));
+    text += slanted
+                ? fmt::format(
+                      "<text class=slanted transform=\"translate({:.1f} {}) rotate(-20)\" text-anchor=end>{}</text>",
+                      place.x + 6, height - bottom + 16, escaped(place.label))
+                : fmt::format("<text x={:.1f} y={} text-anchor=middle>{}</text>", place.x, height - bottom + 18,
+                              escaped(place.label));
   if (!slanted)
-    text += fmt::format("<text class=axis x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2, height - 6, axis);
+    text += fmt::format("<text class=axis x={} y={} text-anchor=middle>{}</text>", (left + width - right) / 2,
+                        height - 6, axis);
   return text + "</g>";
 }
 
@@ -83,8 +86,9 @@ std::string curve(const Table& table, const std::vector<Place>& along, const std
   for (const Place& place : along) {
     if (const auto rate = paper.find(scenario, display_name(id), place.demonstrations); rate && joined) {
       theirs += fmt::format("{}{:.1f} {:.1f}", theirs.empty() ? "M" : "L", place.x, y_of(*rate));
-      points += fmt::format("<g class=\"point theirs\" tabindex=0 role=img aria-label=\"{}, the paper’s, at {}: {:.3f}\">{}</g>",
-                            name, escaped(place.label), *rate, mark(index, place.x, y_of(*rate), "class=\"hollow\""));
+      points += fmt::format(
+          "<g class=\"point theirs\" tabindex=0 role=img aria-label=\"{}, the paper’s, at {}: {:.3f}\">{}</g>", name,
+          escaped(place.label), *rate, mark(index, place.x, y_of(*rate), "class=\"hollow\""));
     }
     const Row* row = table.find(place.arm, scenario, id, place.demonstrations);
     if (!row || !row->success) continue;
@@ -145,7 +149,8 @@ std::string legend(const Table& table, const PaperValues& paper) {
     add(fmt::format("<g class=\"reference {}\"><path class=line d=\"M1 8H33\"/></g>", escaped(id)),
         escaped(display_name(id)) + " (reference)");
   if (curves && paper.rates.count(mean_scenario) != 0)
-    add("<g style=\"--c:currentColor\"><path class=\"line theirs\" d=\"M1 8H33\"/>" + mark(0, 17, 8, "class=\"hollow\"") + "</g>",
+    add("<g style=\"--c:currentColor\"><path class=\"line theirs\" d=\"M1 8H33\"/>" +
+            mark(0, 17, 8, "class=\"hollow\"") + "</g>",
         "hollow, dashed: the paper’s, over its own scenarios");
   return text + "</ul>";
 }
@@ -154,7 +159,8 @@ std::string chart(const Table& table, const std::string& arm, const std::string&
                   const RowNumbers& numbers) {
   const bool joined = table.demonstrations().size() > 1;
   const std::vector<Place> along = places(table, arm);
-  const std::string axis = joined ? "demonstrations" : fmt::format("arm, {} demonstrations", along.front().demonstrations);
+  const std::string axis =
+      joined ? "demonstrations" : fmt::format("arm, {} demonstrations", along.front().demonstrations);
   const std::string title =
       table.title(scenario) + (joined && table.arms.size() > 1 ? fmt::format(", arm {}", arm) : "");
   std::string text = axes(along, axis);
@@ -167,7 +173,8 @@ std::string chart(const Table& table, const std::string& arm, const std::string&
     text += curve(table, along, scenario, methods[i], i, shift, joined, paper, numbers);
   }
   return fmt::format(
-      "<figure><figcaption>{}</figcaption><svg class=chart viewBox=\"0 0 {} {}\" role=group aria-label=\"success against "
+      "<figure><figcaption>{}</figcaption><svg class=chart viewBox=\"0 0 {} {}\" role=group aria-label=\"success "
+      "against "
       "{}, {}\">{}</svg></figure>",
       escaped(title), width, height, joined ? "demonstrations" : "arms", escaped(title), text);
 }

@@ -93,12 +93,8 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
   }
   std::vector<Json> lists(scenes.size());
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
-  return {{"failures", words},
-          {"titles", titles},
-          {"cells", cells},
-          {"scenes", lists},
-          {"pictures", pictures.scenes},
-          {"masks", pictures.masks}};
+  return {{"failures", words},           {"titles", titles},       {"cells", cells}, {"scenes", lists},
+          {"pictures", pictures.scenes}, {"masks", pictures.masks}};
 }
 
 }  // namespace lgabench::report::html_parts

@@ -55,16 +55,18 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
     for (const auto& [about, groups] : one.at("quality").items()) {
       if (groups.is_null()) continue;
       const std::string utterance = one.at("utterance"), asked_as = one.at("asked_as");
-      std::vector<std::string> cells{
-          escaped(row.scenario), named(row.method),
-          escaped(utterance) + (!tell ? "" : one.at("seen").get<bool>() ? " <small>seen</small>" : " <small>unseen</small>"),
-          about};
+      std::vector<std::string> cells{escaped(row.scenario), named(row.method),
+                                     escaped(utterance) + (!tell                        ? ""
+                                                           : one.at("seen").get<bool>() ? " <small>seen</small>"
+                                                                                        : " <small>unseen</small>"),
+                                     about};
       for (const char* group : {"object_types", "textures"})
         for (const char* number : {"precision", "recall", "size"}) {
           const auto place = [&](const char* member) {
             return fmt::format("phi/{}/quality/{}/{}/{}", of.command, about, group, member);
           };
-          cells.push_back(*number == 's' ? fmt::format("<small class=size>{} of {}</small>", phi_value(row, numbers, place("size"), "{:.4g}"),
+          cells.push_back(*number == 's' ? fmt::format("<small class=size>{} of {}</small>",
+                                                       phi_value(row, numbers, place("size"), "{:.4g}"),
                                                        phi_value(row, numbers, place("true_size"), "{:.4g}"))
                                          : phi_value(row, numbers, place(number), "{:.2f}"));
         }
@@ -140,18 +142,24 @@ std::string attribution(const Summary& summary, const RowNumbers& numbers) {
       (row.is_mean() ? mean : each) += row_of(cells, 3);
     }
     if (mean.empty()) continue;
-    const std::vector<std::string> heads{"scenario", "arm", "method", "demon&shy;strations", "share of failures",
+    const std::vector<std::string> heads{"scenario",
+                                         "arm",
+                                         "method",
+                                         "demon&shy;strations",
+                                         "share of failures",
                                          "<span class=\"swatch abstraction\"></span>abstraction",
                                          "<span class=\"swatch policy\"></span>policy"};
     text += table(fmt::format("Failures laid to abstraction or policy, {}", escaped(table_.title())), heads, mean) +
             "<details><summary>Each scenario</summary>" +
-            table(fmt::format("Each scenario’s failures, {}", escaped(table_.title())), heads, each, true) + "</details>";
+            table(fmt::format("Each scenario’s failures, {}", escaped(table_.title())), heads, each, true) +
+            "</details>";
   }
   if (text.empty()) return "";
-  return section("attribution", "Abstraction or policy",
-                 "<p class=hint>A failure is laid to the abstraction where the same policy wins the same scene with the "
-                 "true mask; else to the policy. Methods that select nothing are not listed.</p>" +
-                     text);
+  return section(
+      "attribution", "Abstraction or policy",
+      "<p class=hint>A failure is laid to the abstraction where the same policy wins the same scene with the "
+      "true mask; else to the policy. Methods that select nothing are not listed.</p>" +
+          text);
 }
 
 std::string times(const RunResults& run) {
@@ -162,10 +170,11 @@ std::string times(const RunResults& run) {
     body += row_of(cells, 2);
   }
   if (body.empty()) return "";
-  return section("times", "Time per phase",
-                 table("Seconds a cell, on the mean",
-                       {"layout, engine", "method", "cells", "select", "sample", "demonstrate", "learn", "evaluate", "total"},
-                       body, true));
+  return section(
+      "times", "Time per phase",
+      table("Seconds a cell, on the mean",
+            {"layout, engine", "method", "cells", "select", "sample", "demonstrate", "learn", "evaluate", "total"},
+            body, true));
 }
 
 std::string failed_cells(const Summary& summary) {
@@ -174,17 +183,21 @@ std::string failed_cells(const Summary& summary) {
   for (const CellResult& cell : summary.failed) {
     std::string log;
     for (const std::string& line : cell.log_tail) log += escaped(line) + "\n";
-    body += row_of({fmt::format("<code>{}</code>", escaped(cell.key)), named(cell.method), escaped(cell.scenario),
-                    escaped(cell.layout + ", " + cell.engine), std::to_string(cell.demonstrations),
-                    std::to_string(cell.training_seed), escaped(cell.fault),
-                    escaped(cell.reason) + (log.empty() ? "" : fmt::format("<details><summary>end of its log</summary><pre>{}</pre></details>", log))},
-                   2);
+    body += row_of(
+        {fmt::format("<code>{}</code>", escaped(cell.key)), named(cell.method), escaped(cell.scenario),
+         escaped(cell.layout + ", " + cell.engine), std::to_string(cell.demonstrations),
+         std::to_string(cell.training_seed), escaped(cell.fault),
+         escaped(cell.reason) +
+             (log.empty() ? ""
+                          : fmt::format("<details><summary>end of its log</summary><pre>{}</pre></details>", log))},
+        2);
   }
-  return section("failed", "Cells that failed",
-                 "<p class=hint>They count for nothing above.</p>" +
-                     table("Cells that failed",
-                           {"cell", "method", "scenario", "layout, engine", "demonstrations", "training seed", "fault", "reason"},
-                           body));
+  return section(
+      "failed", "Cells that failed",
+      "<p class=hint>They count for nothing above.</p>" +
+          table("Cells that failed",
+                {"cell", "method", "scenario", "layout, engine", "demonstrations", "training seed", "fault", "reason"},
+                body));
 }
 
 }  // namespace lgabench::report::html_parts

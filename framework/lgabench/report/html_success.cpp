@@ -17,14 +17,15 @@ std::string signed_text(double x) {
 // One number of success with its interval, its marks and its change against the first arm. A click shows its episodes.
 std::string success_cell(const Row* row, const RowNumbers& numbers) {
   if (!row) return "";
-  const std::string marks = fmt::format("{}{}", row->marked("baseline_not_learned") ? "†" : "",
-                                        row->marked("incomplete") ? "‡" : "");
+  const std::string marks =
+      fmt::format("{}{}", row->marked("baseline_not_learned") ? "†" : "", row->marked("incomplete") ? "‡" : "");
   if (!row->success) return "–" + marks;
   const auto value = [&](const char* member, double x) {
     return numbers.value(*row, member, fmt::format("{:.2f}", x));
   };
   std::string text = fmt::format(
-      "<button type=button class=rate data-row={} style=\"--rate:{:.0f}%\"><b>{}</b>{} <small>[{}, {}]</small></button>",
+      "<button type=button class=rate data-row={} style=\"--rate:{:.0f}%\"><b>{}</b>{} <small>[{}, "
+      "{}]</small></button>",
       numbers(*row), *row->success * 100, value("success", *row->success), marks, value("low", row->interval.low),
       value("high", row->interval.high));
   if (!row->shift) return text;
@@ -73,7 +74,8 @@ std::string rates(const std::string& caption, const Table& table_, const std::ve
       line(methods[i], i);
       if (several_arms || !mean_alone) continue;
       bool published = false;
-      std::vector<std::string> cells{fmt::format("<i class=theirs>{}, the paper</i>", escaped(display_name(methods[i])))};
+      std::vector<std::string> cells{
+          fmt::format("<i class=theirs>{}, the paper</i>", escaped(display_name(methods[i])))};
       for (const Column& c : columns) {
         const auto rate = paper.find(scenario, display_name(methods[i]), c.demonstrations);
         published = published || rate;
@@ -90,13 +92,14 @@ std::string corner(const View& view, const Table& table) {
   return table.arms.size() > 1 ? fmt::format("arms, {}", view.corner) : "number of demonstrations";
 }
 
-std::string of_paper(const PaperValues& paper) {
-  if (paper.rates.empty()) return "";
-  return fmt::format("<p class=hint>The paper’s values, <i class=paper>in italics</i>, are those of its figure {}, {}.</p>",
-                     escaped(paper.figure),
-                     paper.rates.count(mean_scenario)
-                         ? "on the mean over its own scenarios, not only those of this run"
-                         : "at 50 demonstrations, a scenario’s arms pooled; its scenes are not public");
+// What the paper's values are, in the section that shows them: the mean's, or the scenarios'.
+std::string of_paper(const PaperValues& paper, bool section_of_means) {
+  if (paper.rates.empty() || (paper.rates.count(mean_scenario) != 0) != section_of_means) return "";
+  return fmt::format(
+      "<p class=hint>The paper’s values, <i class=paper>in italics</i>, are those of its figure {}, {}.</p>",
+      escaped(paper.figure),
+      section_of_means ? "on the mean over its own scenarios, not only those of this run"
+                       : "at 50 demonstrations, a scenario’s arms pooled; its scenes are not public");
 }
 
 }  // namespace
@@ -104,7 +107,8 @@ std::string of_paper(const PaperValues& paper) {
 std::string success(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers) {
   std::string text;
   for (const Table& table : summary.tables) {
-    text += fmt::format("<h3>{}</h3>{}<div class=beside><div class=charts>", escaped(table.title()), legend(table, paper));
+    text +=
+        fmt::format("<h3>{}</h3>{}<div class=beside><div class=charts>", escaped(table.title()), legend(table, paper));
     const bool curves = table.demonstrations().size() > 1;
     for (const std::string& arm : table.arms) {
       text += chart(table, arm, mean_scenario, paper, numbers);
@@ -119,7 +123,7 @@ std::string success(const Summary& summary, const PaperValues& paper, const RowN
     }
     text += "</div>";
   }
-  return section("success", "Success against demonstrations", text + of_paper(paper));
+  return section("success", "Success against demonstrations", text + of_paper(paper, true));
 }
 
 std::string arms(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers) {
@@ -127,10 +131,12 @@ std::string arms(const Summary& summary, const PaperValues& paper, const RowNumb
   for (const Table& table : summary.tables) {
     if (table.arms.size() == 1) continue;
     for (const View& view : views(table))
-      text += rates(fmt::format("Success [95 % interval], {}, and below it the change against {} where it is paired, {}; "
-                                "columns: {}",
-                                table.title(mean_scenario), escaped(table.arms.front()), escaped(table.title()), corner(view, table)),
-                    table, view.columns, {mean_scenario}, paper, numbers);
+      text +=
+          rates(fmt::format("Success [95 % interval], {}, and below it the change against {} where it is paired, {}; "
+                            "columns: {}",
+                            table.title(mean_scenario), escaped(table.arms.front()), escaped(table.title()),
+                            corner(view, table)),
+                table, view.columns, {mean_scenario}, paper, numbers);
   }
   return text.empty() ? "" : section("arms", "Arms side by side", text);
 }
@@ -148,7 +154,7 @@ std::string scenarios(const Summary& summary, const PaperValues& paper, const Ro
       text += rates(fmt::format("Each scenario, {}; columns: {}", escaped(table.title()), corner(view, table)), table,
                     view.columns, each, paper, numbers);
   }
-  return section("scenarios", "Each scenario", text);
+  return section("scenarios", "Each scenario", text + of_paper(paper, false));
 }
 
 }  // namespace lgabench::report::html_parts

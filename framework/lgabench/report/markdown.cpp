@@ -282,7 +282,8 @@ std::string markdown(const RunResults& run, const Summary& summary, const PaperV
                         paper.rates.count(mean_scenario)
                             ? "on the mean over its own scenarios, not only those of this run"
                             : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
-  return text + phi(run, summary) + failures(summary) + attribution(summary) + times(run) + failed_cells(summary) + how_to_read;
+  return text + phi(run, summary) + failures(summary) + attribution(summary) + times(run) + failed_cells(summary) +
+         how_to_read;
 }
 
 }  // namespace lgabench::report
