@@ -40,8 +40,9 @@ function(lgabench_link_data)
   set(share ${PROJECT_BINARY_DIR}/share/lgabench)
   file(MAKE_DIRECTORY ${share})
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
-               answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts embeddings:framework/lgabench/learning/embeddings
-               paper:results/paper formats:docs/formats)
+               answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
+               embeddings:framework/lgabench/learning/embeddings paper:results/paper formats:docs/formats
+               page:framework/lgabench/report/page)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)

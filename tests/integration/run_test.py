@@ -2,6 +2,7 @@
 
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py Killed
 """
+import base64
 import hashlib
 import json
 import os
@@ -267,6 +268,51 @@ class Demonstrations(Case):
             self.call("run", "q1", "--methods", "lga", "--set", "lga.epochs=2", "--episodes", "1", "--out", out, *flags)
             self.assertEqual(json.loads((self.dir / out / "run.json").read_text())["smoke"], stamped)
             self.assertEqual({cell["smoke"] for cell, _ in self.cells(out).values()}, {stamped})
+
+
+class Page(Case):
+    def data(self, run):
+        page = (self.dir / run / "report.html").read_text()
+        return page, json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
+
+    def test_pictures_of_the_scenes_in_which_a_method_failed(self):
+        self.call("run", "q1", "--scenarios", "heart,red_heart", "--methods", "lga,gcbc_dart", "--demos", "10",
+                  "--seeds", "0", "--episodes", "5", "--set", "lga.epochs=2", "--set", "gcbc_dart.epochs=1", "--out", "out")
+        page, data = self.data("out")
+        failed, masked = set(), set()
+        for key, (cell, _) in self.cells("out").items():
+            if cell["method"]["kind"] == "method":
+                for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines():
+                    episode = json.loads(line)
+                    if not episode["success"]:
+                        failed.add(episode["scene"])
+                        masked |= {episode["scene"]} if cell["method"]["id"] == "lga" else set()
+        self.assertTrue(masked)
+        self.assertEqual(set(data["pictures"]), failed)
+        self.assertEqual({name.split("/")[0] for name in data["masks"]}, masked)
+        for bytes_ in [*data["pictures"].values(), *data["masks"].values()]:
+            self.assertTrue(base64.b64decode(bytes_).startswith(b"\x89PNG"))
+        self.assertEqual(len(set(data["pictures"].values())), len(failed), "two scenes look alike")
+        self.call("report", "out")
+        self.assertEqual(self.data("out")[0], page)
+
+        # A worker that draws something else than what was played says so ...
+        key, (cell, _) = next(iter(self.cells("out").items()))
+        request = {"cell": str(self.dir / "out/cells" / key / "cell.json"), "arm": "test", "index": 0, "selections": []}
+        drawn = subprocess.run([BUILD / "bin/lgabench-worker", "pictures"], capture_output=True, text=True, check=True,
+                               input=json.dumps([dict(request, scene="0" * 16)])).stdout
+        self.assertEqual(json.loads(drawn), {"problem": "this version samples another scene than the run played"})
+
+        # ... and one that is missing costs the pictures alone.
+        (self.dir / "bin").mkdir()
+        shutil.copy(PROGRAM, self.dir / "bin")
+        for folder in ("lib", "share"):
+            (self.dir / folder).symlink_to(BUILD / folder)
+        subprocess.run([self.dir / "bin/lgabench", "report", self.dir / "out"], check=True, capture_output=True,
+                       env=dict(self.environment, LD_LIBRARY_PATH=str(BUILD / "lib")))
+        page, data = self.data("out")
+        self.assertIn("No pictures of scenes: lgabench-worker could not be started", page)
+        self.assertEqual(data["pictures"], {})
 
 
 class Gallery(Case):

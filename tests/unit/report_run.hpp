@@ -44,6 +44,7 @@ class FabricatedRun : public TemporaryDirectory {
     int first_scene = 0;  // hash of the first of 20 scenes
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
+    std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
 
@@ -126,6 +127,7 @@ class FabricatedRun : public TemporaryDirectory {
                        {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
                        {"success", won},
                        {"failure", won ? "none" : s.failure},
+                       {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
                        {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
             '\n';
       }

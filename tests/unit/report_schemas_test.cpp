@@ -86,6 +86,7 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"episodes", "/success", true},  // and a failure
       {"episodes", "/action", {1, 2, 3}},
       {"episodes", "/command", -1},
+      {"episodes", "/attribution", "luck"},
       {"timing", "/learn_s", -1.0},
       {"status", "/state", "done"},
       {"status", "/fault", "nobody"},
@@ -95,6 +96,7 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"summary", "/rows/0/shift", {{"difference", 0.5}}},
       {"summary", "/rows/0/phi", {{"quality", nullptr}}},
       {"summary", "/rows/0/failures", {{"bad_luck", 1}}},
+      {"summary", "/rows/0/attribution", {{"policy", 1}}},
       {"summary", "/failed_cells/0/fault", nullptr},
       {"claims", "/claims/0/verdict", "maybe"},
       {"claims", "/claims/0/claim", "C6"},

@@ -83,6 +83,23 @@ TEST(Summary, RowsHaveTheExactCounts) {
   EXPECT_EQ(mean.at("phi"), nullptr);
 }
 
+TEST(Summary, CountsWhatFailuresAreLaidTo) {
+  FabricatedRun run;
+  for (int seed = 0; seed < 3; ++seed) {
+    FabricatedRun::Spec lga{"lga", 15 + seed, "heart", 20, seed};
+    lga.attribution = seed == 0 ? "abstraction" : "policy";
+    run.add(lga);
+  }
+  run.add({"lga", 20, "letter"});
+  run.add({"gcbc_dart", 2});
+  const Json summary = summary_of(run), laid_to{{"abstraction", 5}, {"policy", 4 + 3}};
+  EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), laid_to);
+  EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), laid_to);
+  EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
+  EXPECT_SAYS(read_file(run.path / "report.md"), "| layout cells, engine mujoco | test | LGA | 20 | 5 | 7 |");
+  EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0,,5,7,12,0,");
+}
+
 TEST(Summary, SeveralSeedsAreAveraged) {
   FabricatedRun run;
   run.add({"lga", 20, "heart", 20, 0});
@@ -251,11 +268,12 @@ TEST(Report, CsvHoldsTheRows) {
   const std::string csv = read_file(run.path / "summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
-            "against,difference,difference_low,difference_high,same_actions,n_error,marks,missed_object,wrong_object,"
+            "against,difference,difference_low,difference_high,same_actions,n_error,marks,abstraction,policy,missed_"
+            "object,wrong_object,"
             "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
   EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,20,15,0.75,0.53");
-  EXPECT_SAYS(csv, ",,,,,,0,,5,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_SAYS(csv, ",,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST(Report, WithoutGnuplotItSaysSoAndGoesOn) {
@@ -329,6 +347,10 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
               "line 16: /failure: expected \"none\" exactly");
   EXPECT_SAYS(broken("episodes.jsonl", [](auto text) { return text.substr(0, text.find('\n') + 1); }),
               "episodes.jsonl: line 1: expected 20 episodes of arm \"test\", got 1");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null", "\"attribution\":\"policy\"")),
+              "line 1: /attribution: expected abstraction, policy on a method's failure, or null");
+  EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null,", "")),
+              "line 1: /: expected a member \"attribution\"");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"index\":3", "\"index\":4")),
               "episodes.jsonl: line 5: /index: expected each index once");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"command\":0", "\"command\":1")),

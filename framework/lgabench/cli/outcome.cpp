@@ -44,7 +44,7 @@ void print_report(const fs::path& run, bool json) {
   if (json)
     fmt::print("{}", read_file(run / "summary.json"));
   else
-    fmt::print("{}\nreport: {}\n", report::table_text(run), (run / "report.md").string());
+    fmt::print("{}\nreport: {}\n", report::table_text(run), (run / "report.html").string());
 }
 
 }  // namespace lgabench::cli

@@ -1,4 +1,4 @@
-// lgabench report: makes a run's tables and figures anew, and prints them.
+// lgabench report: makes a run's tables, figures and page anew, and prints the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,8 @@ void add_report(CLI::App& app, int& exit) {
     bool claims = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("report", "Make a run's tables and figures anew from its cells, and print them");
+  CLI::App* verb = app.add_subcommand(
+      "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb->add_option("RUN", options->run, "The run's directory")->required();
   verb->add_option("--format", options->format, "What to print: text, md, json or csv")
       ->check(CLI::IsMember({"text", "md", "json", "csv"}))
@@ -43,7 +44,10 @@ void add_report(CLI::App& app, int& exit) {
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
   verb->footer(
+      "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
+      "claims.json and figures/.\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
+      "         xdg-open runs/q1-smoke/report.html\n"
       "The paper's claims: lgabench report runs/q2 --claims");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
@@ -58,7 +62,7 @@ void add_report(CLI::App& app, int& exit) {
       fmt::print("{}", read_file(run / "report.md"));
     else
       fmt::print("{}", read_file(run / ("summary." + options->format)));
-    fmt::print(stderr, "{}\n", (run / "report.md").string());
+    fmt::print(stderr, "{}\n", (run / "report.html").string());
     exit = ok;
   });
 }

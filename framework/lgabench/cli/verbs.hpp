@@ -21,6 +21,7 @@ void add_cell(CLI::App& app, int& exit);
 void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
+void add_pictures(CLI::App& app, int& exit);
 
 /// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.
 int dispatch(CLI::App& app, int argc, char** argv, const int& exit);

@@ -14,5 +14,6 @@ int main(int argc, char** argv) {
   cli::add_select(app, exit);
   cli::add_demos(app, exit);
   cli::add_render(app, exit);
+  cli::add_pictures(app, exit);
   return cli::dispatch(app, argc, argv, exit);
 }

@@ -21,11 +21,6 @@ Action random_object(const Environment& environment, const Scene& scene, const O
   return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
 }
 
-// The arm has no part in it: more noise adds errors to those that less of it makes.
-RandomStream perception_stream(const Scene& scene) {
-  return RandomStream(fmt::format("textualization/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index));
-}
-
 Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
   Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, std::nullopt, ""};
@@ -44,6 +39,10 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
 }
 
 }  // namespace
+
+RandomStream perception_stream(const Scene& scene) {
+  return RandomStream(fmt::format("textualization/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index));
+}
 
 Json to_json(const Episode& e) {
   return {{"arm", e.arm},

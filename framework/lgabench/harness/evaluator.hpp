@@ -32,6 +32,10 @@ struct TestScene {
   bool abstraction_empty = false;  // nothing was selected for its command: failed without being played
 };
 
+/// What imperfect textualization of the scene draws from. The arm has no part in it: more noise adds errors to those
+/// that less of it makes.
+RandomStream perception_stream(const Scene& scene);
+
 /// Chooses the one action of an episode. @throws MethodError where it cannot.
 using Actor = std::function<Action(const Environment& environment, const Scene& scene, const Observation& observation)>;
 

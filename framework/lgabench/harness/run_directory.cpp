@@ -116,7 +116,7 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
       for (const char* name :
-           {"cells", "summary.json", "summary.csv", "claims.json", "report.md", "figures", "run.json"})
+           {"cells", "summary.json", "summary.csv", "claims.json", "report.md", "report.html", "figures", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
       there = read_json(record);

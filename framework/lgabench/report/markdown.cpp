@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/tables.hpp>
@@ -34,12 +32,6 @@ std::string head_of(const std::vector<std::string>& names, std::size_t words) {
   std::vector<std::string> rules(names.size(), "---:");
   std::fill_n(rules.begin(), std::min(words, rules.size()), "---");
   return row_of(names) + row_of(rules);
-}
-
-bool has_unseen(const RunResults& run) {
-  return std::any_of(run.cells.begin(), run.cells.end(), [](const CellResult& cell) {
-    return std::any_of(cell.commands.begin(), cell.commands.end(), [](const auto& c) { return !c.seen; });
-  });
 }
 
 // Whether demonstrations with the command were given, where that is not so for all.
@@ -151,9 +143,10 @@ std::string count(const Json& value) { return value.is_number() ? fmt::format("{
 std::string phi(const RunResults& run, const Summary& summary) {
   const bool tell = has_unseen(run);
   std::string text;
-  std::set<std::string> shown, wordings;
-  const auto add = [&](const Row& row, const Json& phi) {
-    if (!shown.insert(row.scenario + '\n' + row.method + '\n' + canonical(phi)).second) return;
+  std::set<std::string> wordings;
+  for (const PhiOfRow& of : distinct_phi(summary)) {
+    const Row& row = *of.row;
+    const Json& phi = row.phi.at(of.command);
     for (const auto& [about, groups] : phi.at("quality").items()) {
       if (groups.is_null()) continue;
       std::vector<std::string> cells{plain(row.scenario),
@@ -174,10 +167,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
     if (phi.at("asked_as") != phi.at("utterance"))
       wordings.insert(
           fmt::format("- {}, of {}: “{}”\n", plain(row.scenario), plain(phi.at("source")), plain(phi.at("asked_as"))));
-  };
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows)
-      for (const Json& phi : row.phi) add(row, phi);
+  }
   if (text.empty()) return "";
   return "\n## The feature abstraction φ̂\n\nAgainst the scenario's true distribution: precision and recall of what was "
          "selected, and how many were selected of how many that are true.\n\n" +
@@ -223,30 +213,36 @@ std::string failures(const Summary& summary) {
 }
 
 std::string times(const RunResults& run) {
-  struct Sum {
-    int cells = 0;
-    std::array<double, phases.size()> seconds{};
-  };
-  std::map<std::tuple<std::string, std::string, int, std::string>, Sum> sums;  // layout, engine, rank, method
-  for (const CellResult& cell : run.cells) {
-    if (cell.failed) continue;
-    Sum& sum = sums[{cell.layout, cell.engine, display_rank(cell.method), cell.method}];
-    ++sum.cells;
-    for (std::size_t i = 0; i < phases.size(); ++i) sum.seconds[i] += cell.timing.at(phases[i]).get<double>();
-  }
-  if (sums.empty()) return "";
+  const std::vector<PhaseTimes> all = phase_times(run);
+  if (all.empty()) return "";
   std::string text =
       "\n## Time per cell\n\nMean seconds of each phase.\n\n" +
       head_of({"layout", "engine", "method", "cells", "select", "sample", "demonstrate", "learn", "evaluate", "total"},
               3);
-  for (const auto& [place, sum] : sums) {
-    const auto& [layout, engine, rank, method] = place;
-    std::vector<std::string> cells{plain(layout), plain(engine), plain(display_name(method)),
-                                   std::to_string(sum.cells)};
-    for (const double s : sum.seconds) cells.push_back(fmt::format("{:.2f}", s / sum.cells));
+  for (const PhaseTimes& times : all) {
+    std::vector<std::string> cells{plain(times.layout), plain(times.engine), plain(display_name(times.method)),
+                                   std::to_string(times.cells)};
+    for (const double s : times.mean_s) cells.push_back(fmt::format("{:.2f}", s));
     text += row_of(cells);
   }
   return text;
+}
+
+// Of the methods that select: whose failures the true mask would have turned.
+std::string attribution(const Summary& summary) {
+  std::string text;
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) {
+      if (!row.is_mean() || row.attributed() == 0) continue;
+      std::vector<std::string> cells{plain(table.title()), plain(row.arm), plain(display_name(row.method)),
+                                     std::to_string(row.demonstrations)};
+      for (const char* to : attributions) cells.push_back(std::to_string(row.attribution.at(to)));
+      text += row_of(cells);
+    }
+  if (text.empty()) return "";
+  return "\n## What failures are laid to\n\nThe abstraction, where the same policy wins the same scene with the true "
+         "mask; else the policy. Episodes over all scenarios, of methods that select.\n\n" +
+         head_of({"table", "arm", "method", "demonstrations", "abstraction", "policy"}, 3) + text;
 }
 
 std::string failed_cells(const Summary& summary) {
@@ -288,8 +284,8 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
                         paper.rates.count(mean_scenario)
                             ? "on the mean over its own scenarios, not only those of this run"
                             : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
-  return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + times(run) + failed_cells(summary) +
-         how_to_read;
+  return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + attribution(summary) + times(run) +
+         failed_cells(summary) + how_to_read;
 }
 
 }  // namespace lgabench::report

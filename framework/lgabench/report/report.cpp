@@ -1,6 +1,7 @@
 #include <lgabench/report/report.hpp>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/report/html.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
@@ -28,6 +29,7 @@ void write_report(const fs::path& run) {
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, claims, paper, figures));
+  write_file(run / "report.html", html(results, summary, paper, draw_pictures(run, results)));
 }
 
 std::string table_text(const fs::path& run) {

@@ -6,8 +6,9 @@
 
 namespace lgabench::report {
 
-/// Reads RUN's cells, writes RUN/summary.json, summary.csv, claims.json, report.md and figures/*.svg. The same cells
-/// give the same bytes, but for the times in report.md. Without gnuplot the report says so and has no figure.
+/// Reads RUN's cells, writes RUN/summary.json, summary.csv, claims.json, report.md, report.html and figures/*.svg. The
+/// same cells give the same bytes, but for the times in report.md and report.html. Without gnuplot the report says so
+/// and has no figure; without lgabench-worker beside the program report.html says so and has no pictures.
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 void write_report(const fs::path& run);
 

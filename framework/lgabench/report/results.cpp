@@ -49,6 +49,12 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     if (e.success != (e.failure == "none")) reader.at("failure").fail("\"none\" exactly on success");
     if (!e.success && std::find(words.begin(), words.end(), e.failure) == words.end())
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));
+    if (const JsonReader blamed = reader.at("attribution"); !blamed.json().is_null()) {
+      e.attribution = blamed.string();
+      if (e.success || cell.is_reference() ||
+          std::find(attributions.begin(), attributions.end(), e.attribution) == attributions.end())
+        blamed.fail(fmt::format("{} on a method's failure, or null", fmt::join(attributions, ", ")));
+    }
     if (const JsonReader action = reader.at("action"); !action.json().is_null())
       for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
@@ -114,6 +120,7 @@ CellResult read_cell(const fs::path& directory) {
     cell.failed = true;
     cell.fault = reader.at("fault").string();
     cell.reason = reader.at("reason").string();
+    cell.log_tail = reader.at("log_tail").strings();
     return cell;
   }
   read_selections(directory / "selection.json", cell);

@@ -23,9 +23,10 @@ struct CommandResult {
 
 struct PlayedEpisode {
   std::size_t command = 0;  // index into the cell's commands
-  std::string scene;        // its hash
   std::string failure;      // "none" exactly on success
   bool success = false;
+  std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
+  std::string scene;           // the scene's hash, 16 hexadecimal digits
   std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
 };
 
@@ -38,6 +39,7 @@ struct CellResult {
   std::vector<CommandResult> commands;
   bool failed = false;
   std::string fault, reason;                                   // where it failed; fault: plugin or host
+  std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
   std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
   Json timing;                                                 // as in timing.json
 
@@ -58,6 +60,10 @@ std::vector<std::string> failure_words();
 
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
+
+/// What a failure may be laid to, in a fixed order: a failed episode that the same policy wins with the true mask is
+/// the abstraction's, any other the policy's.
+constexpr std::array<const char*, 2> attributions{"abstraction", "policy"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
 /// @throws InputError naming file and line or place for a file that is missing, malformed, or not what status.json's

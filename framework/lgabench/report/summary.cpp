@@ -170,8 +170,10 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
     Policy policy = played(episodes);
     if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
       pair(policy, control->second, episodes);
-    for (const PlayedEpisode& e : episodes)
+    for (const PlayedEpisode& e : episodes) {
       if (!e.success) ++row.failures[e.failure];
+      if (!e.attribution.empty()) ++row.attribution[e.attribution];
+    }
     ++row.seeds;
     row.episodes += policy.episodes;
     row.successes += policy.successes;
@@ -190,6 +192,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   row.phi = nullptr;
   row.seeds = row.episodes = row.successes = row.n_error = 0;
   row.failures.clear();
+  row.attribution = Row().attribution;
   row.marks.clear();
   row.success.reset();
   row.interval = {};
@@ -201,6 +204,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
     row.successes += draft->row.successes;
     row.n_error += draft->row.n_error;
     for (const auto& [failure, n] : draft->row.failures) row.failures[failure] += n;
+    for (const auto& [to, n] : draft->row.attribution) row.attribution[to] += n;
     complete = complete && !draft->row.marked("incomplete");
     mean.scenarios.push_back(draft->scenarios.front());
   }

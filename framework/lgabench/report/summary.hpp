@@ -29,6 +29,7 @@ struct Row {
   std::optional<double> success;  // mean over scenarios of the mean over training seeds; none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
+  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures laid to each
   std::optional<Shift> shift;  // none in the first arm, nor where the arms give different commands
   int n_error = 0;             // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
@@ -37,6 +38,7 @@ struct Row {
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }
   bool marked(const std::string& mark) const;
+  int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
 };
 
 /// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;

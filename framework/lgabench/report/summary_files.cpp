@@ -35,6 +35,7 @@ Json to_json(const Summary& summary) {
                       {"high", row.success ? Json(row.interval.high) : Json()},
                       {"shift", shift_json(row.shift)},
                       {"failures", row.failures},
+                      {"attribution", row.attribution},
                       {"n_error", row.n_error},
                       {"marks", row.marks},
                       {"phi", row.phi}});
@@ -55,8 +56,8 @@ std::string to_csv(const Summary& summary) {
   const std::vector<std::string> words = failure_words();
   std::string csv = fmt::format(
       "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
-      "against,difference,difference_low,difference_high,same_actions,n_error,marks,{}\n",
-      fmt::join(words, ","));
+      "against,difference,difference_low,difference_high,same_actions,n_error,marks,{},{}\n",
+      fmt::join(attributions, ","), fmt::join(words, ","));
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       const bool known = row.success.has_value();
@@ -69,6 +70,7 @@ std::string to_csv(const Summary& summary) {
                          number(known, row.interval.high), quoted(shift.against), number(shifted, shift.difference),
                          number(shifted, shift.interval.low), number(shifted, shift.interval.high),
                          shifted ? canonical(shift.same_actions) : "", row.n_error, fmt::join(row.marks, " "));
+      for (const char* to : attributions) csv += fmt::format(",{}", row.attribution.at(to));
       for (const std::string& word : words) {
         const auto it = row.failures.find(word);
         csv += fmt::format(",{}", it == row.failures.end() ? 0 : it->second);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include <lgabench/report/names.hpp>
 
@@ -90,6 +91,40 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   for (const auto& [method, provenance] : no_people)
     lines.push_back(fmt::format("{}: {}.", display_name(method), provenance_words(provenance)));
   return lines;
+}
+
+std::vector<PhaseTimes> phase_times(const RunResults& run) {
+  std::map<std::tuple<std::string, std::string, int, std::string>, PhaseTimes> all;  // layout, engine, rank, method
+  for (const CellResult& cell : run.cells) {
+    if (cell.failed) continue;
+    PhaseTimes& times = all[{cell.layout, cell.engine, display_rank(cell.method), cell.method}];
+    times.layout = cell.layout, times.engine = cell.engine, times.method = cell.method;
+    ++times.cells;
+    for (std::size_t i = 0; i < phases.size(); ++i) times.mean_s[i] += cell.timing.at(phases[i]).get<double>();
+  }
+  std::vector<PhaseTimes> list;
+  for (auto& item : all) {
+    for (double& s : item.second.mean_s) s /= item.second.cells;
+    list.push_back(item.second);
+  }
+  return list;
+}
+
+std::vector<PhiOfRow> distinct_phi(const Summary& summary) {
+  std::set<std::string> shown;
+  std::vector<PhiOfRow> all;
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows)
+      for (std::size_t i = 0; i < row.phi.size(); ++i)
+        if (shown.insert(row.scenario + '\n' + row.method + '\n' + canonical(row.phi[i])).second)
+          all.push_back({&row, i});
+  return all;
+}
+
+bool has_unseen(const RunResults& run) {
+  return std::any_of(run.cells.begin(), run.cells.end(), [](const CellResult& cell) {
+    return std::any_of(cell.commands.begin(), cell.commands.end(), [](const auto& c) { return !c.seen; });
+  });
 }
 
 }  // namespace lgabench::report

@@ -1,5 +1,6 @@
 // The texts of a report, from its values.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,25 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
 /// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.
 std::string plain(const std::string& text);
+
+/// Mean seconds of each of `phases` over the finished cells of a row's name, in the order of tables.
+struct PhaseTimes {
+  std::string layout, engine, method;
+  int cells = 0;
+  std::array<double, phases.size()> mean_s{};
+};
+std::vector<PhaseTimes> phase_times(const RunResults& run);
+
+/// The Selections of all rows, equal ones of a scenario and method (of other layouts, demonstrations, arms) once, as
+/// the index into their row's phi.
+struct PhiOfRow {
+  const Row* row;
+  std::size_t command;
+};
+std::vector<PhiOfRow> distinct_phi(const Summary& summary);
+
+/// Whether a command of the run is tested only: then each says which it is.
+bool has_unseen(const RunResults& run);
 
 /// report.md. `figures` of each of the summary's tables, in their order.
 std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,

@@ -1,0 +1,112 @@
+// lgabench-worker pictures: test scenes and goal masks for report.html, as a request on stdin lists them.
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cli/picture.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/harness/evaluator.hpp>
+#include <tabletop/renderer.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
+  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), from, static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(size));
+  return text;
+}
+
+template <class ColourAt>
+std::string png(ColourAt colour_at) {
+  Picture picture(Observation::columns, Observation::rows);
+  picture.paste(0, 0, Observation::columns, Observation::rows, 1, [&](int column, int row) {
+    return colour_at(static_cast<std::size_t>(row * Observation::columns + column));
+  });
+  return base64(picture.png());
+}
+
+struct Played {
+  Cell cell;
+  Scenario scenario;
+};
+
+class Pictures {
+ public:
+  // {"picture": PNG, "masks": [PNG, ...]}, in base64. @throws InputError where the scene is not the one asked for.
+  Json draw(const JsonReader& request) {
+    const Played& played = cell(request.at("cell").string());
+    const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
+    const std::string arm = request.at("arm").string();
+    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index);
+    if (hex(scene.hash()) != request.at("scene").string())
+      throw InputError("this version samples another scene than the run played");
+
+    const Observation seen = renderer_.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+    const Observation perceived =
+        imperfect_textualization(seen, played.scenario.space, noise(played.scenario, arm), perception_stream(scene));
+    Json masks = Json::array();
+    for (const JsonReader& selection : request.at("selections").elements()) {
+      const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
+      masks.push_back(png([&](std::size_t i) { return mask[i] ? Rgb{245, 245, 245} : Rgb{32, 32, 32}; }));
+    }
+    const auto colour = [&](std::size_t i) { return Rgb{seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]}; };
+    return {{"picture", png(colour)}, {"masks", masks}};
+  }
+
+ private:
+  const Played& cell(const std::string& file) {
+    const auto known = cells_.find(file);
+    if (known != cells_.end()) return *known->second;
+    Cell read = read_cell(read_json(file), file);
+    Scenario scenario = read_scenario(read.scenario, file + ": /scenario");
+    return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
+  }
+
+  static TextualizationNoise noise(const Scenario& scenario, const std::string& arm) {
+    for (const Arm& test : scenario.tests)
+      if (test.id == arm) return {test.label_noise, test.missed_segment};
+    return {};
+  }
+
+  tabletop::Renderer renderer_;
+  std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
+};
+
+}  // namespace
+
+void add_pictures(CLI::App& app, int&) {
+  CLI::App* verb = app.add_subcommand("pictures", "Draw the scenes listed as JSON on stdin, a line of JSON each");
+  verb->group("");  // `lgabench report` starts it
+  verb->footer(
+      "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": "
+      "\"HASH\",\n"
+      "                \"selections\": []}]' | lgabench-worker pictures");
+  verb->callback([] {
+    const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
+    const Json requests = Json::parse(text, nullptr, false);
+    Pictures pictures;
+    for (const JsonReader& request : JsonReader(requests, "pictures").elements()) {
+      Json line;
+      try {
+        line = pictures.draw(request);
+      } catch (const Error& e) {
+        line = {{"problem", e.what()}};
+      }
+      fmt::print("{}\n", canonical(line));
+    }
+  });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,100 @@
+// What a click on a number shows: kept short, as a large run has hundreds of thousands of episodes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <lgabench/core/geometry.hpp>
+#include <lgabench/report/html_parts.hpp>
+#include <lgabench/report/names.hpp>
+
+namespace lgabench::report::html_parts {
+namespace {
+
+// Column and row of the picture where the action's pose lies; positions are carried out clipped to the workspace.
+Json pixel(double x_m, double y_m) {
+  const auto tenths = [](double value) { return std::round(value * 10) / 10; };
+  const double x = std::clamp(x_m, Workspace::x_min, Workspace::x_max),
+               y = std::clamp(y_m, Workspace::y_min, Workspace::y_max);
+  return {tenths((y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min) * Workspace::columns),
+          tenths((x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min) * Workspace::rows)};
+}
+
+std::string title_of(const Table& table, const Row& row) {
+  return fmt::format("{}, {}, {} demonstrations, arm {}, {}", display_name(row.method), table.title(row.scenario),
+                     row.demonstrations, row.arm, table.title());
+}
+
+// The rows that each (cell, arm) counts in: its scenario's and the mean's.
+using Place = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
+Place place(const std::string& layout, const std::string& engine, const std::string& arm, const std::string& scenario,
+            const std::string& method, int n) {
+  return {layout, engine, arm, scenario, method, n};
+}
+
+}  // namespace
+
+Json episodes(const RunResults& run, const Summary& summary, const Pictures& pictures, const RowNumbers& numbers) {
+  std::map<Place, std::size_t> rows;
+  Json titles = Json::array();
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) {
+      rows[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = numbers(row);
+      titles.push_back(title_of(table, row));
+    }
+
+  const std::vector<std::string> words = failure_words();
+  std::map<std::vector<std::string>, std::size_t> scenes;  // of an arm, shared by the cells that play it
+  Json cells = Json::array();
+  for (const CellResult& cell : run.cells) {
+    if (cell.failed) continue;
+    Json commands = Json::array(), masks = Json::array();
+    for (const CommandResult& command : cell.commands) {
+      commands.push_back(command.utterance);
+      // What follows the scene's hash in the names of pictures.masks.
+      masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", command.selection)));
+    }
+    Json played = Json::array();
+    for (const std::string& arm : cell.arms) {
+      std::string outcomes, blamed;  // a character an episode
+      std::vector<std::string> hashes;
+      Json given = Json::array(), actions = Json::object();
+      const std::vector<PlayedEpisode>& all = cell.episodes.at(arm);
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const PlayedEpisode& e = all[i];
+        const auto word = std::find(words.begin(), words.end(), e.failure) - words.begin();
+        outcomes += e.success ? '.' : static_cast<char>('a' + word);
+        blamed += e.attribution.empty() ? '.' : e.attribution.front();
+        hashes.push_back(e.scene);
+        given.push_back(e.command);
+        if (!e.success && !e.action.empty() && pictures.scenes.count(e.scene) != 0)
+          actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
+      }
+      const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
+      const auto row = [&](const std::string& scenario) {
+        return rows.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
+      };
+      played.push_back({{"arm", arm},
+                        {"rows", {row(cell.scenario), row(mean_scenario)}},
+                        {"scenes", shared},
+                        {"commands", given},
+                        {"outcomes", outcomes},
+                        {"attribution", blamed},
+                        {"actions", actions}});
+    }
+    cells.push_back({{"cell", cell.key},
+                     {"scenario", cell.scenario},
+                     {"seed", cell.training_seed},
+                     {"commands", commands},
+                     {"masks", masks},
+                     {"arms", played}});
+  }
+  std::vector<Json> lists(scenes.size());
+  for (const auto& [hashes, number] : scenes) lists[number] = hashes;
+  return {{"failures", words},           {"titles", titles},       {"cells", cells}, {"scenes", lists},
+          {"pictures", pictures.scenes}, {"masks", pictures.masks}};
+}
+
+}  // namespace lgabench::report::html_parts

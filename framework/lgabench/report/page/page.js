@@ -1,0 +1,141 @@
+"use strict";
+const data = JSON.parse(document.getElementById("data").textContent);
+const $ = (id) => document.getElementById(id);
+const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
+const words = (text) => text.replaceAll("_", " ");
+
+// Dark or light: the system's wish until the button is pressed.
+$("theme").hidden = false;
+$("theme").onclick = () => {
+  const root = document.documentElement;
+  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  root.dataset.theme = dark ? "light" : "dark";
+};
+
+$("contents").hidden = false;
+$("contents").innerHTML = [...document.querySelectorAll("main section")]
+  .map((section) => `<a href="#${section.id}">${section.querySelector("h2").textContent}</a>`).join("");
+
+// Numbers sort as numbers, what has none goes last.
+for (const table of document.querySelectorAll("table.sortable")) {
+  const heads = [...table.querySelectorAll("thead th")];
+  heads.forEach((head, column) => {
+    head.innerHTML = `<button type="button">${head.innerHTML}</button>`;
+    head.firstChild.onclick = () => {
+      const descending = head.getAttribute("aria-sort") === "ascending";
+      heads.forEach((other) => other.removeAttribute("aria-sort"));
+      head.setAttribute("aria-sort", descending ? "descending" : "ascending");
+      const key = (row) => row.cells[column].textContent.trim();
+      const rows = [...table.tBodies[0].rows];
+      rows.sort((a, b) => {
+        const [x, y] = [key(a), key(b)], [m, n] = [parseFloat(x), parseFloat(y)];
+        if (isNaN(m) !== isNaN(n)) return isNaN(m) ? 1 : -1;
+        return (isNaN(m) ? x.localeCompare(y) : m - n) * (descending ? -1 : 1);
+      });
+      table.tBodies[0].append(...rows);
+    };
+  });
+}
+
+// A point's numbers, under the pointer or the focus.
+const tip = $("tip");
+for (const point of document.querySelectorAll(".point[aria-label]")) {
+  const show = () => {
+    const box = point.getBoundingClientRect();
+    tip.textContent = point.getAttribute("aria-label");
+    tip.hidden = false;
+    tip.style.left = `${Math.max(4, Math.min(box.right + 8, innerWidth - tip.offsetWidth - 4))}px`;
+    tip.style.top = `${Math.max(4, box.top - tip.offsetHeight - 4)}px`;
+  };
+  point.onmouseenter = point.onfocus = show;
+  point.onmouseleave = point.onblur = () => { tip.hidden = true; };
+}
+
+// Episodes of a row of summary.json, over its cells.
+function episodesOf(row) {
+  const all = [];
+  for (const cell of data.cells)
+    for (const played of cell.arms)
+      if (played.rows.includes(row))
+        [...played.outcomes].forEach((outcome, index) => {
+          const command = played.commands[index], scene = data.scenes[played.scenes][index];
+          const to = played.attribution[index];
+          all.push({
+            cell, arm: played.arm, index, scene, command: cell.commands[command],
+            failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
+            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : "",
+            action: played.actions[index], picture: data.pictures[scene],
+            mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
+          });
+        });
+  return all;
+}
+
+const picture = (bytes, alt, over) =>
+  `<svg viewBox="0 0 256 128" role="img" aria-label="${escaped(alt)}">` +
+  `<image href="data:image/png;base64,${bytes}" width="256" height="128"/>${over}</svg>`;
+
+// From pose0 to pose1, white on black, so that it shows on every texture.
+function arrow(action) {
+  if (!action) return "";
+  const [[x0, y0], [x1, y1]] = action, angle = Math.atan2(y1 - y0, x1 - x0);
+  const wing = (turn) => `${x1 - 9 * Math.cos(angle + turn)} ${y1 - 9 * Math.sin(angle + turn)}`;
+  const path = `M${x0} ${y0}L${x1} ${y1}M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
+  return `<g fill="none" stroke-linecap="round"><path d="${path}" stroke="#000" stroke-width="4.5"/>` +
+    `<path d="${path}" stroke="#fff" stroke-width="2"/>` +
+    `<circle cx="${x0}" cy="${y0}" r="3.5" fill="#fff" stroke="#000" stroke-width="1.5"/></g>`;
+}
+
+function card(e) {
+  const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}`;
+  const told = `<b>${e.failure}</b>${e.attribution ? `, laid to the ${e.attribution}` : ""}`;
+  const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
+  return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
+    (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
+    `</div><figcaption>${told}<br>${escaped(e.command)}<br><small>${escaped(where)}</small></figcaption></figure>`;
+}
+
+// The first `most` of a list, and a button for more of it.
+function growing(list, most, render) {
+  const box = document.createElement("div");
+  const draw = (count) => {
+    box.innerHTML = render(list.slice(0, count));
+    if (count >= list.length) return;
+    const more = document.createElement("button");
+    more.type = "button";
+    more.textContent = `${count} of ${list.length} shown: more`;
+    more.onclick = () => draw(count * 4);
+    box.append(more);
+  };
+  draw(most);
+  return box;
+}
+
+function show(row) {
+  const all = episodesOf(row), failed = all.filter((e) => e.failure), seen = failed.filter((e) => e.picture);
+  $("panel-title").textContent = data.titles[row];
+  const body = $("panel-body");
+  body.innerHTML = `<p>${all.length} episodes, ${failed.length} failed` +
+    (failed.length > seen.length ? `; ${seen.length} of these with a picture on this page` : "") +
+    ". The arrow is the action, from where it takes hold to where it lets go.</p>";
+  if (seen.length) body.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
+  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed, e.index, e.command, e.failure || "won", e.attribution]
+    .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
+  body.append(growing([...failed, ...all.filter((e) => !e.failure)], 100, (some) =>
+    `<div class="frame"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +
+    ["scenario", "arm", "training seed", "scene", "command", "outcome", "laid to"]
+      .map((head) => `<th scope="col">${head}</th>`).join("") +
+    `</tr></thead><tbody>${some.map(line).join("")}</tbody></table></div>`));
+  tip.hidden = true;
+  $("panel").showModal();
+  $("panel").scrollTop = 0;
+}
+
+for (const number of document.querySelectorAll("[data-row]")) {
+  number.addEventListener("click", () => show(Number(number.dataset.row)));
+  if (!(number instanceof HTMLButtonElement))
+    number.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") event.preventDefault(), show(Number(number.dataset.row));
+    });
+}
+$("close").onclick = () => $("panel").close();

@@ -1,0 +1,126 @@
+#include <lgabench/report/pictures.hpp>
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include <lgabench/core/hash.hpp>
+
+namespace lgabench::report {
+namespace {
+
+struct Request {
+  Json json;                       // as lgabench-worker reads it
+  std::vector<std::string> masks;  // mask_key of each of its selections
+};
+
+Json distribution(const Json& selection) {
+  Json out{{"target", selection.at("target")}};
+  if (selection.contains("avoid")) out["avoid"] = selection.at("avoid");
+  return out;
+}
+
+// A request for each scene in which a method failed, by index, then as the cells are ordered.
+std::vector<Request> requests_of(const fs::path& run, const RunResults& results) {
+  std::map<std::string, std::size_t> place;  // of a scene's request
+  std::vector<Request> all;
+  for (const CellResult& cell : results.cells) {
+    if (cell.failed || cell.is_reference()) continue;
+    for (const std::string& arm : cell.arms)
+      for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
+        const PlayedEpisode& episode = cell.episodes.at(arm)[i];
+        if (episode.success) continue;
+        const auto [known, is_new] = place.emplace(episode.scene, all.size());
+        if (is_new)
+          all.push_back({{{"cell", (run / "cells" / cell.key / "cell.json").string()},
+                          {"arm", arm},
+                          {"index", i},
+                          {"scene", episode.scene},
+                          {"selections", Json::array()}},
+                         {}});
+        const CommandResult& command = cell.commands[episode.command];
+        if (command.quality.is_null()) continue;
+        Request& request = all[known->second];
+        const std::string key = mask_key(episode.scene, command.selection);
+        if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
+        request.masks.push_back(key);
+        request.json["selections"].push_back(distribution(command.selection));
+      }
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Request& a, const Request& b) { return a.json.at("index") < b.json.at("index"); });
+  return all;
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+// Standard output of `lgabench-worker pictures`, given `input`. Returns what went wrong, or "".
+std::string run_worker(const std::string& input, std::string& output) {
+  const File in(std::tmpfile(), std::fclose), out(std::tmpfile(), std::fclose);
+  if (!in || !out || std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() || std::fflush(in.get()) != 0)
+    return fmt::format("no temporary file could be written: {}", std::strerror(errno));
+  std::rewind(in.get());
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(in.get()), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), STDOUT_FILENO);
+  std::string program = (program_directory() / "lgabench-worker").string(), verb = "pictures";
+  char* arguments[] = {program.data(), verb.data(), nullptr};
+  pid_t child = 0;
+  const int error = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) return fmt::format("lgabench-worker could not be started: {}", std::strerror(error));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "lgabench-worker failed";
+
+  std::rewind(out.get());
+  char buffer[1 << 16];
+  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, out.get())) > 0;) output.append(buffer, n);
+  return "";
+}
+
+}  // namespace
+
+std::string mask_key(const std::string& scene, const Json& selection) {
+  return scene + "/" + sha256(canonical(distribution(selection))).substr(0, 8);
+}
+
+Pictures draw_pictures(const fs::path& run, const RunResults& results) {
+  Pictures pictures;
+  std::vector<Request> requests = requests_of(run, results);
+  pictures.wanted = requests.size();
+  if (requests.empty()) return pictures;
+  if (requests.size() > most_pictures) requests.resize(most_pictures);
+
+  Json asked = Json::array();
+  for (const Request& request : requests) asked.push_back(request.json);
+  std::string lines;
+  pictures.problem = run_worker(canonical(asked), lines);
+  std::size_t begin = 0;
+  for (const Request& request : requests) {
+    const std::size_t end = std::min(lines.find('\n', begin), lines.size());
+    const Json drawn = Json::parse(lines.substr(begin, end - begin), nullptr, false);
+    begin = std::min(end + 1, lines.size());
+    if (!drawn.is_object() || !drawn.contains("picture")) {
+      if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";
+      continue;
+    }
+    const std::string scene = request.json.at("scene");
+    pictures.scenes[scene] = drawn.at("picture");
+    for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
+  }
+  return pictures;
+}
+
+}  // namespace lgabench::report

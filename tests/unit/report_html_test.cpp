@@ -1,0 +1,199 @@
+// report.html of fabricated runs: what stands in it is what was measured, and nothing comes from outside.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+
+#include <lgabench/report/html.hpp>
+#include <lgabench/report/report.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+// Two numbers of demonstrations, two seeds, arms, Selections, attributed failures, a failed cell.
+void fill(FabricatedRun& run) {
+  for (int seed = 0; seed < 2; ++seed)
+    for (const int n : {10, 50})
+      for (const char* scenario : {"heart", "letter"}) {
+        FabricatedRun::Spec lga{"lga", 0, scenario, n, seed};
+        lga.arms = {{"control", 10 + n / 10 + seed, {0}, .5}, {"hard", 5 + seed, {0}, .5}};
+        lga.attribution = seed == 0 ? "abstraction" : "policy";
+        run.add(lga);
+        FabricatedRun::Spec gcbc{"gcbc_dart", 0, scenario, n, seed, "method", "cells", "wrong_object"};
+        gcbc.arms = {{"control", 3, {0}, .4}, {"hard", seed, {0}, .6}};
+        run.add(gcbc);
+        FabricatedRun::Spec constant{"constant_action", 0, scenario, n, seed, "reference"};
+        constant.arms = {{"control", 5, {0}, .5}, {"hard", 4, {0}, .5}};
+        run.add(constant);
+      }
+  run.add_failed({"lga", 0, "heart", 10, 2}, "host");
+}
+
+std::string page_of(const FabricatedRun& run) {
+  report::write_report(run.save().path);
+  return read_file(run.path / "report.html");
+}
+
+Json data_of(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t begin = page.find(open) + open.size();
+  return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+// The sections whose tables are made of summary.json.
+std::string measured(const std::string& page) {
+  std::string text;
+  for (const char* id : {"success", "arms", "scenarios", "phi", "failures", "attribution"}) {
+    const std::size_t begin = page.find(std::string("<section id=") + id + " ");
+    if (begin != std::string::npos) text += page.substr(begin, page.find("</section>", begin) - begin);
+  }
+  return text;
+}
+
+TEST(Html, EveryNumberOfATableStandsInTheSummary) {
+  for (const bool several_arms : {true, false}) {
+    FabricatedRun run;
+    if (several_arms) {
+      fill(run);
+    } else {
+      run.add({"lga", 15});
+      run.add({"lga", 12, "letter", 50});
+      run.add({"oracle", 20, "heart", 0, 0, "reference"});
+    }
+    const std::string page = page_of(run);
+    const Json summary = read_json(run.path / "summary.json");
+
+    const std::regex value("<span data-value=\"([^\"]*)\">([^<]*)</span>");
+    std::set<std::string> shown;
+    for (std::sregex_iterator it(page.begin(), page.end(), value), end; it != end; ++it) {
+      const std::string pointer = it->str(1), text = it->str(2);
+      const Json& number = summary.at(Json::json_pointer(pointer));
+      const std::size_t dot = text.find('.');
+      const double half = dot == std::string::npos ? 0 : .5 * std::pow(10, -static_cast<double>(text.size() - dot - 1));
+      EXPECT_NEAR(std::stod(text), number.get<double>(), half + 1e-9) << pointer;
+      shown.insert(pointer);
+    }
+    // No number of a row is left out ...
+    for (std::size_t i = 0; i < summary.at("rows").size(); ++i) {
+      const Json& row = summary.at("rows")[i];
+      if (row.at("success").is_null()) continue;
+      const std::string place = "/rows/" + std::to_string(i) + "/";
+      for (const char* member : {"success", "low", "high"}) EXPECT_EQ(shown.count(place + member), 1u) << place;
+      if (!row.at("shift").is_null()) {
+        for (const char* member : {"difference", "low", "high"})
+          EXPECT_EQ(shown.count(place + "shift/" + member), 1u) << place;
+      }
+      if (row.at("scenario") != "(mean)") continue;
+      for (const auto& item : row.at("failures").items()) EXPECT_EQ(shown.count(place + "failures/" + item.key()), 1u);
+      const int blamed =
+          row.at("attribution").at("abstraction").get<int>() + row.at("attribution").at("policy").get<int>();
+      EXPECT_EQ(shown.count(place + "attribution/policy"), blamed > 0 ? 1u : 0u);
+    }
+    EXPECT_EQ(shown.count("/rows/0/phi/0/quality/target/textures/recall"), 1u);
+
+    // ... and none stands there that is not the summary's, but for the paper's.
+    std::string cells = std::regex_replace(measured(page), value, "");
+    cells = std::regex_replace(cells, std::regex("<i class=paper>0\\.\\d*</i>"), "");
+    const std::regex cell("<td>(.*?)</td>"), tag("<[^>]*>"), number("(^|[\\s\\[])[+-]?\\d");
+    int seen = 0;
+    for (std::sregex_iterator it(cells.begin(), cells.end(), cell), end; it != end; ++it, ++seen) {
+      const std::string text = std::regex_replace(it->str(1), tag, "");
+      EXPECT_FALSE(std::regex_search(text, number)) << text;
+    }
+    EXPECT_GT(seen, 15);
+  }
+}
+
+TEST(Html, NothingIsFetched) {
+  FabricatedRun run;
+  fill(run);
+  const std::string page = page_of(run);
+  for (const char* outside : {"http://", "https://", " src=", "<link", "@import", "url(", "fetch(", "import("})
+    EXPECT_SILENT(page, outside);
+}
+
+TEST(Html, TheSameRunGivesTheSameBytes) {
+  FabricatedRun run;
+  fill(run);
+  const std::string first = page_of(run);
+  EXPECT_EQ(first, page_of(run));
+}
+
+TEST(Html, TextOfFilesStaysText) {
+  FabricatedRun run;
+  FabricatedRun::Spec odd{"<script>alert(1)</script>", 5, "a&b"};
+  odd.commands = {{"</script><b>bold</b> \"quoted\"", true}};
+  run.add(odd);
+  const std::string page = page_of(run);
+  EXPECT_SILENT(page, "<script>alert");
+  EXPECT_SILENT(page, "<b>bold");
+  EXPECT_SAYS(page, "&lt;script&gt;alert(1)&lt;/script&gt;");
+  EXPECT_SAYS(page, "a&amp;b");
+  EXPECT_EQ(data_of(page).at("cells")[0].at("commands")[0], "</script><b>bold</b> \"quoted\"");
+}
+
+TEST(Html, SaysWhatAReaderMustKnow) {
+  FabricatedRun run;
+  fill(run);
+  run.add({"human", 18, "heart", 50});
+  run.run["cells"].push_back("0123456789abcdef");
+  const std::string page = page_of(run);
+  for (const char* note :
+       {"Smoke or limited run: not for the leaderboard.", "1 of 27 cells have not run yet", "† baseline not learned",
+        "‡ incomplete", "Human: true φ̂: an upper bound, no human data.", "= same actions as in control",
+        "signal 11 (Segmentation fault) in phase learn", "last words", "a language model's recorded answers", "gpt-4",
+        "“fetch | heart”", "Failures laid to abstraction or policy", "<th scope=col>demonstrate</th>", "a processor"})
+    EXPECT_SAYS(page, note);
+  // No scene of a fabricated run can be drawn.
+  EXPECT_SAYS(page, "No pictures of scenes: ");
+}
+
+// What a click on a number lists adds up to the number.
+TEST(Html, ANumberLeadsToItsEpisodes) {
+  FabricatedRun run;
+  fill(run);
+  const Json data = data_of(page_of(run)), summary = read_json(run.path / "summary.json");
+  std::map<std::size_t, std::pair<int, int>> counted;  // row -> episodes, won
+  std::map<std::size_t, int> blamed;
+  for (const Json& cell : data.at("cells"))
+    for (const Json& arm : cell.at("arms")) {
+      const std::string outcomes = arm.at("outcomes"), attribution = arm.at("attribution");
+      EXPECT_EQ(data.at("scenes").at(arm.at("scenes").get<std::size_t>()).size(), outcomes.size());
+      EXPECT_EQ(arm.at("commands").size(), outcomes.size());
+      for (const std::size_t row : arm.at("rows")) {
+        counted[row].first += static_cast<int>(outcomes.size());
+        counted[row].second += static_cast<int>(std::count(outcomes.begin(), outcomes.end(), '.'));
+        blamed[row] += static_cast<int>(std::count(attribution.begin(), attribution.end(), 'a'));
+      }
+    }
+  EXPECT_EQ(counted.size(), summary.at("rows").size());
+  for (const auto& [row, numbers] : counted) {
+    EXPECT_EQ(summary.at("rows")[row].at("episodes"), numbers.first);
+    EXPECT_EQ(summary.at("rows")[row].at("successes"), numbers.second);
+    EXPECT_EQ(summary.at("rows")[row].at("attribution").at("abstraction"), blamed[row]);
+  }
+}
+
+TEST(Html, ActionsAreDrawnWhereTheyWere) {
+  FabricatedRun run;
+  FabricatedRun::Spec spec{"lga", 19};
+  spec.arms = {{"test", 19, {0}, .3}};
+  run.add(spec);
+  const report::RunResults results = report::read_run(run.save().path);
+  report::Pictures pictures;
+  pictures.wanted = 1;
+  pictures.scenes[hex(19)] = "PNG";
+  const std::string page = report::html(results, report::summarize(results), report::paper_values("q1"), pictures);
+  // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
+  const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
+  EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));
+  EXPECT_SAYS(page, "Pictures: 1 of the 1 scenes");
+}
+
+}  // namespace
+}  // namespace lgabench
