@@ -54,7 +54,7 @@ TEST(Arms, StandSideBySideInTheScenariosOrder) {
   run.add(shifted("lga", "q2_heart", 0, 20, 20, 10));
   run.add(shifted("gcbc_dart", "q2_heart", 0, 8, 4, 2));
   rows_of(run);
-  const std::string page = read_file(run.path / "report.md"), text = report::table_text(run.path);
+  const std::string page = read_file(run.path / "report.md"), text = table_text(run.path);
   EXPECT_SAYS(page, "| scenario | method | control | texture | hard |\n");
   EXPECT_SAYS(page,
               "| q2_heart | **GCBC-DART** | 0.40 [0.22, 0.61] | 0.20 [0.08, 0.42] | 0.10 [0.03, 0.30] | *0.18* |");
@@ -104,7 +104,7 @@ TEST(Arms, SameActionsAreMarkedForMethodsAlone) {
   EXPECT_TRUE(rows.at("q2_heart lga texture").at("shift").at("same_actions"));
   EXPECT_FALSE(rows.at("q2_heart lga hard").at("shift").at("same_actions"));
   EXPECT_TRUE(rows.at("q2_heart constant_action texture").at("shift").at("same_actions"));
-  const std::string text = report::table_text(run.path);
+  const std::string text = table_text(run.path);
   EXPECT_SAYS(line_with(text, "  LGA"), "] =  ");
   EXPECT_SILENT(line_with(text, "best constant"), "=");
   EXPECT_SAYS(text, "= same actions as in control: the policy saw the same input.");
@@ -115,7 +115,7 @@ TEST(Arms, SameActionsAreMarkedForMethodsAlone) {
   run.add(other);
   rows = rows_of(run);
   EXPECT_FALSE(rows.at("q2_heart lga texture").at("shift").at("same_actions"));
-  EXPECT_SILENT(report::table_text(run.path), "same actions");
+  EXPECT_SILENT(table_text(run.path), "same actions");
 }
 
 TEST(Arms, NoActionIsNotTheSameAction) {
@@ -135,7 +135,7 @@ TEST(Arms, OfOtherCommandsAreNotPaired) {
   const Json rows = rows_of(run);
   EXPECT_EQ(rows.at("q3_fruit lga unseen").at("shift"), nullptr);
   EXPECT_EQ(rows.at("q3_fruit lga unseen").at("success"), 0.75);
-  const std::string page = read_file(run.path / "report.md"), text = report::table_text(run.path);
+  const std::string page = read_file(run.path / "report.md"), text = table_text(run.path);
   EXPECT_SILENT(page, "Change against");
   EXPECT_SILENT(text, "change against");
   EXPECT_SAYS(page, "| scenario | method | seen | unseen | *the paper, its arms pooled* |\n");

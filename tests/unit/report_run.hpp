@@ -7,6 +7,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/report/tables.hpp>
 
 #include "testing.hpp"
 
@@ -179,5 +180,11 @@ class FabricatedRun : public TemporaryDirectory {
     return path / "cells" / key;
   }
 };
+
+/// The table that `lgabench report` prints.
+inline std::string table_text(const fs::path& run) {
+  const report::RunResults results = report::read_run(run);
+  return report::plain_text(results, report::summarize(results));
+}
 
 }  // namespace lgabench

@@ -40,7 +40,7 @@ TEST(Summary, VariantsOfAMethodAreRowsOfTheirOwn) {
   const Json summary = summary_of(run);
   EXPECT_EQ(row_of(summary, "heart", "lga").at("successes"), 15);
   EXPECT_EQ(row_of(summary, "heart", "lga+batch_norm=true+learning_rate=1e+30").at("successes"), 5);
-  const std::string text = report::table_text(run.path);
+  const std::string text = table_text(run.path);
   const std::size_t variant = text.find("LGA batch_norm=true learning_rate=1e+30");
   EXPECT_LT(text.find("  LGA  "), variant);
   EXPECT_LT(variant, text.find("GCBC-DART")) << "a variant stands with its method";
@@ -131,7 +131,7 @@ TEST(Summary, ReferenceRowsMarkWhatLearnedNothing) {
     else
       EXPECT_EQ(row.at("marks"), Json::array());
   EXPECT_EQ(marked, (std::set<std::string>{"heart gcbc_dart 20 cells", "(mean) gcbc_dart 20 cells"}));
-  EXPECT_SAYS(report::table_text(run.path), "baseline not learned");
+  EXPECT_SAYS(table_text(run.path), "baseline not learned");
 }
 
 TEST(Summary, FailedCellsAreListedAndNeverCounted) {
@@ -150,7 +150,7 @@ TEST(Summary, FailedCellsAreListedAndNeverCounted) {
   EXPECT_EQ(gcbc.at("low"), nullptr);
   EXPECT_EQ(gcbc.at("n_error"), 0);  // the plugin's own fault
   EXPECT_EQ(summary.at("failed_cells").size(), 2u);
-  const std::string text = report::table_text(run.path), page = read_file(run.path / "report.md");
+  const std::string text = table_text(run.path), page = read_file(run.path / "report.md");
   EXPECT_SAYS(text, "failed: gcbc_dart heart cells mujoco n=20 seed=0 (plugin): signal 11 (Segmentation fault)");
   EXPECT_SAYS(page, "## Cells that failed");
   EXPECT_SAYS(page, "1 finished, 2 failed, 0 not run");
@@ -216,7 +216,7 @@ TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
     for (std::sregex_iterator it(page.begin(), page.end(), number), end; it != end; ++it) shown.insert(it->str());
     return shown;
   };
-  EXPECT_EQ(numbers(report::table_text(run.path)), known);
+  EXPECT_EQ(numbers(table_text(run.path)), known);
   const Json claims = read_json(run.path / "claims.json");
   for (const Json& d : claims.at("claims").at(0).at("differences"))
     if (d.at("below") == "gcbc_dart") {
@@ -236,7 +236,7 @@ TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
   run.add({"a_method_of_mine", 3});
   run.add({"random_object", 8, "heart", 0, 0, "reference"});
   run.save();
-  const std::string text = report::table_text(run.path);
+  const std::string text = table_text(run.path);
   const std::size_t lga = text.find("\n  LGA "), human = text.find("\n  Human "), gcbc = text.find("\n  GCBC-DART "),
                     mine = text.find("\n  a_method_of_mine "), rule = text.find("\n  -----"),
                     random = text.find("\n  random visible object ");
@@ -258,7 +258,7 @@ TEST(Report, ShortNamesLeaveTheHeadOfTheTableReadable) {
   FabricatedRun run;
   run.add({"lga", 15});
   run.save();
-  EXPECT_SAYS(report::table_text(run.path), "demonstrations  ");
+  EXPECT_SAYS(table_text(run.path), "demonstrations  ");
 }
 
 TEST(Report, CsvHoldsTheRows) {
@@ -305,7 +305,7 @@ TEST(Run, WithoutACellSaysSo) {
   run.save();
   EXPECT_SAYS(message_of<InputError>([&] { report::write_report(run.path); }),
               "no cell of the run has been played yet");
-  EXPECT_SAYS(message_of<InputError>([&] { report::table_text(run.path / "elsewhere"); }),
+  EXPECT_SAYS(message_of<InputError>([&] { table_text(run.path / "elsewhere"); }),
               "elsewhere/run.json: cannot be read");
 }
 
@@ -318,7 +318,7 @@ TEST(Run, UnfinishedAndForeignDirectoriesAreNoCells) {
   run.run["cells"].erase(2);  // there, not asked for
   const Json summary = summary_of(run);
   EXPECT_EQ(summary.at("rows").size(), 2u);
-  const std::string text = report::table_text(run.path);
+  const std::string text = table_text(run.path);
   EXPECT_SAYS(text, "1 of 2 cells have not run yet");
   EXPECT_SAYS(text, "1 cell directories that run.json does not list were left out");
 }

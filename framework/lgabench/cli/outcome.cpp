@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include <lgabench/report/report.hpp>
+#include <lgabench/report/tables.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -40,11 +41,11 @@ std::string joined(const Words& words) {
 }
 
 void print_report(const fs::path& run, bool json) {
-  report::write_report(run);
+  const report::Report report = report::write_report(run);
   if (json)
     fmt::print("{}", read_file(run / "summary.json"));
   else
-    fmt::print("{}\nreport: {}\n", report::table_text(run), (run / "report.html").string());
+    fmt::print("{}\nreport: {}\n", report::plain_text(report.run, report.summary), (run / "report.html").string());
 }
 
 }  // namespace lgabench::cli

@@ -5,17 +5,16 @@
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/report/claims.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/report/tables.hpp>
 
 namespace lgabench::cli {
 namespace {
 
-int print_claims(const fs::path& run, const std::string& format) {
-  const report::RunResults results = report::read_run(run);
-  const std::vector<report::Claim> claims = report::test_claims(results);
+int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
+  const auto& [results, summary, claims] = report;
   if (format == "text")
-    fmt::print("{}", report::claims_text(results.suite, claims));
+    fmt::print("{}", report::claims_text(summary.suite, claims));
   else if (format == "json")
     fmt::print("{}", read_file(run / "claims.json"));
   else
@@ -51,13 +50,13 @@ void add_report(CLI::App& app, int& exit) {
       "The paper's claims: lgabench report runs/q2 --claims");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
-    report::write_report(run);
+    const report::Report report = report::write_report(run);
     if (options->claims) {
-      exit = print_claims(run, options->format);
+      exit = print_claims(run, report, options->format);
       return;
     }
     if (options->format == "text")
-      fmt::print("{}", report::table_text(run));
+      fmt::print("{}", report::plain_text(report.run, report.summary));
     else if (options->format == "md")
       fmt::print("{}", read_file(run / "report.md"));
     else

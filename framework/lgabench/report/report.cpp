@@ -16,13 +16,14 @@ RunResults read_cells(const fs::path& run) {
 
 }  // namespace
 
-void write_report(const fs::path& run) {
-  const RunResults results = read_cells(run);
-  const Summary summary = summarize(results);
+Report write_report(const fs::path& run) {
+  Report report;
+  report.run = read_cells(run);
+  report.summary = summarize(report.run);
+  report.claims = test_claims(report.run);
+  const auto& [results, summary, claims] = report;
   write_file(run / "summary.json", canonical(to_json(summary)) + "\n");
   write_file(run / "summary.csv", to_csv(summary));
-
-  const std::vector<Claim> claims = test_claims(results);
   write_file(run / "claims.json", canonical(to_json(summary.suite, claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
@@ -30,11 +31,7 @@ void write_report(const fs::path& run) {
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, claims, paper, figures));
   write_file(run / "report.html", html(results, summary, paper, draw_pictures(run, results)));
-}
-
-std::string table_text(const fs::path& run) {
-  const RunResults results = read_cells(run);
-  return plain_text(results, summarize(results));
+  return report;
 }
 
 }  // namespace lgabench::report

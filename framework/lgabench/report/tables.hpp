@@ -62,7 +62,9 @@ bool has_unseen(const RunResults& run);
 std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
                      const PaperValues& paper, const std::vector<std::vector<Figure>>& figures);
 
-/// The terminal's table.
+/// The table for a terminal, fixed width, without colour: a block a scenario and one for their mean; success with its
+/// 95 % interval for each method and number of demonstrations (with several arms: for each arm, and the change against
+/// the first one where they are paired), reference rows below a rule, failed cells last.
 std::string plain_text(const RunResults& run, const Summary& summary);
 
 }  // namespace lgabench::report
