@@ -9,7 +9,7 @@ namespace {
 
 constexpr double lift_m = 0.1;
 constexpr double carry_speed = 3, lower_speed = 0.5, turn_speed = 12;  // greatest ones: m/s, m/s, rad/s
-constexpr double push_speed = 0.25;     // m/s: pushed faster, an L-shaped block now and then turns away from the blade
+constexpr double push_speed = 0.25;                                    // m/s
 constexpr double spatula_gap_m = 5e-4;  // to the table, which it need not scrape: less than the thinnest body
 constexpr double limit_s = 10;          // of an action, until all is at rest
 // At rest: for so long within so much of one pose. (Velocities say less: a body stands still at the top of a throw.)

@@ -146,15 +146,15 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
 std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream) {
   const auto& [scenario, layout, content, training, meant] = request;
   const bool sweep = layout.task == Task::sweep;
-  std::vector<SceneObject> chosen;
-  if (!content.choice.empty()) chosen = sample_choice(request, stream("choice"));
-  if (!chosen.empty() && !sweep) return chosen;
+  const bool by_choice = !content.choice.empty();
+  if (by_choice && !sweep) return sample_choice(request, stream("choice"));
 
   const Features target =
       sample_features(scenario, layout, content.target.value_or(meant.target),
                       std::min(layout.widest_m, layout.widest_target_m), "a target", stream("target"));
   std::vector<SceneObject> objects{{target.type, target.texture, Role::target, {}, 0, 0}};
-  if (!chosen.empty()) {
+  if (by_choice) {
+    const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
     objects.insert(objects.end(), chosen.begin(), chosen.end());
     return objects;
   }
@@ -183,21 +183,16 @@ void check(const SceneRequest& request, int index) {
   if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
 }
 
-const SceneContent& content_of(const Scenario& scenario, const std::string& arm) {
-  for (const Arm& test : scenario.tests)
-    if (test.id == arm) return test.scenes;
-  return scenario.train;
-}
-
 }  // namespace
 
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
   check(request, index);
   const std::vector<int> commands = scenario.commands_of(request.arm);
   const auto command = static_cast<std::size_t>(commands[static_cast<std::size_t>(index) % commands.size()]);
-  const SceneContent& content = content_of(scenario, request.arm);
+  const bool training = request.arm == "train";
+  const SceneContent& content = training ? scenario.train : scenario.arm(request.arm).scenes;
   const bool asked = content.as_method_asks && !request.selections.empty();
-  const Request what{scenario, find_layout(scenario.task, request.layout), content, request.arm == "train",
+  const Request what{scenario, find_layout(scenario.task, request.layout), content, training,
                      asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
   const Streams stream = [&](const std::string& purpose) {

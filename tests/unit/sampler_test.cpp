@@ -42,9 +42,7 @@ std::vector<Polygon> outline(const SceneObject& o) {
 bool is_letter(const std::string& type) { return type.compare(0, 7, "letter ") == 0; }
 
 const SceneContent& content_of(const Scenario& s, const Scene& scene) {
-  for (const Arm& arm : s.tests)
-    if (arm.id == scene.arm) return arm.scenes;
-  return s.train;
+  return scene.arm == "train" ? s.train : s.arm(scene.arm).scenes;
 }
 
 const ScenarioCommand& command_of(const Scenario& s, const Scene& scene) {

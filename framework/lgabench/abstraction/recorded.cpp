@@ -33,11 +33,13 @@ RecordedLanguageModel::RecordedLanguageModel(FeatureSpace space, std::string sce
     throw InputError(fmt::format("answers: expected recorded, gpt4 or claude, got \"{}\"", answers_));
 }
 
-RecordedLanguageModel::Recorded RecordedLanguageModel::find(const std::string& utterance) const {
+const RecordedLanguageModel::Recorded& RecordedLanguageModel::find(const std::string& utterance) const {
+  const auto before = found_.find(utterance);
+  if (before != found_.end()) return before->second;
   std::optional<Recorded> found;
   if (answers_ != "claude") found = find_gpt4();
   if (!found && answers_ != "gpt4") found = find_claude(utterance);
-  if (found) return *found;
+  if (found) return found_.emplace(utterance, *std::move(found)).first->second;
   const fs::path gpt4 = answers_file("gpt4.json"), claude = answers_file("claude.json");
   const std::string name = scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_);
   throw InputError(fmt::format(
@@ -76,7 +78,7 @@ std::optional<RecordedLanguageModel::Recorded> RecordedLanguageModel::find_claud
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,
                                                 const std::vector<Question>& questions) {
-  const Recorded recorded = find(command.utterance);
+  const Recorded& recorded = find(command.utterance);
   model_ = recorded.model;
   std::vector<bool> answers;
   for (const Question& q : questions) {

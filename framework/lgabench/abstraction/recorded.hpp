@@ -1,5 +1,6 @@
 // A language model's published answers, replayed.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,12 +34,13 @@ class RecordedLanguageModel : public LanguageModel {
     Selection yes;  // the candidates answered yes
     std::string asked_as, model;
   };
-  Recorded find(const std::string& utterance) const;
+  const Recorded& find(const std::string& utterance) const;
   std::optional<Recorded> find_gpt4() const;
   std::optional<Recorded> find_claude(const std::string& utterance) const;
 
   FeatureSpace space_;
   std::string scenario_, answers_, model_;
+  mutable std::map<std::string, Recorded> found_;  // by utterance: the files are read once for each
   SelectionCost cost_;
 };
 

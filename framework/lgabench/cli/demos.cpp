@@ -30,9 +30,7 @@ void write(const Arguments& a) {
   std::vector<Scene> scenes;
   for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, {}, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
-  std::vector<std::string> utterances;
-  for (const ScenarioCommand& command : scenario.commands) utterances.push_back(command.utterance);
-  const auto demonstrations = demonstrate(*environment, scenes, needs, utterances);
+  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
   write_file(a.out,
              demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, a.engine)));
   fmt::print("{}\n", a.out);

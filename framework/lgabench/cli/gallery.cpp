@@ -21,10 +21,7 @@ struct Tile {
   std::vector<Rgb> pixels;
 };
 
-Rgb pixel_of(const Observation& seen, int column, int row) {
-  const auto i = 3 * static_cast<std::size_t>(row * Observation::columns + column);
-  return {seen.rgb[i], seen.rgb[i + 1], seen.rgb[i + 2]};
-}
+std::size_t pixel(int column, int row) { return static_cast<std::size_t>(row * Observation::columns + column); }
 
 // One object in the middle of the table, and what lies around it.
 Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::string& texture,
@@ -34,7 +31,7 @@ Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::
   const int left = (Observation::columns - tile.columns) / 2, top = (Observation::rows - tile.rows) / 2;
   for (int row = 0; row < tile.rows; ++row)
     for (int column = 0; column < tile.columns; ++column)
-      tile.pixels.push_back(pixel_of(seen, left + column, top + row));
+      tile.pixels.push_back(pixel_colour(seen, pixel(left + column, top + row)));
   return tile;
 }
 
@@ -48,10 +45,10 @@ Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario, cons
             Observation::rows,
             {}};
   for (int row = 0; row < Observation::rows; ++row) {
-    for (int column = 0; column < Observation::columns; ++column) tile.pixels.push_back(pixel_of(seen, column, row));
     for (int column = 0; column < Observation::columns; ++column)
-      tile.pixels.push_back(mask[static_cast<std::size_t>(row * Observation::columns + column)] ? Rgb{245, 245, 245}
-                                                                                                : Rgb{32, 32, 32});
+      tile.pixels.push_back(pixel_colour(seen, pixel(column, row)));
+    for (int column = 0; column < Observation::columns; ++column)
+      tile.pixels.push_back(mask_colour(mask[pixel(column, row)] != 0));
   }
   return tile;
 }

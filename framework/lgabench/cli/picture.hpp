@@ -5,11 +5,16 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/observation.hpp>
 #include <tabletop/textures.hpp>
 
 namespace lgabench::cli {
 
 using tabletop::Rgb;
+
+/// How pixel `i` of a picture or a goal mask is shown.
+Rgb pixel_colour(const Observation& seen, std::size_t i);
+Rgb mask_colour(bool kept);
 
 class Picture {
  public:

@@ -54,15 +54,15 @@ class Pictures {
       throw InputError("this version samples another scene than the run played");
 
     const Observation seen = renderer_.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
-    const Observation perceived =
-        imperfect_textualization(seen, played.scenario.space, noise(played.scenario, arm), perception_stream(scene));
+    const Arm& test = played.scenario.arm(arm);
+    const Observation perceived = imperfect_textualization(
+        seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
       const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
-      masks.push_back(png([&](std::size_t i) { return mask[i] ? Rgb{245, 245, 245} : Rgb{32, 32, 32}; }));
+      masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    const auto colour = [&](std::size_t i) { return Rgb{seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]}; };
-    return {{"picture", png(colour)}, {"masks", masks}};
+    return {{"picture", png([&](std::size_t i) { return pixel_colour(seen, i); })}, {"masks", masks}};
   }
 
  private:
@@ -72,12 +72,6 @@ class Pictures {
     Cell read = read_cell(read_json(file), file);
     Scenario scenario = read_scenario(read.scenario, file + ": /scenario");
     return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
-  }
-
-  static TextualizationNoise noise(const Scenario& scenario, const std::string& arm) {
-    for (const Arm& test : scenario.tests)
-      if (test.id == arm) return {test.label_noise, test.missed_segment};
-    return {};
   }
 
   tabletop::Renderer renderer_;

@@ -23,11 +23,9 @@ struct Arguments {
   int index = 0;
 };
 
-constexpr Rgb dropped{32, 32, 32}, kept{245, 245, 245};
-
 // Far hues for near ids (steps of the golden section around the colour circle).
 Rgb colour_of(std::uint8_t id) {
-  if (id == 0) return dropped;
+  if (id == 0) return mask_colour(false);
   const double hue = 6 * std::fmod(0.618034 * id, 1.0);
   const auto channel = [hue](double peak) {
     const double distance = std::abs(std::remainder(hue - peak, 6.0));
@@ -70,9 +68,9 @@ void render(const Arguments& arguments) {
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3);
-  panels.fill(0, [&](std::size_t i) { return Rgb{seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]}; });
+  panels.fill(0, [&](std::size_t i) { return pixel_colour(seen, i); });
   panels.fill(1, [&](std::size_t i) { return colour_of(seen.ids[i]); });
-  panels.fill(2, [&](std::size_t i) { return mask[i] ? kept : dropped; });
+  panels.fill(2, [&](std::size_t i) { return mask_colour(mask[i] != 0); });
   const fs::path file = arguments.out.empty() ? fmt::format("{}-{}.png", scenario.id, arguments.index) : arguments.out;
   write_file(file, panels.picture.png());
 

@@ -116,14 +116,20 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   return s;
 }
 
-std::vector<int> Scenario::commands_of(const std::string& arm) const {
-  bool seen = true;
-  if (arm != "train") {
-    const auto found = std::find_if(tests.begin(), tests.end(), [&](const Arm& a) { return a.id == arm; });
-    if (found == tests.end())
-      throw InputError(fmt::format("arm \"{}\": expected train or a test arm of scenario \"{}\"", arm, id));
-    seen = !found->unseen;
-  }
+std::vector<std::string> Scenario::utterances() const {
+  std::vector<std::string> all;
+  for (const ScenarioCommand& command : commands) all.push_back(command.utterance);
+  return all;
+}
+
+const Arm& Scenario::arm(const std::string& name) const {
+  for (const Arm& test : tests)
+    if (test.id == name) return test;
+  throw InputError(fmt::format("arm \"{}\": expected train or a test arm of scenario \"{}\"", name, id));
+}
+
+std::vector<int> Scenario::commands_of(const std::string& name) const {
+  const bool seen = name == "train" || !arm(name).unseen;
   std::vector<int> indices;
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (commands[i].seen == seen) indices.push_back(static_cast<int>(i));

@@ -56,9 +56,12 @@ struct Scenario {
   Json json;  // as read: goes into a cell's configuration whole
 
   Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task}; }
+  std::vector<std::string> utterances() const;  // of all commands
+  /// @throws InputError for a test arm that the scenario lacks.
+  const Arm& arm(const std::string& name) const;
   /// Commands that scenes of this arm ("train" for training scenes) give in turn, as indices: scene i gives number
   /// i modulo their count. @throws InputError for an arm that the scenario lacks.
-  std::vector<int> commands_of(const std::string& arm) const;
+  std::vector<int> commands_of(const std::string& name) const;
 };
 
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.

@@ -140,7 +140,6 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   TrainingLines training(phases);
   Services services{lm, human, cell.method.options, cell.training_seed, training};
   Needs needs;
-  std::vector<std::string> utterances;
   std::vector<Instruction> instructions;
   if (method) needs = guarded(id, [&] { return method->needs(services.options); });
   for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
@@ -148,7 +147,6 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     Selection selection;
     if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
     expect_within(scenario.space, selection);
-    utterances.push_back(command.utterance);
     instructions.push_back({command.utterance, std::move(selection)});
   }
   const bool on_selected = method && needs.targets == Needs::Targets::selected;
@@ -172,8 +170,8 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
-  std::vector<Demonstration> demonstrations = cached_demonstrations(demonstration_cache(job), *environment, scenes,
-                                                                    needs, utterances, [&](int n) { phases.count(n); });
+  std::vector<Demonstration> demonstrations = cached_demonstrations(
+      demonstration_cache(job), *environment, scenes, needs, scenario.utterances(), [&](int n) { phases.count(n); });
   for (std::size_t i = 0; i < demonstrations.size(); ++i)
     demonstrations[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
 
@@ -207,7 +205,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   for (const Episode& episode : episodes) episode_lines += canonical(to_json(episode)) + '\n';
   Json commands = Json::array();
   for (std::size_t c = 0; c < instructions.size(); ++c)
-    commands.push_back({{"utterance", utterances[c]},
+    commands.push_back({{"utterance", instructions[c].utterance},
                         {"selection", to_json(instructions[c].selection)},
                         {"quality", quality(instructions[c].selection, scenario.commands[c].truth)}});
   record(job, self,

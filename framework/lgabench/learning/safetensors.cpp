@@ -6,12 +6,16 @@
 #include <cstring>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
 
 namespace lgabench {
 
-Safetensors::Safetensors(const fs::path& file) : file_(file.string()) {
+Safetensors::Safetensors(const fs::path& file, const std::string& sum) : file_(file.string()) {
   const std::string bytes = read_file(file);
+  if (!sum.empty())
+    if (const std::string found = sha256(bytes); found != sum)
+      throw InputError(fmt::format("{}: expected the weights with SHA-256 {}, got {}", file_, sum, found));
   std::uint64_t header_size = 0;
   constexpr std::size_t prefix = sizeof header_size;
   if (bytes.size() < prefix) throw InputError(file_ + ": expected safetensors, got fewer than 8 bytes");

@@ -11,8 +11,9 @@ namespace lgabench {
 /// The single-precision tensors of a file, checked: every size and place agrees with the file. Owns the numbers.
 class Safetensors {
  public:
-  /// @throws InputError with file and place for a file that cannot be read or is not as its header says.
-  explicit Safetensors(const std::filesystem::path& file);
+  /// `sum`: the file's SHA-256, "" for any. @throws InputError with file and place for a file that cannot be read, has
+  /// another sum or is not as its header says.
+  explicit Safetensors(const std::filesystem::path& file, const std::string& sum = "");
 
   /// The numbers of a tensor, row-major; valid as long as this object.
   /// @throws InputError where there is none of that name, type F32 and shape.

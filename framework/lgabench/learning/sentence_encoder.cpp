@@ -6,9 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/core/hash.hpp>
 #include <lgabench/learning/safetensors.hpp>
 #include <lgabench/learning/word_pieces.hpp>
 
@@ -21,14 +19,6 @@ constexpr std::int64_t width = 384, heads = 12, inner = 1536, layers = 6, words 
 constexpr std::size_t most_tokens = 256;
 constexpr double epsilon = 1e-12;
 constexpr const char* weights_sha256 = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db";
-
-fs::path checked_weights(const fs::path& directory) {
-  const fs::path file = directory / "model.safetensors";
-  if (const std::string sum = sha256_file(file); sum != weights_sha256)
-    throw InputError(
-        fmt::format("{}: expected the weights with SHA-256 {}, got {}", file.string(), weights_sha256, sum));
-  return file;
-}
 
 }  // namespace
 
@@ -79,7 +69,8 @@ fs::path SentenceEncoder::default_directory() {
 }
 
 SentenceEncoder::SentenceEncoder(const fs::path& directory)
-    : impl_(new Impl{WordPieces(directory / "vocab.txt"), Safetensors(checked_weights(directory))}) {}
+    : impl_(new Impl{WordPieces(directory / "vocab.txt"),
+                     Safetensors(directory / "model.safetensors", weights_sha256)}) {}
 
 SentenceEncoder::~SentenceEncoder() = default;
 
