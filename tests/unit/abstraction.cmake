@@ -2,3 +2,4 @@ lgabench_unit_test(abstraction_test SOURCES abstraction_test.cpp textualization_
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)  # with the macros that the library was built with
 lgabench_unit_test(chat_model_test SOURCES chat_model_test.cpp LINK lgabench_core lgabench_openai PkgConfig::HTTPLIB)
+lgabench_unit_test(participant_test SOURCES participant_test.cpp LINK lgabench_harness valijson)

@@ -267,12 +267,13 @@ TEST(Report, CsvHoldsTheRows) {
   summary_of(run);
   const std::string csv = read_file(run.path / "summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
+            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,"
+            "success,low,high,"
             "against,difference,difference_low,difference_high,same_actions,n_error,marks,abstraction,policy,missed_"
             "object,wrong_object,"
             "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
-  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,20,15,0.75,0.53");
+  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,15,0.75,0.53");
   EXPECT_SAYS(csv, ",,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
 }
 

@@ -162,6 +162,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
         cells.push_back(count(numbers.value("size", Json())) + " of " + count(numbers.value("true_size", Json())));
       }
       cells.push_back(count(phi.at("lm_queries")));
+      cells.push_back(count(phi.at("human_seconds")));
       text += row_of(cells);
     }
     if (phi.at("asked_as") != phi.at("utterance"))
@@ -172,7 +173,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
   return "\n## The feature abstraction φ̂\n\nAgainst the scenario's true distribution: precision and recall of what was "
          "selected, and how many were selected of how many that are true.\n\n" +
          head_of({"scenario", "command", "method", "about", "answered by", "source", "types: precision", "recall",
-                  "selected", "textures: precision", "recall", "selected", "queries"},
+                  "selected", "textures: precision", "recall", "selected", "queries", "a person's seconds"},
                  6) +
          text + (wordings.empty() ? "" : "\nWhere the question was worded otherwise than the command:\n\n") +
          fmt::format("{}", fmt::join(wordings, ""));

@@ -30,7 +30,7 @@ Report write_report(const fs::path& run) {
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, claims, paper, figures));
-  write_file(run / "report.html", html(results, summary, paper, draw_pictures(run, results)));
+  write_file(run / "report.html", html(results, summary, claims, paper, draw_pictures(run, results)));
   return report;
 }
 
