@@ -96,7 +96,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
   for (const std::string& model : models)
-    lines.push_back(fmt::format("Language model: {}, {}.", model, provenance_words("cassette")));
+    lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   return lines;
 }
 
