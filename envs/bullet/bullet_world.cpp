@@ -11,8 +11,9 @@ namespace {
 
 constexpr double time_step = 0.005;
 constexpr double friction = 1;               // of every pair of bodies: Bullet multiplies the two
-constexpr double touch_m = 1e-5;             // nearer than this, bodies touch: resting ones hover around 0
-constexpr double asleep_m_s = 5e-4, asleep_rad_s = 5e-3;
+constexpr double slop_m = 2e-5;   // so deep bodies may rest in one another: contacts then do not come and go
+constexpr double touch_m = 1e-5;  // nearer than this, bodies touch
+constexpr double asleep_m_s = 5e-4, asleep_rad_s = 5e-3, asleep_after_s = .05;  // slower for so long: asleep
 constexpr double most_pull_m_s = 10, most_pull_rad_s = 40;  // of what lags behind the gripper because it was held up
 const btVector3 gravity(0, 0, -9.81);
 
@@ -49,6 +50,7 @@ btVector3 at_most(double limit, const btVector3& v) {
 
 void BulletWorld::load(const std::vector<BodyModel>& models, int copies) {
   if (copies_ > 0) throw EngineError("Bullet: load() is called once");
+  gDeactivationTime = asleep_after_s;  // of the process, unfortunately; by default 2 s, most of an episode
   for (const BodyModel& model : models) models_.push_back(make_bullet_model(model));
   copies_ = copies;
 }
@@ -59,6 +61,8 @@ BulletWorld::Simulation BulletWorld::make_simulation() const {
   pools.m_defaultMaxCollisionAlgorithmPoolSize = 256;
   Simulation s;
   s.configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
+  // A plane asks a body for its lowest corner only: four tilted looks more, as long as fewer than four corners are known.
+  s.configuration->setPlaneConvexMultipointIterations(4, 4);
   s.dispatcher = std::make_unique<btCollisionDispatcher>(s.configuration.get());
   s.broadphase = std::make_unique<btDbvtBroadphase>();
   s.solver = std::make_unique<btSequentialImpulseConstraintSolver>();
@@ -69,14 +73,16 @@ BulletWorld::Simulation BulletWorld::make_simulation() const {
   s.world->getDispatchInfo().m_deterministicOverlappingPairs = true;
   s.solver->setRandSeed(0);
   btContactSolverInfo& solver = s.world->getSolverInfo();
-  solver.m_numIterations = 50;
-  solver.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+  solver.m_minimumSolverBatchSize = 1;  // each island alone: what happens elsewhere does not change the order
+  solver.m_numIterations = 50;  // at most: fewer where impulses have settled
+  solver.m_leastSquaresResidualThreshold = 1e-14;
+  solver.m_linearSlop = slop_m;
+  // Friction along two fixed directions: along that of sliding, a block pushed straight turns by up to 17 degrees.
+  solver.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION |
+                         SOLVER_ENABLE_FRICTION_DIRECTION_CACHING;
   solver.m_splitImpulsePenetrationThreshold = 0;  // positions are put right without adding speed, however shallow
-  constexpr double half_m = 5;
-  s.table_shape = std::make_unique<btBoxShape>(btVector3(half_m, half_m, half_m));
-  s.table_shape->initializePolyhedralFeatures();
-  const btTransform below(btQuaternion::getIdentity(), {0, 0, -half_m});
-  s.table = make_body(0, s.table_shape.get(), {0, 0, 0}, below, table_body);
+  s.table_shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+  s.table = make_body(0, s.table_shape.get(), {0, 0, 0}, btTransform::getIdentity(), table_body);
   s.world->addRigidBody(s.table.get());
   return s;
 }

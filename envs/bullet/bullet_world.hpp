@@ -40,7 +40,8 @@ class BulletWorld final : public PhysicsWorld {
   /// Destroyed from the last to the first: the world lets go of the bodies before they go.
   struct Simulation {
     std::vector<Body> bodies;
-    std::unique_ptr<btBoxShape> table_shape, spatula_shape;
+    std::unique_ptr<btStaticPlaneShape> table_shape;
+    std::unique_ptr<btBoxShape> spatula_shape;
     std::unique_ptr<btRigidBody> table, spatula;
     std::unique_ptr<btDefaultCollisionConfiguration> configuration;
     std::unique_ptr<btCollisionDispatcher> dispatcher;
