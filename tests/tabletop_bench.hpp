@@ -17,6 +17,7 @@ namespace lgabench::tabletop {
 /// The engine, with an eye kept on the bodies that the environment does not show.
 class WatchedWorld : public PhysicsWorld {
  public:
+  explicit WatchedWorld(std::unique_ptr<PhysicsWorld> world) : world_(std::move(world)) {}
   void load(const std::vector<BodyModel>& models, int copies) override { world_->load(models, copies); }
   void reset(const std::vector<BodyPlacement>& placements) override {
     world_->reset(placements);
@@ -45,7 +46,7 @@ class WatchedWorld : public PhysicsWorld {
   int steps = 0;        // since reset
 
  private:
-  std::unique_ptr<PhysicsWorld> world_ = make_engine();
+  std::unique_ptr<PhysicsWorld> world_;
 };
 
 struct Bench {
@@ -54,7 +55,7 @@ struct Bench {
 };
 
 inline Bench make_bench(const std::string& space = "tabletop") {
-  auto world = std::make_unique<WatchedWorld>();
+  auto world = std::make_unique<WatchedWorld>(make_engine());
   WatchedWorld* const watched = world.get();
   return {watched, make_environment(std::move(world), load_feature_space(space))};
 }

@@ -12,6 +12,7 @@ namespace {
 constexpr double time_step = 0.005;
 constexpr double friction = 1;               // of every pair of bodies: Bullet multiplies the two
 constexpr double slop_m = 2e-5;   // so deep bodies may rest in one another: contacts then do not come and go
+constexpr double contact_m = 2e-3;  // from here on a contact is known, before bodies touch
 constexpr double touch_m = 1e-5;  // nearer than this, bodies touch
 constexpr double asleep_m_s = 5e-4, asleep_rad_s = 5e-3, asleep_after_s = .05;  // slower for so long: asleep
 constexpr double most_pull_m_s = 10, most_pull_rad_s = 40;  // of what lags behind the gripper because it was held up
@@ -50,12 +51,14 @@ btVector3 at_most(double limit, const btVector3& v) {
 
 void BulletWorld::load(const std::vector<BodyModel>& models, int copies) {
   if (copies_ > 0) throw EngineError("Bullet: load() is called once");
-  gDeactivationTime = asleep_after_s;  // of the process, unfortunately; by default 2 s, most of an episode
+  // Of the process, unfortunately. By default 2 s, most of an episode, and .02 m, which keeps neighbours awake.
+  gDeactivationTime = asleep_after_s;
+  gContactBreakingThreshold = contact_m;
   for (const BodyModel& model : models) models_.push_back(make_bullet_model(model));
   copies_ = copies;
 }
 
-BulletWorld::Simulation BulletWorld::make_simulation() const {
+BulletWorld::Simulation BulletWorld::make_simulation(std::size_t bodies) const {
   btDefaultCollisionConstructionInfo pools;  // the default pools are 4 MB, which take longer to lay out than an episode
   pools.m_defaultMaxPersistentManifoldPoolSize = 256;
   pools.m_defaultMaxCollisionAlgorithmPoolSize = 256;
@@ -64,7 +67,10 @@ BulletWorld::Simulation BulletWorld::make_simulation() const {
   // A plane asks a body for its lowest corner only: four tilted looks more, as long as fewer than four corners are known.
   s.configuration->setPlaneConvexMultipointIterations(4, 4);
   s.dispatcher = std::make_unique<btCollisionDispatcher>(s.configuration.get());
-  s.broadphase = std::make_unique<btDbvtBroadphase>();
+  // Every pair by its exact boxes: few bodies, and a tree's wider boxes wake bodies that nothing comes near.
+  s.dispatcher->setDispatcherFlags(0);  // contact_m is a length, not a share of each body's size
+  constexpr std::size_t table_and_spatula = 2;
+  s.broadphase = std::make_unique<btSimpleBroadphase>(static_cast<int>(bodies + table_and_spatula));
   s.solver = std::make_unique<btSequentialImpulseConstraintSolver>();
   s.world = std::make_unique<btDiscreteDynamicsWorld>(s.dispatcher.get(), s.broadphase.get(), s.solver.get(),
                                                       s.configuration.get());
@@ -91,7 +97,7 @@ void BulletWorld::reset(const std::vector<BodyPlacement>& placements) {
   if (copies_ == 0) throw EngineError("Bullet: reset() before load()");
   grip_.reset();
   now_.reset();
-  auto made = std::make_unique<Simulation>(make_simulation());
+  auto made = std::make_unique<Simulation>(make_simulation(placements.size()));
   std::vector<int> used(models_.size(), 0);
   for (const BodyPlacement& p : placements) {
     const auto index = static_cast<std::size_t>(p.model);

@@ -1,5 +1,6 @@
 // Rigid bodies on Bullet, in double precision: shapes are made once, everything else anew for each scene.
 #pragma once
+#include <BulletCollision/BroadphaseCollision/btSimpleBroadphase.h>
 #include <btBulletDynamicsCommon.h>
 #include <memory>
 #include <optional>
@@ -45,7 +46,7 @@ class BulletWorld final : public PhysicsWorld {
     std::unique_ptr<btRigidBody> table, spatula;
     std::unique_ptr<btDefaultCollisionConfiguration> configuration;
     std::unique_ptr<btCollisionDispatcher> dispatcher;
-    std::unique_ptr<btDbvtBroadphase> broadphase;
+    std::unique_ptr<btSimpleBroadphase> broadphase;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver;
     std::unique_ptr<btDiscreteDynamicsWorld> world;
   };
@@ -56,7 +57,7 @@ class BulletWorld final : public PhysicsWorld {
   };
 
   const Body& body(int index) const;
-  Simulation make_simulation() const;
+  Simulation make_simulation(std::size_t bodies) const;
   void pull_held();
 
   std::vector<BulletModel> models_;
