@@ -30,7 +30,7 @@ class WatchedWorld : public PhysicsWorld {
   }
   Pose pose(int body) const override {
     Pose pose = world_->pose(body);
-    if (creeps) pose.position_m.x += 1e-5 * steps;
+    if (creeps) pose.position_m.x += 2e-3 * world_->time_step_s() * steps;
     return pose;
   }
   std::vector<Contact> contacts() const override { return world_->contacts(); }

@@ -23,8 +23,8 @@ inline Pose from_bullet(const btTransform& t) {
 struct BulletModel {
   std::vector<std::unique_ptr<btConvexHullShape>> pieces;  // in the mass frame
   std::unique_ptr<btCompoundShape> compound;               // of several pieces
-  btTransform mass_frame;  // centre of mass and principal axes, in the body's frame
-  btVector3 inertia;       // about these axes, kg m^2
+  btTransform mass_frame;                                  // centre of mass and principal axes, in the body's frame
+  btVector3 inertia;                                       // about these axes, kg m^2
   double mass_kg = 0;
   bool fixed = false;
 

@@ -10,10 +10,10 @@ namespace lgabench {
 namespace {
 
 constexpr double time_step = 0.005;
-constexpr double friction = 1;               // of every pair of bodies: Bullet multiplies the two
-constexpr double slop_m = 2e-5;   // so deep bodies may rest in one another: contacts then do not come and go
+constexpr double friction = 1;      // of every pair of bodies: Bullet multiplies the two
+constexpr double slop_m = 2e-5;     // so deep bodies may rest in one another: contacts then do not come and go
 constexpr double contact_m = 2e-3;  // from here on a contact is known, before bodies touch
-constexpr double touch_m = 1e-5;  // nearer than this, bodies touch
+constexpr double touch_m = 1e-5;    // nearer than this, bodies touch
 constexpr double asleep_m_s = 5e-4, asleep_rad_s = 5e-3, asleep_after_s = .05;  // slower for so long: asleep
 constexpr double most_pull_m_s = 10, most_pull_rad_s = 40;  // of what lags behind the gripper because it was held up
 const btVector3 gravity(0, 0, -9.81);
@@ -64,7 +64,8 @@ BulletWorld::Simulation BulletWorld::make_simulation(std::size_t bodies) const {
   pools.m_defaultMaxCollisionAlgorithmPoolSize = 256;
   Simulation s;
   s.configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
-  // A plane asks a body for its lowest corner only: four tilted looks more, as long as fewer than four corners are known.
+  // A plane asks a body for its lowest corner only: four tilted looks more, as long as fewer than four corners are
+  // known.
   s.configuration->setPlaneConvexMultipointIterations(4, 4);
   s.dispatcher = std::make_unique<btCollisionDispatcher>(s.configuration.get());
   // Every pair by its exact boxes: few bodies, and a tree's wider boxes wake bodies that nothing comes near.
@@ -80,7 +81,7 @@ BulletWorld::Simulation BulletWorld::make_simulation(std::size_t bodies) const {
   s.solver->setRandSeed(0);
   btContactSolverInfo& solver = s.world->getSolverInfo();
   solver.m_minimumSolverBatchSize = 1;  // each island alone: what happens elsewhere does not change the order
-  solver.m_numIterations = 50;  // at most: fewer where impulses have settled
+  solver.m_numIterations = 50;          // at most: fewer where impulses have settled
   solver.m_leastSquaresResidualThreshold = 1e-14;
   solver.m_linearSlop = slop_m;
   // Friction along two fixed directions: along that of sliding, a block pushed straight turns by up to 17 degrees.
@@ -105,8 +106,7 @@ void BulletWorld::reset(const std::vector<BodyPlacement>& placements) {
       throw EngineError(fmt::format("Bullet: no free body of model {}", p.model));
     const BulletModel& model = models_[index];
     const btTransform start = finite(p.pose) * model.mass_frame;
-    auto rigid =
-        make_body(model.mass_kg, model.shape(), model.inertia, start, static_cast<int>(made->bodies.size()));
+    auto rigid = make_body(model.mass_kg, model.shape(), model.inertia, start, static_cast<int>(made->bodies.size()));
     made->world->addRigidBody(rigid.get());
     // At rest: it sleeps until something touches it, and costs nothing before.
     if (!model.fixed) rigid->setActivationState(ISLAND_SLEEPING);

@@ -59,7 +59,8 @@ Action random_action(RandomStream& random, const Scene& scene) {
     return Vec2{random.uniform(Workspace::x_min, Workspace::x_max), random.uniform(Workspace::y_min, Workspace::y_max)};
   };
   Action action{{anywhere(), {}}, {anywhere(), from_yaw(random.uniform(-pi, pi))}};
-  if (random.coin()) action.pose0.position_m = scene.objects[random.below(static_cast<std::uint32_t>(scene.objects.size()))].position_m;
+  if (random.coin())
+    action.pose0.position_m = scene.objects[random.below(static_cast<std::uint32_t>(scene.objects.size()))].position_m;
   return action;
 }
 

@@ -11,9 +11,10 @@ int main(int argc, char** argv) {
   lgabench::flush_denormals();
   testing::InitGoogleTest(&argc, argv);
   if (argc > 2 || (argc == 2 && argv[1][0] == '-')) {
-    fmt::print("Usage: lgabench-engine-conformance [ENGINE] [--gtest_filter=PATTERN]\n"
-               "ENGINE: an engine's id, or the file of a plugin (.so). LGABENCH_FULL=1 plays more.\n"
-               "Example: lgabench-engine-conformance ./my_engine.so --gtest_filter=World.*\n");
+    fmt::print(
+        "Usage: lgabench-engine-conformance [ENGINE] [--gtest_filter=PATTERN]\n"
+        "ENGINE: an engine's id, or the file of a plugin (.so). LGABENCH_FULL=1 plays more.\n"
+        "Example: lgabench-engine-conformance ./my_engine.so --gtest_filter=World.*\n");
     return 2;
   }
   if (argc == 2) ::setenv("LGABENCH_TEST_ENGINE", argv[1], 1);
