@@ -10,10 +10,11 @@ namespace lgabench {
 namespace {
 
 constexpr double time_step = 0.005;
-constexpr double friction = 1;      // of every pair of bodies: Bullet multiplies the two
-constexpr double slop_m = 2e-5;     // so deep bodies may rest in one another: contacts then do not come and go
-constexpr double contact_m = 2e-3;  // from here on a contact is known, before bodies touch
-constexpr double touch_m = 1e-5;    // nearer than this, bodies touch
+constexpr double turning_lost_per_s = .8;  // a share: a disc on its edge would roll for ever
+constexpr double friction = 1;             // of every pair of bodies: Bullet multiplies the two
+constexpr double slop_m = 2e-5;            // so deep bodies may rest in one another: contacts then do not come and go
+constexpr double contact_m = 2e-3;         // from here on a contact is known, before bodies touch
+constexpr double touch_m = 1e-5;           // nearer than this, bodies touch
 constexpr double asleep_m_s = 5e-4, asleep_rad_s = 5e-3, asleep_after_s = .05;  // slower for so long: asleep
 constexpr double most_pull_m_s = 10, most_pull_rad_s = 40;  // of what lags behind the gripper because it was held up
 const btVector3 gravity(0, 0, -9.81);
@@ -34,6 +35,7 @@ std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape* shape, 
   btRigidBody::btRigidBodyConstructionInfo info(mass_kg, nullptr, shape, inertia);
   info.m_startWorldTransform = at;
   info.m_friction = friction;
+  info.m_angularDamping = turning_lost_per_s;
   info.m_linearSleepingThreshold = asleep_m_s;
   info.m_angularSleepingThreshold = asleep_rad_s;
   auto body = std::make_unique<btRigidBody>(info);
@@ -174,6 +176,7 @@ void BulletWorld::grip(int index, const Pose& gripper) {
   grip_ = Grip{index, at.inverse() * b.rigid->getWorldTransform(), at};
   b.rigid->forceActivationState(DISABLE_DEACTIVATION);
   b.rigid->setGravity({0, 0, 0});
+  b.rigid->setDamping(0, 0);
 }
 
 void BulletWorld::move_gripper(const Pose& gripper) {
@@ -187,6 +190,7 @@ void BulletWorld::release() {
   held.forceActivationState(ACTIVE_TAG);
   held.setDeactivationTime(0);
   held.setGravity(gravity);
+  held.setDamping(0, turning_lost_per_s);
   grip_.reset();
 }
 

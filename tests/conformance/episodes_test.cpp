@@ -81,10 +81,10 @@ TEST_P(AnyTask, RandomActionsLeaveSoundScenes) {
         const std::string which = fmt::format("scene {}, action {}, {}", i, k, scene.objects[o].object_type);
         const Quat& q = p.rotation;
         ASSERT_NEAR(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1, 1e-6) << which;
-        // A body on its edge may have its frame below the table, but none falls through, is shot up or away.
-        ASSERT_LT(std::hypot(p.position_m.x - .5, p.position_m.y), 1.5) << which;
+        // A body on its edge may have its frame below the table, but none falls through or is shot away; a disc may
+        // roll.
+        ASSERT_LT(std::hypot(p.position_m.x - .5, p.position_m.y), 3) << which;
         ASSERT_LT(p.position_m.z, .4) << which;
-        ASSERT_GT(centre_of(scene.objects[o], p).x, -1) << which;
         ASSERT_GT(p.position_m.z + object_model(scene.objects[o].object_type).radius_m, 0) << which;
       }
     }
