@@ -288,6 +288,19 @@ TEST(World, RaysHitTheTopmostBody) {
   EXPECT_EQ(height, 0);
 }
 
+TEST(World, RaysHitTheUpperOfTwoWhicheverWasPlacedFirst) {
+  const double top = object_model("pallet").height_m;
+  const BodyPlacement block = at("block", .5, .3, 0, top);
+  for (const bool first : {true, false}) {
+    world().reset(first ? std::vector{block, pallet(.5, .3)} : std::vector{pallet(.5, .3), block});
+    double height = 0;
+    EXPECT_EQ(world().cast_down({.5, .3}, height), first ? 0 : 1);
+    EXPECT_NEAR(height, top + object_model("block").height_m, 1e-5);
+    EXPECT_EQ(world().cast_down({.5, .38}, height), first ? 1 : 0) << "beside the block, on the pallet";
+    EXPECT_NEAR(height, top, 1e-5);
+  }
+}
+
 TEST(World, RaysFollowABodyThatMovesAndDoNotSeeTheSpatula) {
   world().reset({at("block", .4, -.2)});
   const double top = object_model("block").height_m;
