@@ -15,8 +15,12 @@ namespace lgabench {
 inline const PluginInfo& engine_under_test() {
   static const PluginInfo chosen = [] {
     const Catalogue catalogue = scan_plugins(plugin_directories());
-    if (const char* named = std::getenv("LGABENCH_TEST_ENGINE"))
-      return fs::path(named).extension() == ".so" ? read_plugin(named) : catalogue.find("engine", named);
+    if (const char* named = std::getenv("LGABENCH_TEST_ENGINE")) {
+      if (fs::path(named).extension() != ".so") return catalogue.find("engine", named);
+      const PluginInfo plugin = read_plugin(named);
+      if (plugin.kind != "engine") throw PluginError(std::string(named) + ": expected an engine, got a " + plugin.kind);
+      return plugin;
+    }
     for (const char* id : {"mujoco", "bullet"})
       for (const PluginInfo& plugin : catalogue.plugins)
         if (plugin.kind == "engine" && plugin.id == id) return plugin;
