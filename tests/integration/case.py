@@ -1,6 +1,6 @@
 """What the integration tests share: the built programs, called in a directory of their own, and what they leave there.
 
-LGABENCH_BUILD names the build tree.
+LGABENCH_BUILD names the build tree, LGABENCH_TEST_ENGINE the engine to play on where a test does not say.
 """
 import json
 import os
@@ -13,7 +13,15 @@ import unittest
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 PROGRAM = BUILD / "bin" / "lgabench"
 FIXTURES = BUILD / "tests" / "plugins"
+ENGINE = {verb: (flag, os.environ["LGABENCH_TEST_ENGINE"]) for verb, flag in (("run", "--engines"), ("demos", "--engine"))}
 NO_CLOCK = ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")
+
+
+def command_line(*arguments):
+    """The program's command line. Where a test names no engine, it is the one under test: MuJoCo may not be built."""
+    words = [*map(str, arguments)]
+    flag, engine = ENGINE.get(words[0] if words else "", (None, "mujoco"))
+    return [PROGRAM, *words] + ([flag, engine] if engine != "mujoco" and flag not in words else [])
 
 
 class Case(unittest.TestCase):
@@ -23,13 +31,13 @@ class Case(unittest.TestCase):
         self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
 
     def call(self, *arguments, expect=0, **more):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, env=self.environment,
+        done = subprocess.run(command_line(*arguments), capture_output=True, text=True, env=self.environment,
                               cwd=self.dir, timeout=300, **more)
         self.assertEqual(done.returncode, expect, done.stderr[-3000:])
         return done
 
     def start(self, *arguments):
-        process = subprocess.Popen([PROGRAM, *map(str, arguments)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        process = subprocess.Popen(command_line(*arguments), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                    text=True, env=self.environment, cwd=self.dir)
         self.addCleanup(process.stderr.close)
         return process

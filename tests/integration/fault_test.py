@@ -14,7 +14,7 @@ import subprocess
 import time
 import unittest
 
-from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM
+from case import BUILD, Case, FIXTURES, NO_CLOCK, command_line
 
 FULL = os.environ.get("LGABENCH_FULL") == "1"
 # Tiny but real: one method that trains, one that does not, the reference rows.
@@ -254,7 +254,7 @@ class FullDisk(Faults):
                 "FULL_DISK_COUNT": str(count), "FULL_DISK_AT": str(number)}
         if stays:
             more["FULL_DISK_STAYS"] = "1"
-        done = subprocess.run([PROGRAM, *map(str, NO_TRAINING), "--cache", "disk/cache", "--out", "disk/out"],
+        done = subprocess.run(command_line(*NO_TRAINING, "--cache", "disk/cache", "--out", "disk/out"),
                               timeout=60, capture_output=True, text=True, cwd=self.dir,
                               env={**self.environment, **more})
         return done, struct.unpack("i", count.read_bytes())[0]

@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 import unittest
 
+from case import command_line
+
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 PROGRAM = BUILD / "bin" / "lgabench"
 # One cell that trains, for a second, and the three reference rows.
@@ -38,7 +40,7 @@ class Verify(unittest.TestCase):
         cls.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
         cls.addClassCleanup(shutil.rmtree, cls.base, ignore_errors=True)
         cls.environment = dict(os.environ, LGABENCH_CACHE=str(cls.base / "cache"), TMPDIR=str(cls.base))
-        subprocess.run([PROGRAM, *RUN, "--out", cls.base / "run"], check=True, capture_output=True, env=cls.environment)
+        subprocess.run(command_line(*RUN, "--out", cls.base / "run"), check=True, capture_output=True, env=cls.environment)
 
     def setUp(self):
         self.run_directory = pathlib.Path(tempfile.mkdtemp(dir=self.base)) / "run"
@@ -142,7 +144,7 @@ class Compare(unittest.TestCase):
         self.run_small("a")
 
     def call(self, *arguments, expect=0):
-        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, cwd=self.base, timeout=300,
+        done = subprocess.run(command_line(*arguments), capture_output=True, text=True, cwd=self.base, timeout=300,
                               env=dict(os.environ, LGABENCH_CACHE=str(self.base / "cache")))
         self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
         return done

@@ -53,6 +53,9 @@ class IncludeGraph(unittest.TestCase):
     def test_engines_stay_in_their_plugins(self):
         for folder in ("framework", "envs/tabletop", "plugins", "baselines"):
             self.forbid(folder, r"mujoco/|bullet/|btBullet")
+        self.forbid("envs/bullet", r"mujoco/")
+        self.forbid("envs/mujoco", r"bullet/|btBullet")
+        self.forbid("examples", r"mujoco/|bullet/|btBullet|tabletop/")
 
     def test_harness_reaches_the_tabletop_in_one_place(self):
         self.forbid("framework/lgabench/harness", r"tabletop/", but=("environments.cpp",))
@@ -64,7 +67,7 @@ class Needed(unittest.TestCase):
 
     def test_programs_do_not_link_torch(self):
         for program in ("bin/lgabench", "bin/lgabench-worker"):
-            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|liblgabench_learning")
+            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
         self.forbid("bin/lgabench", r"tabletop|embree|opencv|hdf5")

@@ -12,6 +12,7 @@
 #include <lgabench/harness/hdf5.hpp>
 #include <lgabench/plugin/loader.hpp>
 
+#include "../engine_under_test.hpp"
 #include "testing.hpp"
 
 namespace lgabench {
@@ -21,8 +22,7 @@ class Play : public ::testing::Test, public TemporaryDirectory {
  protected:
   static void SetUpTestSuite() {
     scenario = std::make_unique<Scenario>(load_scenario("heart"));
-    const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
-    environment = make_environment(*scenario, load_engine(catalogue.find("engine", "mujoco")));
+    environment = make_environment(*scenario, make_engine());
   }
   static void TearDownTestSuite() {
     environment.reset();
@@ -276,8 +276,7 @@ class Witness : public Policy {
 
 TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   const Scenario fruit = load_scenario("q3_fruit");
-  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
-  const auto household = make_environment(fruit, load_engine(catalogue.find("engine", "mujoco")));
+  const auto household = make_environment(fruit, make_engine());
   std::vector<Instruction> instructions;
   for (const ScenarioCommand& command : fruit.commands) instructions.push_back({command.utterance, {}});
   std::vector<TestScene> scenes;

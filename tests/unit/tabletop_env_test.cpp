@@ -1,4 +1,4 @@
-// The tabletop over MuJoCo: the oracle succeeds, failures are typed, and an episode depends on its scene alone.
+// The tabletop over an engine: failures are typed, and an episode depends on its scene alone.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,15 +12,10 @@
 #include <tabletop/predicates.hpp>
 #include <tabletop/sampler.hpp>
 
-#include "tabletop_bench.hpp"
+#include "../tabletop_bench.hpp"
 
 namespace lgabench::tabletop {
 namespace {
-
-int scenes_per_arm() {
-  const char* full = std::getenv("LGABENCH_FULL");
-  return full && std::string(full) == "1" ? 500 : 50;
-}
 
 // 0: distractor (id 1), 1: the pallet (id 2), 2: target (id 3).
 Scene bring(const std::string& type = "heart") {
@@ -30,69 +25,6 @@ Scene bring(const std::string& type = "heart") {
                    object(type, "red", Role::target, {.6, -.05}, 3)};
   return scene;
 }
-
-void expect_same(const Episode& a, const Episode& b) {
-  EXPECT_EQ(a.first.rgb, b.first.rgb);
-  EXPECT_EQ(a.first.ids, b.first.ids);
-  EXPECT_EQ(to_vector(a.action), to_vector(b.action));
-  EXPECT_EQ(a.result.observation.rgb, b.result.observation.rgb);
-  EXPECT_EQ(a.result.observation.ids, b.result.observation.ids);
-  EXPECT_EQ(a.result.failure, b.result.failure);
-}
-
-struct Case {
-  std::string scenario, layout;
-};
-void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.layout; }
-
-std::vector<Case> all_cases() {
-  std::vector<Case> cases;
-  for (const std::string& id : scenario_ids())
-    for (const std::string& layout : layouts(load_scenario(id).task))
-      if (id != "q3_food" || layout != "released") cases.push_back({id, layout});  // whose pan is refused there
-  return cases;
-}
-
-class Oracle : public testing::TestWithParam<Case> {};
-
-// Every time; of 500 sweeps two may miss: an L-shaped block that turns against the blade lags, a block that rides up on
-// a utensil which it pushes along may still creep at the limit in steps.
-TEST_P(Oracle, Succeeds) {
-  const Scenario scenario = load_scenario(GetParam().scenario);
-  const Bench& world = bench(scenario.space.id);
-  const int scenes = scenes_per_arm();
-  std::vector<std::string> arms{"train"};
-  for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
-  for (const std::string& arm : arms) {
-    // A distractor that the scenario puts in a sweep's way may be pushed along.
-    const bool undisturbed = scenario.task == Task::sweep && scenario.tests.front().scenes.choice.empty();
-    int missed = 0;
-    for (int i = 0; i < scenes; ++i) {
-      const std::string split = arm == "train" ? "train" : "test";
-      const Scene scene = sample_scene(scenario, {GetParam().layout, split, arm, 200}, i);
-      const StepResult result = play(*world.environment, scene).result;
-      const std::string& type = scene.find(Role::target)->object_type;
-      const std::string which = fmt::format("scene {}, {}", i, arm);
-      EXPECT_TRUE(result.terminated);
-      for (std::size_t k = 0; k < scene.objects.size(); ++k) {
-        const SceneObject& other = scene.objects[k];
-        if (!undisturbed || other.role == Role::target) continue;
-        EXPECT_LT(norm(centre_of(other, world.world->pose(static_cast<int>(k))) - other.position_m), 1e-4)
-            << which << ": " << other.object_type << " was moved";
-      }
-      const bool turned = scene.task == Task::sweep && type == "L-shaped block";
-      const bool on_a_utensil = scene.task == Task::sweep && !undisturbed;
-      if ((turned && result.failure == Failure::missed_zone) || (on_a_utensil && result.truncated))
-        ++missed;
-      else
-        EXPECT_EQ(result.failure, Failure::none) << which << ", " << type << ": " << to_string(result.failure);
-    }
-    EXPECT_LE(missed, scenes / 250) << arm;
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Scenarios, Oracle, testing::ValuesIn(all_cases()),
-                         [](const testing::TestParamInfo<Case>& c) { return c.param.scenario + "_" + c.param.layout; });
 
 TEST(Tabletop, TheOracleCarriesEveryTypeFromEveryYawOntoTheGoal) {
   const Bench household = make_bench("household");
@@ -119,22 +51,6 @@ TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
       EXPECT_TRUE(result.is_success) << type << " by " << degrees << ": " << to_string(result.failure);
     }
 }
-
-class AnyTask : public testing::TestWithParam<const char*> {};
-
-TEST_P(AnyTask, AnEpisodeDependsOnItsSceneAlone) {
-  const Scenario scenario = load_scenario(GetParam());
-  const auto scene = [&](int i) { return sample_scene(scenario, {"continuous", "test", "test", 5}, i); };
-  std::vector<Episode> first;
-  for (int i = 0; i < 5; ++i) first.push_back(play(environment(), scene(i)));
-  for (int i = 4; i >= 0; --i) expect_same(play(environment(), scene(i)), first[static_cast<std::size_t>(i)]);
-  const Bench other = make_bench();
-  expect_same(play(*other.environment, scene(3)), first[3]);
-}
-
-INSTANTIATE_TEST_SUITE_P(Tasks, AnyTask,
-                         testing::Values("something_to_drink_water_out_of", "rotate_block",
-                                         "sweep_block_without_touching_pan"));
 
 TEST(Tabletop, ANumberThatIsNotOneIsTheMethodsFault) {
   const Observation before = environment().reset(bring());
@@ -233,31 +149,6 @@ TEST(Tabletop, TheOracleRecoversFromWhateverANoisyActionLeaves) {
   }
   EXPECT_GT(played, 20);
   EXPECT_EQ(recovered, played);
-}
-
-TEST(Tabletop, WhatLeansOnThePalletComesToRest) {
-  Environment& env = environment();
-  const Scene scene = bring();
-  const Vec2 goal = scene.find(Role::goal)->position_m;
-  env.reset(scene);
-  Action action = env.expert_action();
-  for (int i = 0; i < 48; ++i) {  // around the pallet, half on it, turned
-    const double angle = 2 * pi * i / 24;
-    action.pose1 = {goal + rotated({i < 24 ? .10 : .13, 0}, angle), from_yaw(.5 * angle)};
-    env.reset(scene);
-    EXPECT_FALSE(env.step(action).truncated) << "placement " << i;
-  }
-}
-
-TEST(Tabletop, ABodyThatNeverRestsIsTruncated) {
-  environment().reset(bring());
-  bench().world->creeps = true;
-  const StepResult result = environment().step(environment().expert_action());
-  bench().world->creeps = false;
-  EXPECT_TRUE(result.truncated);
-  EXPECT_FALSE(result.is_success);
-  EXPECT_EQ(result.failure, Failure::truncated);
-  EXPECT_EQ(bench().world->steps, std::lround(10 / bench().world->time_step_s()));
 }
 
 TEST(Tabletop, RefusesSceneryItDoesNotKnow) {
