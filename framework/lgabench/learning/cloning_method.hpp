@@ -37,8 +37,8 @@ struct PolicyInputs {
   std::map<std::string, Selection> masks{};
 };
 
-/// A subclass names its inputs and overrides select(), and needs() if it asks for more than demonstrations of its own
-/// Selection's targets. One thread.
+/// A subclass overrides select(), inputs() if its network sees more or other things than the goal mask, and needs() if
+/// it asks for more than demonstrations of its own Selection's targets. One thread.
 class CloningMethod : public Method {
  public:
   Needs needs(const Json&) const override { return {}; }
@@ -47,8 +47,8 @@ class CloningMethod : public Method {
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
  protected:
-  /// `options` as in Services.
-  virtual PolicyInputs inputs(const Json& options) const = 0;
+  /// What the network sees; the goal mask alone unless a subclass says otherwise. `options` as in Services.
+  virtual PolicyInputs inputs(const Json& /*options*/) const { return {{PolicyInputs::Picture::mask}}; }
 };
 
 }  // namespace lgabench
