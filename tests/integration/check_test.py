@@ -60,6 +60,11 @@ class CheckPlugin(Case):
         self.assertIn("not a regular file", self.check(self.dir / "none.so")["descriptor"]["detail"])
         self.assertIn("expected option=value", self.call("check-plugin", UNSOUND, "--set", "how", expect=2).stderr)
 
+    def test_an_id_that_another_plugin_has(self):
+        self.environment["LGABENCH_PLUGIN_PATH"] = str(FIXTURES / "good")
+        detail = self.check(FIXTURES / "refused/duplicate.so")["id"]["detail"]
+        self.assertEqual(detail, f"fixture_constant is also the id of {FIXTURES}/good/fixture_constant.so")
+
     def test_shipped_plugins_are_good(self):
         for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",)}.items():
             with self.subTest(name):

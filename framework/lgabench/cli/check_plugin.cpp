@@ -36,9 +36,9 @@ Json options_of(const PluginInfo& plugin, const std::vector<std::string>& settin
 CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Arguments& a) {
   CheckReport report;
   report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
-  for (const PluginInfo& shipped : catalogue.plugins)
-    if (shipped.kind == plugin.kind && shipped.id == plugin.id && shipped.sha256 != plugin.sha256)
-      report.problem("id", fmt::format("{} is also the id of {}", plugin.id, shipped.file.string()),
+  for (const PluginInfo& other : catalogue.plugins)
+    if (other.kind == plugin.kind && other.id == plugin.id && other.sha256 != plugin.sha256)
+      report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
                      "take another: of two with one id the later is refused");
 
   const Scratch scratch("check");
@@ -103,7 +103,7 @@ int check_plugin(const Arguments& a) {
   PluginInfo plugin;
   try {
     plugin = read_plugin(a.file);
-    report = check(plugin, scan_plugins({shipped_plugin_directory()}), a);
+    report = check(plugin, scan_plugins(plugin_directories()), a);
   } catch (const PluginError& e) {
     report.problem("descriptor", e.what(), "build it with lgabench_add_plugin() from this very lgabench's package");
   }

@@ -20,12 +20,14 @@ namespace lgabench {
 
 /// The pictures and the text that a policy is given. Each picture gets a tower of its own.
 struct PolicyInputs {
+  /// One channel-first picture of 36 x 72.
   enum class Picture {
     mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
     rgb,          // 3 channels
     segmentation  // 1 channel: 1 on any object
   };
   std::vector<Picture> pictures;
+  /// One sentence embedding of 384 numbers.
   enum class Text {
     none,
     utterance,  // the sentence embedding of the instruction's utterance
