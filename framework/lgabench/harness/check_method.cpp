@@ -154,7 +154,8 @@ class MethodCheck {
       phase_(doing_ = "destroy the method");
       method.reset();  // a policy may outlive it
       std::vector<std::string> actions;
-      for (const TestSight& sight : bench->sights) actions.push_back(act("act", *policy, sight, instructions));
+      for (const TestSight& sight : bench->sights)
+        actions.push_back(act(sight.seen ? "act" : "act on an unseen command", *policy, sight, instructions));
       for (const std::string& action : actions) use.actions += action + '\n';
       if (judged) judge_policy(*policy, *bench, instructions, actions, first);
       if (judged && first && needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);

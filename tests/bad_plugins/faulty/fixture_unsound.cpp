@@ -2,6 +2,7 @@
 #include <fcntl.h>
 
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "../fixture.hpp"
@@ -17,8 +18,9 @@ Action at_place(double share) {
 
 class Unsound : public Policy {
  public:
-  explicit Unsound(std::string how) : how_(std::move(how)) {}
-  Action act(const Observation& observation, const Instruction&) override {
+  Unsound(std::string how, std::set<std::string> seen) : how_(std::move(how)), seen_(std::move(seen)) {}
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    if (how_ == "unseen" && seen_.count(instruction.utterance) == 0) throw MethodError("never heard of");
     if (how_ == "clock") {
       const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
       return at_place(static_cast<double>(now % 1000) / 1000);
@@ -32,6 +34,7 @@ class Unsound : public Policy {
 
  private:
   std::string how_;
+  std::set<std::string> seen_;
   int calls_ = 0;
   std::vector<Observation> kept_;
 };
@@ -46,13 +49,14 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
     if (how == "outside") selection.provenance = Provenance::rule;
     return selection;
   }
-  std::unique_ptr<Policy> learn(const std::vector<Demonstration>&, Services& services) override {
+  std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
+    std::set<std::string> seen;
+    for (const Demonstration& demonstration : demonstrations) seen.insert(demonstration.instruction.utterance);
     const std::string how = services.options.at("how");
     services.log.epoch(1, 1, 0.0);
     if (how == "thread") std::thread([] { std::this_thread::sleep_for(std::chrono::hours(1)); }).detach();
-    if (how == "descriptor") [[maybe_unused]]
-      const int left_open = ::open("/dev/null", O_RDONLY);
-    return std::make_unique<Unsound>(how);
+    if (how == "descriptor") static_cast<void>(::open("/dev/null", O_RDONLY));
+    return std::make_unique<Unsound>(how, std::move(seen));
   }
 };
 
@@ -60,5 +64,5 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "uncounted", "outside", "thread", "descriptor"]}
+    "address", "leak", "uncounted", "outside", "thread", "descriptor", "unseen"]}
 })")
