@@ -1,38 +1,38 @@
 # What every target of this project shares.
 
-# Warnings, flags and the two include roots: framework/ for <lgabench/...>, envs/ for <tabletop/...>.
-function(lgabench_target target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-                                           $<$<BOOL:${LGABENCH_WERROR}>:-Werror>
-                                           $<$<BOOL:${LGABENCH_NATIVE}>:-march=native>)
-  # A fused multiply-add on one machine and not on another would make two results of one computation.
-  target_compile_options(${target} PRIVATE -ffp-contract=off)
-endfunction()
+include(LgabenchPlugin)
 
-# A shared library of the framework: one copy in a process, found by DT_NEEDED.
+# A shared library of the framework: one copy in a process, found by DT_NEEDED. lgabench_NAME is lgabench::NAME to those
+# who link it, here and from the package.
 function(lgabench_library target)
   add_library(${target} SHARED ${ARGN})
-  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+  string(REPLACE "lgabench_" "" name ${target})
+  add_library(lgabench::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} INSTALL_RPATH "$ORIGIN"
+                                             CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
+  target_compile_features(${target} PUBLIC cxx_std_17)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/framework>
                                               $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/envs>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   lgabench_target(${target})
 endfunction()
 
-# One plugin from its sources: lgabench_add_plugin(lga lga.cpp). It is shipped, unless DIRECTORY names another place.
-function(lgabench_add_plugin name)
-  cmake_parse_arguments(PARSE_ARGV 1 P "" "DIRECTORY" "")
-  add_library(${name} MODULE ${P_UNPARSED_ARGUMENTS})
-  # Hidden symbols: two plugins may have classes of one name.
-  set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  target_link_libraries(${name} PRIVATE lgabench_core)
-  lgabench_target(${name})
-  if(P_DIRECTORY)
-    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${P_DIRECTORY})
-  else()
-    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${LGABENCH_PLUGIN_DIRECTORY})
-    install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/lgabench/plugins)
-  endif()
+# What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().
+function(lgabench_install_package)
+  include(CMakePackageConfigHelpers)
+  set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lgabench)
+  install(TARGETS lgabench_core lgabench_learning lgabench_openai EXPORT lgabenchTargets)
+  install(TARGETS lgabench_tabletop)  # the programs need it, plugins do not
+  install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+          FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"
+          PATTERN reader.hpp EXCLUDE
+          PATTERN cli EXCLUDE PATTERN harness EXCLUDE PATTERN report EXCLUDE
+          PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
+  # An SDK of another version is refused when a plugin is read; CMake may say so first.
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake COMPATIBILITY ExactVersion)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/lgabenchConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/LgabenchPlugin.cmake
+                ${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake DESTINATION ${package})
 endfunction()
 
 # Data lies in the build tree where the installed programs look for it.
@@ -42,7 +42,7 @@ function(lgabench_link_data)
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
                answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper formats:docs/formats
-               page:framework/lgabench/report/page)
+               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)

@@ -11,6 +11,7 @@
 
 namespace lgabench {
 
+/// What a server said to one request.
 struct ChatReply {
   std::string text;
   long long tokens = 0;  // of prompt and reply
@@ -29,6 +30,7 @@ class Cassette {
   /// Hash of the whole request (model, messages, parameters) and of the prompt template's version.
   static std::string key(const Json& request, const std::string& template_version);
 
+  /// The reply to the request of this key(), if it was ever given.
   std::optional<ChatReply> find(const std::string& key) const;
   /// @throws InputError if the file cannot be written.
   void add(const std::string& key, const Json& request, const ChatReply& reply);

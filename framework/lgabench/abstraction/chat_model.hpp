@@ -20,8 +20,9 @@ class ChatClient {
   virtual ChatReply complete(const Json& request) = 0;
 };
 
+/// Which model is asked, and how hard.
 struct ChatOptions {
-  std::string model;
+  std::string model;                                      // as the server names it
   int concurrency = 4;                                    // requests under way at once
   int max_queries = -1;                                   // to the server, in the model's life; -1: no limit
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone
@@ -39,7 +40,9 @@ class ChatLanguageModel : public LanguageModel {
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
+  /// As in ChatOptions.
   std::string model() const override { return options_.model; }
+  /// live once this object had a reply from the server, else cassette.
   Provenance provenance() const override { return asked_ > 0 ? Provenance::live : Provenance::cassette; }
   SelectionCost cost() const override { return cost_; }
 

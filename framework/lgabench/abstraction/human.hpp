@@ -9,6 +9,7 @@ namespace lgabench {
 /// Stands on the true distribution: an upper bound, no human data, and no human seconds.
 class TruthAsHuman : public HumanAnswers {
  public:
+  /// `commands` of the scenario, with their truth.
   explicit TruthAsHuman(std::vector<ScenarioCommand> commands);
 
   /// The command's true distribution; provenance truth. @throws MethodError for a command that the scenario lacks.

@@ -7,6 +7,7 @@
 
 namespace lgabench {
 
+/// Where the server is and how patient its client.
 struct OpenAiOptions {
   std::string base_url, api_key;  // as OPENAI_BASE_URL (up to /v1) and OPENAI_API_KEY; the key may be empty
   int attempts = 6;               // of a request, the first included
@@ -18,6 +19,7 @@ struct OpenAiOptions {
 /// is followed by another, after the server's Retry-After where it names seconds. No message holds the key.
 class OpenAiClient : public ChatClient {
  public:
+  /// Connects to nothing yet.
   explicit OpenAiClient(OpenAiOptions options);
   /// @throws MethodError once the attempts are used up, for any other status, for a TLS certificate that this machine
   /// does not trust (the key is then not sent), for a body that is not a completion, and

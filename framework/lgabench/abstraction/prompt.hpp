@@ -18,7 +18,9 @@ class PromptTemplate {
   /// @throws InputError where the file is missing or lacks a part.
   PromptTemplate();
 
+  /// The messages that ask this question about the command. The feature space is told in full.
   Prompt fill(const Command& command, const FeatureSpace& space, const Question& question) const;
+  /// SHA-256 of the file; owned by the template.
   const std::string& version() const { return version_; }
 
  private:

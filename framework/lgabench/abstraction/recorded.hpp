@@ -26,6 +26,7 @@ class RecordedLanguageModel : public LanguageModel {
   /// Of the command asked last.
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override;
+  /// Always recorded.
   Provenance provenance() const override { return Provenance::recorded; }
   SelectionCost cost() const override { return cost_; }
 

@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
   cli::add_report(app, exit);
   cli::add_compare(app, exit);
   cli::add_verify(app, exit);
+  cli::add_new_plugin(app, exit);
+  cli::add_check_plugin(app, exit);
   for (const auto& [verb, summary] : worker_verbs) app.add_subcommand(verb, summary);
   return cli::dispatch(app, argc, argv, exit);
 }

@@ -15,9 +15,12 @@ void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
+void add_new_plugin(CLI::App& app, int& exit);
+void add_check_plugin(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);
+void add_check_job(CLI::App& app, int& exit);
 void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);

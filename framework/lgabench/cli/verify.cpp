@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/cli/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
@@ -26,22 +27,6 @@ struct Arguments {
   bool all = false, json = false;
   double timeout_s = 3600;
   std::vector<fs::path> plugin_path;
-};
-
-// A directory that is gone when this is.
-struct Scratch {
-  fs::path path;
-  Scratch() {
-    std::string pattern = (fs::temp_directory_path() / "lgabench-verify-XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) throw InputError(fmt::format("{}: {}", pattern, std::strerror(errno)));
-    path = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
 };
 
 struct Recorded {
@@ -201,7 +186,7 @@ int verify(const Arguments& a) {
   std::set<std::string> why;  // of all cells
   std::vector<Verdict> verdicts;
   if (!cells.empty()) {
-    const Scratch scratch;
+    const Scratch scratch("verify");
     RunPlan plan;
     std::vector<std::set<std::string>> excuses(cells.size());  // of each cell: why the same bytes are not owed
     for (std::size_t i = 0; i < cells.size(); ++i) plan.cells.push_back(with_present_data(cells[i], excuses[i]));

@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", LGABENCH_VERSION);
   app.require_subcommand(1);
   cli::add_cell(app, exit);
+  cli::add_check_job(app, exit);
   cli::add_select(app, exit);
   cli::add_demos(app, exit);
   cli::add_render(app, exit);

@@ -26,6 +26,7 @@ enum class Failure {
 };
 std::string to_string(Failure failure);
 
+/// What an action led to.
 struct StepResult {
   Observation observation;  // after the motion, at rest
   bool terminated = false;  // the task's one action is done

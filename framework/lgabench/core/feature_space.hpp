@@ -21,6 +21,7 @@ FeatureSpace load_feature_space(const std::string& id);
 struct FeatureSet {
   std::vector<std::string> object_types, textures;  // in the order of the feature space
 
+  /// Both features are in it.
   bool contains(const std::string& object_type, const std::string& texture) const;
   /// Nothing can belong to it.
   bool empty() const { return object_types.empty() || textures.empty(); }

@@ -6,9 +6,11 @@ namespace lgabench {
 
 constexpr double pi = 3.14159265358979323846;
 
+/// A point on the table, or a way along it.
 struct Vec2 {
   double x = 0, y = 0;
 };
+/// z is the height above the table.
 struct Vec3 {
   double x = 0, y = 0, z = 0;
 };
@@ -16,6 +18,7 @@ struct Vec3 {
 struct Quat {
   double x = 0, y = 0, z = 0, w = 1;
 };
+/// Where a body is and how it is turned: position in metres.
 struct Pose {
   Vec3 position_m;
   Quat rotation;
@@ -58,6 +61,7 @@ inline Vec3 rotated(Vec3 v, const Quat& q) {
 struct Workspace {
   static constexpr double x_min = 0.25, x_max = 0.75, y_min = -0.5, y_max = 0.5;
   static constexpr int rows = 128, columns = 256;
+  /// Edges included.
   static bool contains(Vec2 p) { return p.x >= x_min && p.x <= x_max && p.y >= y_min && p.y <= y_max; }
 };
 

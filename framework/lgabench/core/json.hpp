@@ -22,25 +22,33 @@ std::string canonical(const Json& value);
 /// Holds a reference: the document must outlive it.
 class JsonReader {
  public:
+  /// `place` is the JSON pointer of `value` in the file.
   JsonReader(const Json& value, std::string file, std::string place = "")
       : value_(value), file_(std::move(file)), place_(std::move(place)) {}
 
+  /// The value as it is; belongs to the document.
   const Json& json() const { return value_; }
+  /// It is an object with that member.
   bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
   /// Member of an object. @throws InputError where missing.
   JsonReader at(const std::string& key) const;
   /// Elements of an array. @throws InputError where it is none.
   std::vector<JsonReader> elements() const;
 
+  /// A text. This and the following @throw InputError for a value of another type.
   std::string string() const;
+  /// An array of texts.
   std::vector<std::string> strings() const;
+  /// Any number.
   double number() const;
+  /// true or false.
   bool boolean() const;
   /// Whole number within [lowest, highest].
   long long integer(long long lowest, long long highest) const;
 
   /// @throws InputError for the first member whose name is not among `known`.
   void only(const std::vector<std::string>& known) const;
+  /// @throws InputError "FILE: PLACE: expected EXPECTATION, got ...", always.
   [[noreturn]] void fail(const std::string& expectation) const;
 
  private:

@@ -9,7 +9,9 @@ namespace lgabench {
 
 /// One yes/no question: could the target (or the object to be avoided) have this object type or texture?
 struct Question {
+  /// What is to be moved, or for sweep what must not be touched.
   enum class About { target, avoid } about = About::target;
+  /// Which of its two features.
   enum class Group { object_type, texture } group = Group::object_type;
   std::string candidate;
 };
@@ -24,9 +26,11 @@ class LanguageModel {
   virtual std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                                    const std::vector<Question>& questions) = 0;
 
+  /// Its name, for Selection::source.
   virtual std::string model() const = 0;
   /// The wording that was answered, where it differs from the command's (recorded answers).
   virtual std::string asked_as(const Command& command) const { return command.utterance; }
+  /// How its answers came about, for Selection::provenance.
   virtual Provenance provenance() const = 0;
   /// Cost of all answers so far.
   virtual SelectionCost cost() const = 0;

@@ -1,5 +1,7 @@
 // The interface of a method: what a plugin implements. No LibTorch, no OpenCV here.
-// The host calls it from one thread; references are valid during the call; what it returns is owned by the caller.
+// The host calls it from one thread; references are valid during the call; what it returns is owned by the caller. What
+// it throws fails the cell, or the episode if act() threw it, with what() as the reason; an InputError says that an
+// option or a file is wrong, not the method.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -56,22 +58,34 @@ struct Services {
   TrainingLog& log;
 };
 
+/// What was learned. It may outlive its Method and the demonstrations. One thread.
 class Policy {
  public:
   virtual ~Policy() = default;
   /// Called before each episode.
   virtual void reset() {}
+  /// The one action of an episode: a function of its arguments and of what was learned, so that the same scene gives
+  /// the same action whatever was played before. `observation` comes from a scene that was not demonstrated;
+  /// `instruction` may hold an utterance that was not, and any Selection, an empty one or the true one included.
+  /// @returns positions in metres in the frame of Workspace. Not finite: the episode fails as method_error.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
 };
 
+/// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default
+/// constructor; called in the order needs, select for each of the scenario's commands, learn. One thread. Everything
+/// that is random comes from Services::seed: the same seed gives the same bytes.
 class Method {
  public:
   virtual ~Method() = default;
-  /// `options` as in Services. Called first.
+  /// What its demonstrations shall be like. `options` as in Services. Called first.
   virtual Needs needs(const Json& options) const = 0;
-  /// Feature abstraction. A method that selects nothing returns a Selection of provenance none.
+  /// Feature abstraction (paper, section 3.1): which object types and textures of `space` could the command mean? A
+  /// method that selects nothing returns a Selection of provenance none. Names outside the space fail the cell; an
+  /// empty Selection is an answer, and fails it as abstraction_empty if targets are drawn from it. `cost` is what this
+  /// call alone cost.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
-  /// Learns from the demonstrations. The policy must not refer to them afterwards.
+  /// Learns from the demonstrations, the cell's number of them, in the order of their scenes. The policy must not refer
+  /// to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
 };
 

@@ -20,6 +20,7 @@ struct BodyModel {
   bool fixed = false;  // stays where reset() puts it, whatever touches it; cannot be gripped
 };
 
+/// Where a body is put.
 struct BodyPlacement {
   int model = 0;  // index into the models given to load()
   Pose pose;      // of the body's frame
@@ -47,9 +48,12 @@ class PhysicsWorld {
   /// future.
   virtual void reset(const std::vector<BodyPlacement>& placements) = 0;
 
+  /// Seconds of one step; does not change.
   virtual double time_step_s() const = 0;
+  /// Advances the world by one step.
   virtual void step() = 0;
 
+  /// Of the body's frame, in metres. `body`: index into reset()'s placements.
   virtual Pose pose(int body) const = 0;
   /// Pairs in which both bodies are at rest may be left out.
   virtual std::vector<Contact> contacts() const = 0;
@@ -62,11 +66,14 @@ class PhysicsWorld {
   virtual void grip(int body, const Pose& gripper) = 0;
   /// Where the gripper shall be after the next step.
   virtual void move_gripper(const Pose& gripper) = 0;
+  /// Lets go; without a grip, nothing happens.
   virtual void release() = 0;
 
   /// A kinematic box (size along its own x, y, z) that pushes bodies; appears at `pose`.
   virtual void place_spatula(Vec3 size_m, const Pose& pose) = 0;
+  /// Where the spatula shall be after the next step.
   virtual void move_spatula(const Pose& pose) = 0;
+  /// It touches nothing any more.
   virtual void remove_spatula() = 0;
 };
 

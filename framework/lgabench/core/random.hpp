@@ -14,12 +14,15 @@ class RandomStream {
   /// `name` says what the numbers are for, e.g. "scene/heart/cells/test/0/17/layout".
   explicit RandomStream(std::string_view name);
 
+  /// 32 uniform bits.
   std::uint32_t next();
   /// Uniform in [0, 1), 53 bits.
   double uniform();
+  /// Uniform in [low, high).
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform in [0, n), without bias. @pre n > 0
   std::uint32_t below(std::uint32_t n);
+  /// true or false with equal odds.
   bool coin() { return below(2) == 0; }
   /// Standard normal (Box-Muller).
   double gaussian();

@@ -43,6 +43,7 @@ struct Arm {
   double label_noise = 0, missed_segment = 0;  // how imperfect the textualization is (see textualization.hpp)
 };
 
+/// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
 struct Scenario {
   std::string id, environment;
   Task task = Task::pick_and_place;
@@ -55,6 +56,7 @@ struct Scenario {
   std::vector<Arm> tests;
   Json json;  // as read: goes into a cell's configuration whole
 
+  /// Command number `i` as a method is given it. @pre 0 <= i < commands.size()
   Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task}; }
   std::vector<std::string> utterances() const;  // of all commands
   /// @throws InputError for a test arm that the scenario lacks.

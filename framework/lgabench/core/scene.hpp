@@ -15,6 +15,7 @@ std::string to_string(Task task);
 enum class Role { target, distractor, obstacle, goal };
 std::string to_string(Role role);
 
+/// One object of a scene.
 struct SceneObject {
   std::string object_type, texture;
   Role role = Role::distractor;

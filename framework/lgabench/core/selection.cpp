@@ -6,7 +6,8 @@
 namespace lgabench {
 namespace {
 
-constexpr std::array<std::pair<Provenance, const char*>, 7> words{{{Provenance::none, "none"},
+constexpr std::array<std::pair<Provenance, const char*>, 8> words{{{Provenance::none, "none"},
+                                                                   {Provenance::rule, "rule"},
                                                                    {Provenance::recorded, "recorded"},
                                                                    {Provenance::live, "live"},
                                                                    {Provenance::cassette, "cassette"},

@@ -10,6 +10,7 @@ namespace lgabench {
 /// Where a Selection comes from.
 enum class Provenance {
   none,            // the method selects nothing (GCBC)
+  rule,            // the method's own computation: nobody was asked
   recorded,        // a language model's published or recorded answers
   live,            // a language model asked during this run
   cassette,        // a live model's replies, replayed

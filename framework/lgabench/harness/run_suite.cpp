@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -41,8 +39,8 @@ std::string processor() {
   return "unknown";
 }
 
-double memory_bytes() {
-  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+double memory_gib() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE)) / (1 << 30);
 }
 
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
@@ -82,53 +80,16 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"machine",
            {{"processor", processor()},
             {"cores", std::thread::hardware_concurrency()},
-            {"memory_gib", std::round(memory_bytes() / (1 << 30) * 10) / 10},
+            {"memory_gib", std::round(memory_gib() * 10) / 10},
             {"system", fmt::format("{} {}", system.sysname, system.release)}}}};
-}
-
-// A worker that leaks meets its own limit before the machine's.
-Json limits(const PoolOptions& pool) {
-  constexpr double gib = 1 << 30, least = 4 * gib;
-  const double memory = pool.memory_gib > 0 ? pool.memory_gib * gib : std::max(least, memory_bytes() / pool.jobs);
-  return {{"cpu_s", static_cast<long long>(pool.timeout_s) + 60}, {"data_bytes", static_cast<long long>(memory)}};
-}
-
-std::vector<std::string> tail(const fs::path& log) {
-  constexpr std::size_t lines = 20, longest = 400;
-  constexpr std::uintmax_t most = 1 << 16;
-  std::ifstream file(log, std::ios::binary);
-  std::error_code none;
-  if (const std::uintmax_t size = fs::file_size(log, none); !none && size > most)
-    file.seekg(static_cast<std::streamoff>(size - most));
-  std::vector<std::string> last;
-  for (std::string line; std::getline(file, line);) {
-    if (line.size() > longest) line = line.substr(0, longest) + "...";
-    for (char& c : line)  // whatever was printed, status.json stays text
-      if (static_cast<unsigned char>(c) >= 0x80 || (static_cast<unsigned char>(c) < 0x20 && c != '\t')) c = '?';
-    if (last.size() == lines) last.erase(last.begin());
-    last.push_back(line);
-  }
-  return last;
 }
 
 // status.json of a worker that left none.
 Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
-  const std::string where = end.phase.empty() ? "before its first phase" : "in phase " + end.phase;
-  std::string reason, fault = "plugin";
-  if (end.timed_out) {
-    reason = fmt::format("stopped after {} s {}", timeout_s, where);
-  } else if (end.signal != 0) {
-    reason = fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where);
-    if (end.signal == SIGKILL || end.signal == SIGTERM) fault = "host";  // from outside: a person, or memory ran out
-  } else if (!end.complaint.is_null()) {
-    reason = end.complaint.at("reason");
-    fault = end.complaint.at("fault") == "plugin" ? "plugin" : "host";
-  } else {
-    reason = fmt::format("exited with {} {}", end.exit_code, where);
-  }
-  return {{"state", "failed"},    {"reason", reason}, {"signal", end.signal ? Json(end.signal) : Json(nullptr)},
-          {"fault", fault},       {"build", build},   {"files", Json::object()},
-          {"log_tail", tail(log)}};
+  const auto [reason, fault] = why_it_ended(end, timeout_s);
+  return {{"state", "failed"},        {"reason", reason}, {"signal", end.signal ? Json(end.signal) : Json(nullptr)},
+          {"fault", fault},           {"build", build},   {"files", Json::object()},
+          {"log_tail", log_tail(log)}};
 }
 
 double total_seconds(const fs::path& cell) {
@@ -221,7 +182,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
              {"cache", fs::absolute(plan.cache).string()},
              {"answers", fs::absolute(plan.out / "answers").string()},
              {"build", build_of(cell, catalogue)},
-             {"limits", limits(plan.pool)},
+             {"limits", worker_limits(plan.pool)},
              {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
     if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
     return WorkerTask{job, scratch[i] / "log.txt"};

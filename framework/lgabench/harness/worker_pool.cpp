@@ -15,6 +15,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <list>
 #include <utility>
 
@@ -127,8 +128,7 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   std::vector<char*> environment;
   for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
   environment.push_back(nullptr);
-  char verb[] = "cell";
-  char* const arguments[] = {const_cast<char*>(program.c_str()), verb, nullptr};
+  char* const arguments[] = {const_cast<char*>(program.c_str()), const_cast<char*>(what.verb.c_str()), nullptr};
   const pid_t parent = ::getpid();
 
   const pid_t pid = ::fork();
@@ -254,6 +254,44 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
     events.tick();
   }
   return true;
+}
+
+// A worker that leaks meets its own limit before the machine's.
+Json worker_limits(const PoolOptions& options) {
+  const double all = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+  constexpr double gib = 1 << 30, least = 4 * gib;
+  const double memory = options.memory_gib > 0 ? options.memory_gib * gib : std::max(least, all / options.jobs);
+  return {{"cpu_s", static_cast<long long>(options.timeout_s) + 60}, {"data_bytes", static_cast<long long>(memory)}};
+}
+
+WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
+  const std::string where = end.phase.empty() ? "before its first phase" : "in phase " + end.phase;
+  if (end.timed_out) return {fmt::format("stopped after {} s {}", timeout_s, where), "plugin"};
+  if (end.signal != 0) {
+    const bool outside = end.signal == SIGKILL || end.signal == SIGTERM;  // a person, or memory ran out
+    return {fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where), outside ? "host" : "plugin"};
+  }
+  if (!end.complaint.is_null())
+    return {end.complaint.at("reason"), end.complaint.at("fault") == "plugin" ? "plugin" : "host"};
+  return {fmt::format("exited with {} {}", end.exit_code, where), "plugin"};
+}
+
+std::vector<std::string> log_tail(const fs::path& log) {
+  constexpr std::size_t lines = 20, longest = 400;
+  constexpr std::uintmax_t most = 1 << 16;
+  std::ifstream file(log, std::ios::binary);
+  std::error_code none;
+  if (const std::uintmax_t size = fs::file_size(log, none); !none && size > most)
+    file.seekg(static_cast<std::streamoff>(size - most));
+  std::vector<std::string> last;
+  for (std::string line; std::getline(file, line);) {
+    if (line.size() > longest) line = line.substr(0, longest) + "...";
+    for (char& c : line)  // whatever was printed, status.json stays text
+      if (static_cast<unsigned char>(c) >= 0x80 || (static_cast<unsigned char>(c) < 0x20 && c != '\t')) c = '?';
+    if (last.size() == lines) last.erase(last.begin());
+    last.push_back(line);
+  }
+  return last;
 }
 
 }  // namespace lgabench

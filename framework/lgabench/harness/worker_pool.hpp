@@ -12,6 +12,7 @@ namespace lgabench {
 struct WorkerTask {
   Json job;                   // the worker's stdin
   std::filesystem::path log;  // its stdout and stderr
+  std::string verb = "cell";  // of lgabench-worker
 };
 
 /// How a worker ended.
@@ -45,5 +46,18 @@ struct PoolEvents {
 /// @throws InputError if no process can be started. Uses the process's signal mask and children; one call at a time.
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
+
+/// {"cpu_s", "data_bytes"}: the limits that a job's "limits" holds, which the worker sets before it loads a plugin.
+Json worker_limits(const PoolOptions& options);
+
+/// "signal 11 (Segmentation fault) in phase learn": why a worker that did not finish ended, and that the plugin is at
+/// fault ("plugin") or what came from outside ("host").
+struct WorkerFault {
+  std::string reason, fault;
+};
+WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s);
+
+/// The last 20 lines of a worker's log, cut to 400 characters, whatever was printed as ASCII.
+std::vector<std::string> log_tail(const std::filesystem::path& log);
 
 }  // namespace lgabench

@@ -20,12 +20,14 @@ namespace lgabench {
 
 /// The pictures and the text that a policy is given. Each picture gets a tower of its own.
 struct PolicyInputs {
+  /// One channel-first picture of 36 x 72.
   enum class Picture {
     mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
     rgb,          // 3 channels
     segmentation  // 1 channel: 1 on any object
   };
   std::vector<Picture> pictures;
+  /// One sentence embedding of 384 numbers.
   enum class Text {
     none,
     utterance,  // the sentence embedding of the instruction's utterance
@@ -37,8 +39,8 @@ struct PolicyInputs {
   std::map<std::string, Selection> masks{};
 };
 
-/// A subclass names its inputs and overrides select(), and needs() if it asks for more than demonstrations of its own
-/// Selection's targets. One thread.
+/// A subclass overrides select(), inputs() if its network sees more or other things than the goal mask, and needs() if
+/// it asks for more than demonstrations of its own Selection's targets. One thread.
 class CloningMethod : public Method {
  public:
   Needs needs(const Json&) const override { return {}; }
@@ -47,8 +49,8 @@ class CloningMethod : public Method {
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
  protected:
-  /// `options` as in Services.
-  virtual PolicyInputs inputs(const Json& options) const = 0;
+  /// What the network sees; the goal mask alone unless a subclass says otherwise. `options` as in Services.
+  virtual PolicyInputs inputs(const Json& /*options*/) const { return {{PolicyInputs::Picture::mask}}; }
 };
 
 }  // namespace lgabench

@@ -34,6 +34,7 @@ struct Refusal {
   std::string reason;
 };
 
+/// What was found in the plugin directories.
 struct Catalogue {
   std::vector<PluginInfo> plugins;
   std::vector<Refusal> refused;

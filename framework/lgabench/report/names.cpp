@@ -57,6 +57,7 @@ std::string display_color(const std::string& method, std::size_t index) {
 }
 
 std::string provenance_words(const std::string& provenance) {
+  if (provenance == "rule") return "computed by the method: nobody was asked";
   if (provenance == "recorded") return "a language model's recorded answers";
   if (provenance == "live") return "a language model asked during this run";
   if (provenance == "cassette") return "a language model's replies, replayed";

@@ -74,12 +74,14 @@ class Once : public fixture::StayPolicy {
 
 class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
  public:
+  ~Faulty() override { misbehave(at_end_); }
   Selection select(const Command&, const FeatureSpace&, Services& services) override {
     misbehave(how(services, "select"));
     return {};
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
     misbehave(how(services, "learn"));
+    at_end_ = how(services, "destroy");
     services.log.epoch(1, static_cast<long long>(demonstrations.size()), 0.0);
     return std::make_unique<Once>(how(services, "act"));
   }
@@ -88,12 +90,15 @@ class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
   static std::string how(const Services& services, const char* place) {
     return services.options.at("where") == place ? services.options.at("how").get<std::string>() : "";
   }
+
+  std::string at_end_;
 };
 
 }  // namespace
 
 LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
-  "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act"]},
+  "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act",
+            "destroy"]},
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
     "quick_exit", "throw", "throw_int", "segfault", "spin", "allocate", "print", "messages", "fork", "fork_and_spin",
     "close", "thread", "nan"]}

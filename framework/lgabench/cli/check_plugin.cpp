@@ -1,0 +1,145 @@
+// lgabench check-plugin FILE.so: what is wrong with a plugin, and what to do about it, before a run shows it.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include <lgabench/cli/scratch.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/version.hpp>
+#include <lgabench/harness/check.hpp>
+#include <lgabench/harness/worker_pool.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  fs::path file;
+  std::vector<std::string> settings;
+  double timeout_s = 600;
+  bool json = false;
+};
+
+Json options_of(const PluginInfo& plugin, const std::vector<std::string>& settings) {
+  Json given = Json::object();
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    if (equals == setting.npos) throw InputError(fmt::format("--set {}: expected option=value", setting));
+    given[setting.substr(0, equals)] = option_value(setting.substr(equals + 1));
+  }
+  return resolve_options(plugin, given);
+}
+
+// Two processes use the plugin: their findings, and whether they agree.
+CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Arguments& a) {
+  CheckReport report;
+  report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
+  for (const PluginInfo& other : catalogue.plugins)
+    if (other.kind == plugin.kind && other.id == plugin.id && other.sha256 != plugin.sha256)
+      report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
+                     "take another: of two with one id the later is refused");
+
+  const Scratch scratch("check");
+  const PoolOptions pool{1, a.timeout_s, 0};
+  const auto plugin_json = [](const PluginInfo& p) {
+    return Json{{"file", fs::absolute(p.file).string()}, {"sha256", p.sha256}};
+  };
+  const bool is_method = plugin.kind == "method";
+  const Json options = options_of(plugin, a.settings);
+  std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};
+  std::array<WorkerEnd, 2> ends;
+  const auto make = [&](std::size_t i) {
+    Json job{{"limits", worker_limits(pool)},
+             {"perturb", i == 0 ? 0 : 165},
+             {"report", reports[i].string()},
+             {"options", options},
+             {"engine", plugin_json(is_method ? catalogue.find("engine", "mujoco") : plugin)}};
+    if (is_method) job["method"] = plugin_json(plugin);
+    return WorkerTask{job, scratch.path / fmt::format("log{}.txt", i), "check-job"};
+  };
+  const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
+                          [&](std::size_t i, const WorkerEnd& end) { ends[i] = end; }, [] {}};
+  if (!run_workers(ends.size(), make, pool, events)) throw InputError("interrupted");
+
+  std::array<CheckReport, 2> found;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (ends[i].exit_code == 0 && ends[i].signal == 0 && fs::exists(reports[i])) {
+      found[i] = read_check_report(read_json(reports[i]), reports[i].string());
+      continue;
+    }
+    const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
+    report.problem(
+        "process", why_it_ended(ends[i], a.timeout_s).reason,
+        !ends[i].complaint.is_null() || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
+    if (i == 0) return report;
+  }
+  report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
+  std::vector<std::string> differing;
+  for (const auto& [what, hash] : found[0].hashes.items())
+    if (found[1].hashes.value(what, Json()) != hash) differing.push_back(what);
+  if (!found[1].hashes.empty())
+    report.judge("two processes", differing.empty() ? "" : fmt::format("disagree on: {}", fmt::join(differing, ", ")),
+                 "agree bit for bit",
+                 "look for values that were never set, addresses that are compared, a clock, a shared file");
+  return report;
+}
+
+bool has_problem(const CheckReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const Finding& f) { return f.state == Finding::State::problem; });
+}
+
+void print(const CheckReport& report) {
+  for (const auto& [state, check, detail, fix] : report.findings) {
+    fmt::print("  {:<8} {:<22} {}\n", to_string(state), check, detail);
+    if (!fix.empty()) fmt::print("           {:<22} -> {}\n", "", fix);
+  }
+}
+
+int check_plugin(const Arguments& a) {
+  CheckReport report;
+  PluginInfo plugin;
+  try {
+    plugin = read_plugin(a.file);
+    report = check(plugin, scan_plugins(plugin_directories()), a);
+  } catch (const PluginError& e) {
+    report.problem("descriptor", e.what(), "build it with lgabench_add_plugin() from this very lgabench's package");
+  }
+  const bool good = !has_problem(report);
+  if (a.json) {
+    Json json = to_json(report);
+    json["file"] = a.file.string();
+    json["plugin"] =
+        plugin.id.empty() ? Json() : Json{{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}};
+    json["good"] = good;
+    fmt::print("{}\n", canonical(json));
+  } else {
+    if (!plugin.id.empty())
+      fmt::print("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+    print(report);
+    fmt::print("{}\n", good ? "good" : "not good: see the problems above");
+  }
+  return good ? ok : regression;
+}
+
+}  // namespace
+
+void add_check_plugin(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("check-plugin", "Look for what is wrong with a plugin, and say what to do about it");
+  verb->add_option("file", a->file, "The plugin's library")->required()->type_name("FILE.so");
+  verb->add_option("--set", a->settings, "option=value of the plugin; may be given again")->allow_extra_args(false);
+  verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str();
+  verb->add_flag("--json", a->json, "One JSON object on stdout");
+  verb->footer(
+      "Two fresh processes use it as cells do, with the same seed. Exit 1 if there is a problem.\n"
+      "Example: lgabench check-plugin build/my_method.so");
+  verb->callback([a, &exit] { exit = check_plugin(*a); });
+}
+
+}  // namespace lgabench::cli

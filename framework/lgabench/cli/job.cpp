@@ -1,0 +1,72 @@
+#include <lgabench/cli/job.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <iterator>
+#include <new>
+
+namespace lgabench::cli {
+namespace {
+
+void limit(int resource, long long value) {
+  const rlimit both{static_cast<rlim_t>(value), static_cast<rlim_t>(value)};
+  ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+}  // namespace
+
+Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
+
+void Messages::send(const Json& message) const {
+  if (!open_) return;
+  const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
+}
+
+Json read_job() {
+  const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
+  Json job = Json::parse(text, nullptr, false);
+  const JsonReader limits = JsonReader(job, "job").at("limits");
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_FSIZE, 1LL << 28);
+  limit(RLIMIT_CPU, limits.at("cpu_s").integer(1, 1LL << 40));
+#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory counts
+  limit(RLIMIT_DATA, limits.at("data_bytes").integer(1, 1LL << 60));
+#endif
+  return job;
+}
+
+PluginInfo job_plugin(const JsonReader& reader) {
+  PluginInfo info = read_plugin(reader.at("file").string());
+  if (info.sha256 != reader.at("sha256").string())
+    throw PluginError(fmt::format("{}: changed since the run began", info.file.string()));
+  return info;
+}
+
+void complaining(const Messages& messages, const std::function<void()>& work) {
+  const auto complain = [&messages](const std::exception& e, const char* fault) {
+    messages.send({{"reason", e.what()}, {"fault", fault}});
+  };
+  try {
+    work();
+  } catch (const MethodError& e) {
+    complain(e, "plugin");
+    throw;
+  } catch (const PluginError& e) {
+    complain(e, "plugin");
+    throw;
+  } catch (const std::bad_alloc&) {
+    const MethodError e("out of memory (the limit is --memory)");
+    complain(e, "plugin");
+    throw e;
+  } catch (const std::exception& e) {
+    complain(e, "host");
+    throw;
+  }
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,87 @@
+// lgabench new-plugin NAME: a working project of a plugin, outside lgabench's tree.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/version.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  std::string name, kind = "method";
+  fs::path directory;
+};
+
+// my_method -> MyMethod
+std::string class_name(const std::string& name) {
+  std::string text;
+  bool upper = true;
+  for (const char c : name) {
+    if (c != '_') text += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    upper = c == '_';
+  }
+  return text;
+}
+
+std::string filled(std::string text, const std::string& placeholder, const std::string& value) {
+  for (std::size_t at = 0; (at = text.find(placeholder, at)) != std::string::npos; at += value.size())
+    text.replace(at, placeholder.size(), value);
+  return text;
+}
+
+void expect_name(const std::string& name) {
+  const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  if (name.empty() || name.size() > 63 || name[0] < 'a' || name[0] > 'z' ||
+      !std::all_of(name.begin(), name.end(), allowed))
+    throw InputError(fmt::format(
+        "new-plugin: \"{}\": expected at most 63 lower-case letters, digits and underscores, a letter first", name));
+}
+
+void new_plugin(const Arguments& a) {
+  expect_name(a.name);
+  const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
+  if (std::error_code error; fs::exists(directory, error))
+    throw InputError(fmt::format("{}: is there already; nothing was written", directory.string()));
+  const fs::path prefix = fs::weakly_canonical(program_directory().parent_path());
+  const fs::path templates = data_directory() / "templates";
+  const auto write = [&](const fs::path& from, const std::string& to) {
+    std::string text = read_file(templates / from);
+    for (const auto& [placeholder, value] : {std::pair<std::string, std::string>{"@NAME@", a.name},
+                                             {"@CLASS@", class_name(a.name)},
+                                             {"@KIND@", a.kind},
+                                             {"@VERSION@", LGABENCH_VERSION},
+                                             {"@PREFIX@", prefix.string()}})
+      text = filled(std::move(text), placeholder, value);
+    write_file(directory / to, text);
+    fmt::print("{}\n", (directory / to).string());
+  };
+  write(a.kind + ".cpp.in", a.name + ".cpp");
+  write(a.kind + ".README.md.in", "README.md");
+  write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
+  write("CMakePresets.json.in", "CMakePresets.json");
+}
+
+}  // namespace
+
+void add_new_plugin(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("new-plugin", "Write the project of a new plugin: it builds, and you change it");
+  verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
+  verb->add_option("--kind", a->kind, "method or engine")
+      ->check(CLI::IsMember({"method", "engine"}))
+      ->capture_default_str();
+  verb->add_option("--directory", a->directory, "Where; by default ./NAME, which must not be there yet");
+  verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
+  verb->callback([a, &exit] {
+    new_plugin(*a);
+    exit = ok;
+  });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,333 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/harness/check.hpp>
+#include <lgabench/harness/demonstrations.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int demonstrations = 10, scenes_an_arm = 5;
+constexpr std::uint64_t seed = 7;
+constexpr const char* layout = "cells";
+
+// Counts what is asked; or answers no to everything, as a model that sees nothing fitting would.
+class CountingModel : public LanguageModel {
+ public:
+  CountingModel(LanguageModel& model, bool always_no) : model_(model), always_no_(always_no) {}
+  std::vector<bool> answer(const Command& command, const FeatureSpace& space,
+                           const std::vector<Question>& questions) override {
+    asked += static_cast<int>(questions.size());
+    std::vector<bool> answers = model_.answer(command, space, questions);
+    if (always_no_) std::fill(answers.begin(), answers.end(), false);
+    return answers;
+  }
+  std::string model() const override { return model_.model(); }
+  std::string asked_as(const Command& command) const override { return model_.asked_as(command); }
+  Provenance provenance() const override { return model_.provenance(); }
+  SelectionCost cost() const override { return model_.cost(); }
+
+  int asked = 0;
+
+ private:
+  LanguageModel& model_;
+  bool always_no_;
+};
+
+class Lines : public TrainingLog {
+ public:
+  void epoch(int epochs, long long steps, double loss) override {
+    if (!std::isfinite(loss)) throw MethodError(fmt::format("the loss of epoch {} is {}", epochs, loss));
+    text += fmt::format("{} {} {:a}\n", epochs, steps, loss);
+  }
+  std::string text;
+};
+
+struct TestSight {
+  Observation observation;
+  int command = 0;
+  bool seen = true;
+};
+
+// A cell's worth of everything that the method is given.
+struct Bench {
+  Scenario scenario;
+  std::unique_ptr<Environment> environment;
+  std::vector<TestSight> sights;
+
+  Bench(const std::string& id, const PluginInfo& engine) : scenario(load_scenario(id)) {
+    environment = make_environment(scenario, load_engine(engine));
+    for (const Arm& arm : scenario.tests)
+      for (int i = 0; i < scenes_an_arm; ++i) {
+        const Scene scene = test_scene(scenario, layout, arm.id, seed, i);
+        const auto command = static_cast<std::size_t>(scene.command);
+        sights.push_back({environment->reset(scene), scene.command, scenario.commands[command].seen});
+      }
+  }
+};
+
+// What one use of the method, from loading to acting, gave: as text, bit for bit.
+struct Use {
+  std::string selections, training, actions;
+};
+
+class MethodCheck {
+ public:
+  MethodCheck(const PluginInfo& plugin, const Json& options, const CheckPhase& phase)
+      : plugin_(plugin), options_(options), phase_(phase) {}
+
+  CheckReport run(const std::vector<std::unique_ptr<Bench>>& benches) {
+    const ProcessState at_first = ProcessState::now();
+    try {
+      const Use first = use(benches, true);
+      const ProcessState between = ProcessState::now();
+      const Use second = use(benches, false);
+      judge_repetition(first, second, ProcessState::now().heap_bytes - between.heap_bytes);
+    } catch (const PluginError&) {
+      throw;
+    } catch (const EngineError&) {
+      throw;
+    } catch (const std::exception& e) {
+      report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
+    }
+    judge_leftovers(report_, at_first);
+    report_.judge("rounding mode", flushed_ ? "" : "the plugin cleared flush-to-zero", "flush-to-zero kept",
+                  "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+    report_.ok("time", fmt::format("select {:.3f} s a command, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
+                                   seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
+    return std::move(report_);
+  }
+
+ private:
+  // Says what comes, does it guarded, notes how long it took and whether flush-to-zero survived.
+  template <class Call>
+  auto call(const std::string& what, Call&& c) {
+    phase_(doing_ = what);
+    const auto start = std::chrono::steady_clock::now();
+    return guarded(plugin_.id, [&] {
+      auto result = c();
+      seconds_[what] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      flushed_ = flushed_ && denormals_flushed();
+      return result;
+    });
+  }
+
+  // One line of what the call throws; "" if nothing.
+  std::string thrown(const std::function<void()>& c) {
+    try {
+      c();
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  Use use(const std::vector<std::unique_ptr<Bench>>& benches, bool judged) {
+    Use use;
+    for (const auto& bench : benches) {
+      const bool first = bench == benches.front();
+      auto method = load_method(plugin_);
+      const Needs needs = call("needs", [&] { return method->needs(options_); });
+      std::vector<Instruction> instructions;
+      for (std::size_t c = 0; c < bench->scenario.commands.size(); ++c) {
+        const Command command = bench->scenario.command(static_cast<int>(c));
+        auto [selection, asked] = select("select", *method, bench->scenario, command, false);
+        if (judged && first) judge_selection(needs, selection, asked, bench->scenario.space);
+        use.selections += canonical(distribution_json(selection)) + '\n';
+        instructions.push_back({command.utterance, std::move(selection)});
+      }
+      if (judged && first) judge_other_commands(*method, needs, bench->scenario);
+      auto policy = learn(*method, needs, *bench, instructions, judged && first, use);
+      phase_(doing_ = "destroy the method");
+      method.reset();  // a policy may outlive it
+      std::vector<std::string> actions;
+      for (const TestSight& sight : bench->sights)
+        actions.push_back(act(sight.seen ? "act" : "act on an unseen command", *policy, sight, instructions));
+      for (const std::string& action : actions) use.actions += action + '\n';
+      if (judged) judge_policy(*policy, *bench, instructions, actions, first);
+      if (judged && first && needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
+      phase_(doing_ = "destroy the policy");
+      policy.reset();
+    }
+    return use;
+  }
+
+  // The Selection, and how many questions were asked of services.lm.
+  std::pair<Selection, int> select(const std::string& what, Method& method, const Scenario& scenario,
+                                   const Command& command, bool always_no) {
+    RecordedLanguageModel recorded(scenario.space, scenario.answers_of, "recorded");
+    CountingModel lm(recorded, always_no);
+    TruthAsHuman human(scenario.commands);
+    Lines log;
+    Services services{lm, human, options_, seed, log};
+    Selection selection = call(what, [&] { return method.select(command, scenario.space, services); });
+    return {std::move(selection), lm.asked};
+  }
+
+  std::unique_ptr<Policy> learn(Method& method, const Needs& needs, const Bench& bench,
+                                const std::vector<Instruction>& instructions, bool judged, Use& use) {
+    phase_(doing_ = "demonstrations that needs() asks for");
+    std::vector<Selection> selections;
+    if (needs.targets == Needs::Targets::selected)
+      for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
+    std::vector<Scene> scenes;
+    for (int i = 0; i < demonstrations; ++i)
+      scenes.push_back(training_scene(bench.scenario, layout, selections, seed, i));
+    std::vector<Demonstration> shown = demonstrate(*bench.environment, scenes, needs, bench.scenario.utterances());
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      shown[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
+
+    RecordedLanguageModel lm(bench.scenario.space, bench.scenario.answers_of, "recorded");
+    TruthAsHuman human(bench.scenario.commands);
+    Lines log;
+    Services services{lm, human, options_, seed, log};
+    auto policy = call("learn", [&] { return method.learn(shown, services); });
+    if (!policy) throw MethodError("learn() returned no policy");
+    use.training += log.text;
+    if (judged && log.text.empty())
+      report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
+    return policy;
+  }
+
+  // The action's 12 numbers as text. @throws MethodError where it cannot be carried out.
+  std::string act(const std::string& what, Policy& policy, const TestSight& sight,
+                  const std::vector<Instruction>& instructions) {
+    const Action action = call(what, [&] {
+      policy.reset();
+      return policy.act(sight.observation, instructions[static_cast<std::size_t>(sight.command)]);
+    });
+    executable(action);
+    std::string text;
+    for (const float value : to_vector(action)) text += fmt::format("{:a} ", value);
+    return text;
+  }
+
+  void judge_selection(const Needs& needs, const Selection& selection, int asked, const FeatureSpace& space) {
+    const bool selects = selection.provenance != Provenance::none;
+    std::string fault = thrown([&] {
+      const Json json = distribution_json(selection);
+      read_distribution(JsonReader(json, "select()"), space);
+    });
+    if (fault.empty() && !selects && !selection.target.empty()) fault = "features are selected, with provenance none";
+    if (fault.empty() && !selects && needs.targets == Needs::Targets::selected)
+      fault = "needs() asks for scenes of the method's own Selection, and select() returns none";
+    report_.judge("Selection", fault,
+                  selects ? "names of the space, provenance " + to_string(selection.provenance)
+                          : "selects nothing, as needs() says",
+                  "take names from the FeatureSpace, set `provenance` (rule, if nobody was asked), or return "
+                  "{Needs::Targets::truth} from needs() and a Selection() from select()");
+    const int told = selection.cost.lm_queries;
+    report_.judge("cost",
+                  asked > 0 && told != asked
+                      ? fmt::format("select() asked services.lm {} questions, its Selection says {}", asked, told)
+                      : "",
+                  asked > 0 ? fmt::format("{} questions asked and accounted for", asked)
+                            : fmt::format("services.lm was not asked; the Selection says {} queries", told),
+                  "set selection.cost to services.lm.cost() after the questions, minus that before (as "
+                  "select_features() does)");
+  }
+
+  // Commands that q1 has besides the first one's kind: nothing fits, and sweep.
+  void judge_other_commands(Method& method, const Needs& needs, const Scenario& scenario) {
+    std::string fault =
+        thrown([&] { select("select with every answer no", method, scenario, scenario.command(0), true); });
+    report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
+                  "select() bears a language model that answers no to everything",
+                  "return the empty Selection: the host counts such a cell as failed by the abstraction");
+    const Scenario sweep = load_scenario("sweep_block_without_touching_pan");
+    Selection both;
+    fault = thrown([&] { both = select("select for sweep", method, sweep, sweep.command(0), false).first; });
+    const bool half = needs.targets == Needs::Targets::selected && !both.avoid;
+    if (fault.empty() && half)
+      report_.note("sweep", "the Selection says nothing of the obstacle: cells of sweep scenarios will fail",
+                   "set `avoid` where command.task is Task::sweep");
+    else
+      report_.judge("sweep", fault.empty() ? "" : "select() threw: " + fault, "select() bears a sweep command",
+                    "commands of every task are given to select()");
+  }
+
+  // A cell with nothing selected for a command that is only tested.
+  void judge_without_selection(Policy& policy, const Bench& bench) {
+    const std::vector<Instruction> nothing(bench.scenario.commands.size(), {bench.scenario.command(0).utterance, {}});
+    const std::string fault =
+        thrown([&] { act("act with an empty Selection", policy, bench.sights.front(), nothing); });
+    report_.judge("act with an empty Selection", fault, "a finite action", "the host may give an empty Selection");
+  }
+
+  // Each action depends on its scene alone; commands that were not demonstrated; memory.
+  void judge_policy(Policy& policy, const Bench& bench, const std::vector<Instruction>& instructions,
+                    const std::vector<std::string>& actions, bool first) {
+    if (!first) {  // the scenario that has commands which are only tested
+      const auto unseen =
+          std::count_if(bench.sights.begin(), bench.sights.end(), [](const auto& s) { return !s.seen; });
+      report_.ok("unseen commands", fmt::format("{} scenes with a command that was not demonstrated: acted", unseen));
+      return;
+    }
+    std::string differs;
+    for (std::size_t i = bench.sights.size(); i-- > 0;)
+      if (act("act", policy, bench.sights[i], instructions) != actions[i]) differs = "act() gave another action";
+    report_.judge("order of scenes", differs.empty() ? "" : differs + " when scenes came in reverse order",
+                  "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
+    report_.ok("actions", "finite, 12 numbers each");
+
+    constexpr int calls = 200, bearable = 256;  // bytes a call
+    const auto act_all = [&](int n) {
+      for (int i = 0; i < n; ++i)
+        act("act", policy, bench.sights[static_cast<std::size_t>(i) % bench.sights.size()], instructions);
+    };
+    act_all(20);
+    const long long before = ProcessState::now().heap_bytes;
+    act_all(calls);
+    const long long grown = (ProcessState::now().heap_bytes - before) / calls;
+    report_.judge("memory of act", grown > bearable ? fmt::format("grows by {} bytes a call", grown) : "",
+                  fmt::format("does not grow over {} calls", calls), "act() must not keep observations");
+  }
+
+  void judge_repetition(const Use& first, const Use& second, long long grown) {
+    const auto same = [&](const char* check, const std::string& a, const std::string& b) {
+      report_.judge(fmt::format("same {}", check), a == b ? "" : "others the second time, with the same seed",
+                    "twice in one process, bit for bit",
+                    "draw what is random from services.seed; let no clock, no address, no value that was never set "
+                    "and no number of threads have a part in it");
+      report_.hashes[check] = sha256(a);
+    };
+    same("Selections", first.selections, second.selections);
+    same("training", first.training, second.training);
+    same("actions", first.actions, second.actions);
+    report_.judge("memory of a use", grown > (1 << 20) ? fmt::format("{} KiB are not given back", grown / 1024) : "",
+                  "given back", "the second use must end with as much memory as the first");
+  }
+
+  const PluginInfo& plugin_;
+  const Json& options_;
+  const CheckPhase& phase_;
+  std::string doing_;
+  std::map<std::string, double> seconds_;  // of the last call of each kind
+  CheckReport report_;
+  bool flushed_ = true;
+};
+
+}  // namespace
+
+CheckReport check_method(const PluginInfo& method, const PluginInfo& engine, const Json& options,
+                         const CheckPhase& phase) {
+  std::vector<std::unique_ptr<Bench>> benches;
+  for (const char* id : {"heart", "q3_fruit"}) benches.push_back(std::make_unique<Bench>(id, engine));
+  phase("load");
+  return MethodCheck(method, options, phase).run(benches);
+}
+
+}  // namespace lgabench

@@ -1,0 +1,68 @@
+// Works, but not as a method should: in the way that its option names. For `lgabench check-plugin`.
+#include <fcntl.h>
+
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "../fixture.hpp"
+
+namespace {
+
+using namespace lgabench;
+
+Action at_place(double share) {
+  const PlanarPose pose{{.3 + .4 * share, 0}, {}};
+  return {pose, pose};
+}
+
+class Unsound : public Policy {
+ public:
+  Unsound(std::string how, std::set<std::string> seen) : how_(std::move(how)), seen_(std::move(seen)) {}
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    if (how_ == "unseen" && seen_.count(instruction.utterance) == 0) throw MethodError("never heard of");
+    if (how_ == "clock") {
+      const auto now = std::chrono::steady_clock::now().time_since_epoch().count();
+      return at_place(static_cast<double>(now % 1000) / 1000);
+    }
+    if (how_ == "remembers") return at_place(.01 * (++calls_ % 100));
+    if (how_ == "address")
+      return at_place(static_cast<double>(reinterpret_cast<std::uintptr_t>(this) >> 12 & 1023) / 1024);
+    if (how_ == "leak") kept_.push_back(observation);
+    return at_place(.5);
+  }
+
+ private:
+  std::string how_;
+  std::set<std::string> seen_;
+  int calls_ = 0;
+  std::vector<Observation> kept_;
+};
+
+class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
+ public:
+  Selection select(const Command& command, const FeatureSpace& space, Services& services) override {
+    const std::string how = services.options.at("how");
+    Selection selection;
+    if (how == "uncounted") services.lm.answer(command, space, {{{}, {}, space.object_types[0]}});
+    if (how == "outside") selection.target = {{"unicorn"}, space.textures};
+    if (how == "outside") selection.provenance = Provenance::rule;
+    return selection;
+  }
+  std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
+    std::set<std::string> seen;
+    for (const Demonstration& demonstration : demonstrations) seen.insert(demonstration.instruction.utterance);
+    const std::string how = services.options.at("how");
+    services.log.epoch(1, 1, 0.0);
+    if (how == "thread") std::thread([] { std::this_thread::sleep_for(std::chrono::hours(1)); }).detach();
+    if (how == "descriptor") static_cast<void>(::open("/dev/null", O_RDONLY));
+    return std::make_unique<Unsound>(how, std::move(seen));
+  }
+};
+
+}  // namespace
+
+LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
+  "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
+    "address", "leak", "uncounted", "outside", "thread", "descriptor", "unseen"]}
+})")

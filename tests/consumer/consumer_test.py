@@ -1,0 +1,182 @@
+"""The plugin author's road: an installed lgabench in a clean prefix, plugins built from it alone, checked and run.
+
+LGABENCH_BUILD and LGABENCH_SOURCE name the build tree and the sources; what is built here sees neither, where the system
+lets a process hide them. LGABENCH_FULL=1 builds every example, and with Clang too. By hand: consumer_test.py Examples
+"""
+import http.server
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import threading
+import unittest
+
+BUILD, SOURCE = (pathlib.Path(os.environ[name]) for name in ("LGABENCH_BUILD", "LGABENCH_SOURCE"))
+FULL = os.environ.get("LGABENCH_FULL") == "1"
+COMPILERS = ["g++"] + (["clang++"] if FULL and shutil.which("clang++") else [])
+# An empty file system over the sources, for one command; it needs a user namespace or root.
+HIDE = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", 'mount -t tmpfs none "$0" && exec "$@"', SOURCE]
+SMALL = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference"]
+
+
+def hides():
+    if not BUILD.is_relative_to(SOURCE):
+        return False
+    for hide in (HIDE, ["unshare", "--mount", *HIDE[4:]]):
+        if subprocess.run([*hide, "true"], capture_output=True).returncode == 0:
+            HIDE[:] = hide
+            return True
+    return False
+
+
+class Consumer(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-consumer-"))
+        cls.addClassCleanup(shutil.rmtree, cls.dir, ignore_errors=True)
+        # Installed in one place, used from another.
+        subprocess.run(["cmake", "--install", BUILD, "--prefix", cls.dir / "installed"], check=True, capture_output=True)
+        cls.prefix = (cls.dir / "installed").rename(cls.dir / "prefix")
+        cls.hide = HIDE if hides() else []
+        if not cls.hide:
+            print("the sources cannot be hidden here: only looked for in what was built")
+
+    def call(self, *words, expect=0, cwd=None, **environment):
+        done = subprocess.run([*self.hide, *map(str, words)], capture_output=True, text=True, cwd=cwd or self.dir,
+                              timeout=900, env=dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), **environment))
+        self.assertEqual(done.returncode, expect, done.stdout[-3000:] + done.stderr[-3000:])
+        return done
+
+    def lgabench(self, *words, **more):
+        return self.call(self.prefix / "bin/lgabench", *words, **more)
+
+    def assert_no_path_of_the_sources(self, directory):
+        found = [str(file) for file in directory.rglob("*")
+                 if file.is_file() and any(str(path).encode() in file.read_bytes() for path in (SOURCE, BUILD))]
+        self.assertEqual(found, [])
+
+    def check(self, plugin, *options, **environment):
+        report = json.loads(self.lgabench("check-plugin", plugin, "--json", *options, **environment).stdout)
+        self.assertTrue(report["good"])
+        return {finding["check"]: finding["state"] for finding in report["findings"]}
+
+    def runs(self, method, directory, *options, **environment):
+        self.lgabench(*SMALL, "--methods", method, "--plugin-path", directory, "--out", self.dir / f"run-{method}",
+                      *options, **environment)
+        rows = json.loads((self.dir / f"run-{method}" / "summary.json").read_text())["rows"]
+        self.assertEqual([(row["method"].split("+")[0], row["episodes"], row["n_error"]) for row in rows if row["scenario"] == "heart"],
+                         [(method, 3, 0)])
+
+
+class Package(Consumer):
+    def test_holds_no_path_of_where_it_was_built(self):
+        self.assert_no_path_of_the_sources(self.prefix)
+
+    def test_works_where_it_was_moved_to(self):
+        self.assertIn("mujoco", self.lgabench("list").stdout)
+        self.runs("lga", self.prefix, "--set", "lga.epochs=2")
+
+    def test_every_public_header_compiles(self):
+        headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
+        self.assertGreater(len(headers), 30)
+        self.assertNotIn("reader.hpp", [header.name for header in headers])
+        alone = [[header] for header in headers]
+        for standard, parts in [("-std=c++17", alone if FULL else [headers[::-1]]), ("-std=c++20", [headers])]:
+            for part in parts:
+                source = self.dir / "header.cpp"
+                source.write_text("".join(f"#include <{header}>\n" for header in part))
+                self.call("g++", standard, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", f"-I{self.prefix}/include", source)
+
+
+class NewPlugin(Consumer):
+    def build(self, *arguments):
+        name = arguments[0]
+        self.lgabench("new-plugin", *arguments)
+        self.call("cmake", "--workflow", "--preset", "release", cwd=self.dir / name, CXXFLAGS="-Werror")
+        self.assert_no_path_of_the_sources(self.dir / name)
+        return self.dir / name / "build" / f"{name}.so"
+
+    def test_a_method(self):
+        plugin = self.build("my_method")
+        self.assertIn("any_texture", self.lgabench("info", "my_method", "--plugin-path", plugin.parent).stdout)
+        checks = self.check(plugin, "--set", "epochs=5")
+        self.assertEqual(set(checks.values()), {"ok"})
+        self.runs("my_method", plugin.parent, "--set", "my_method.epochs=2")
+        said = self.lgabench("new-plugin", "my_method", expect=2).stderr
+        self.assertIn("is there already; nothing was written", said)
+
+    def test_an_engine(self):
+        plugin = self.build("my_engine", "--kind", "engine")
+        checks = self.check(plugin)
+        self.assertEqual(set(checks.values()), {"ok"})
+        self.assertIn("oracle, sweep", checks)
+
+    def test_bad_names_are_refused(self):
+        for name in ("My", "../outside", "1st", "a-b"):
+            self.assertIn("expected at most 63 lower-case letters", self.lgabench("new-plugin", name, expect=2).stderr)
+            self.assertFalse((self.dir / name).exists())
+
+
+# What a language model's server says: yes to whatever is asked.
+class Yes(http.server.BaseHTTPRequestHandler):
+    def do_POST(self):
+        self.rfile.read(int(self.headers["Content-Length"]))
+        choice = {"message": {"role": "assistant", "content": "Final answer: yes"}, "finish_reason": "stop"}
+        body = json.dumps({"choices": [choice], "usage": {"total_tokens": 7}}).encode()
+        self.send_response(200)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, *_):
+        pass
+
+
+class Examples(Consumer):
+    def test_each(self):
+        shutil.copytree(SOURCE / "examples", self.dir / "examples")
+        for compiler in COMPILERS:
+            for name in ("select_only", "nearest_neighbour") + (("own_network", "live_model") if FULL else ()):
+                with self.subTest(name, compiler=compiler):
+                    build = self.dir / f"build-{compiler}-{name}"
+                    self.call("cmake", "-S", self.dir / "examples" / name, "-B", build, "-G", "Ninja",
+                              f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={compiler}",
+                              "-DLGABENCH_WERROR=ON")
+                    self.call("cmake", "--build", build)
+                    self.assert_no_path_of_the_sources(build)
+                    getattr(self, name)(build)
+                    shutil.rmtree(self.dir / f"run-{name}")
+
+    def select_only(self, build):
+        self.assertEqual(self.check(build / "select_only.so", "--set", "epochs=5")["sweep"], "note")
+        self.runs("select_only", build, "--set", "select_only.epochs=2")
+
+    def nearest_neighbour(self, build):
+        needed = subprocess.run(["readelf", "-d", build / "nearest_neighbour.so"], capture_output=True, text=True).stdout
+        self.assertNotRegex(needed, "torch|learning")
+        self.assertEqual(self.check(build / "nearest_neighbour.so")["cost"], "ok")
+        self.runs("nearest_neighbour", build)
+
+    def own_network(self, build):
+        self.assertEqual(set(self.check(build / "own_network.so", "--set", "epochs=20").values()), {"ok"})
+        self.runs("own_network", build, "--set", "own_network.epochs=5")
+
+    def live_model(self, build):
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Yes)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        cassette = self.dir / "cassette.jsonl"
+        here = {"OPENAI_BASE_URL": f"http://127.0.0.1:{server.server_port}/v1", "no_proxy": "127.0.0.1"}
+        cassette.unlink(missing_ok=True)
+        self.runs("live_model", build, "--set", f"live_model.cassette={cassette}", "--set", "live_model.epochs=2", **here)
+        selection = next((self.dir / "run-live_model/cells").glob("*/selection.json"))
+        command = json.loads(selection.read_text())["commands"][0]["selection"]
+        self.assertEqual((command["provenance"], command["cost"]["lm_queries"], command["cost"]["lm_tokens"]), ("live", 112, 784))
+        self.check(build / "live_model.so", "--set", f"cassette={cassette}", "--set", "epochs=2", **here)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,76 @@
+"""lgabench check-plugin: every way to be unsound is found and named, and nothing else is.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 check_test.py CheckPlugin
+"""
+import json
+import unittest
+
+from case import BUILD, Case, FIXTURES
+
+UNSOUND, FAULTY = (FIXTURES / "faulty" / f"fixture_{name}.so" for name in ("unsound", "faulty"))
+
+
+class CheckPlugin(Case):
+    def check(self, file, *settings, expect=1):
+        words = [word for setting in settings for word in ("--set", setting)]
+        done = self.call("check-plugin", file, "--json", *words, expect=expect)
+        report = json.loads(done.stdout)
+        self.assertEqual(report["good"], expect == 0)
+        return {finding["check"]: finding for finding in report["findings"] if finding["state"] == "problem"}
+
+    def test_finds_what_is_unsound_and_nothing_else(self):
+        for how, checks in {
+            "sound": set(),
+            "clock": {"order of scenes", "same actions", "two processes"},
+            "remembers": {"order of scenes"},
+            "address": {"two processes"},
+            "leak": {"memory of act"},
+            "uncounted": {"cost"},
+            "outside": {"Selection"},
+            "thread": {"threads"},
+            "descriptor": {"descriptors"},
+            "unseen": {"act on an unseen command"},
+        }.items():
+            with self.subTest(how):
+                problems = self.check(UNSOUND, f"how={how}", expect=1 if checks else 0)
+                if how == "address":  # two objects of one process need not lie at two addresses
+                    problems.pop("same actions", None)
+                self.assertEqual(set(problems), checks)
+                self.assertTrue(all(problem["fix"] for problem in problems.values()))
+
+    def test_outlives_what_crashes_throws_and_never_returns(self):
+        for where, how, check, says in [
+            ("act", "nan", "act", "expected finite numbers, got nan"),
+            ("act", "throw", "act", "the fixture's own failure"),
+            ("learn", "throw_int", "learn", "threw int"),
+            ("select", "segfault", "process", r"signal 11 \(Segmentation fault\) in phase select"),
+            ("act", "spin", "process", "stopped after 3"),
+            ("act", "exit", "process", "exited with 0 in phase act"),
+            ("destroy", "throw", "process", r"signal 6 \(Aborted\) in phase destroy the method"),
+        ]:
+            with self.subTest(where=where, how=how):
+                words = ("--timeout", "3", "--json", "--set", f"where={where}", "--set", f"how={how}")
+                report = json.loads(self.call("check-plugin", FAULTY, *words, expect=1).stdout)
+                problems = {f["check"]: f["detail"] for f in report["findings"] if f["state"] == "problem"}
+                self.assertRegex(problems.get(check, ""), says)
+
+    def test_names_both_sides_of_a_refusal(self):
+        problems = self.check(FIXTURES / "refused/wrong_strings.so")
+        self.assertRegex(problems["descriptor"]["detail"], r'string ABI "old" \(this program: "cxx11"\)')
+        self.assertRegex(self.check(FIXTURES / "refused/missing_symbol.so")["process"]["detail"], "undefined symbol")
+        self.assertIn("not a regular file", self.check(self.dir / "none.so")["descriptor"]["detail"])
+        self.assertIn("expected option=value", self.call("check-plugin", UNSOUND, "--set", "how", expect=2).stderr)
+
+    def test_an_id_that_another_plugin_has(self):
+        self.environment["LGABENCH_PLUGIN_PATH"] = str(FIXTURES / "good")
+        detail = self.check(FIXTURES / "refused/duplicate.so")["id"]["detail"]
+        self.assertEqual(detail, f"fixture_constant is also the id of {FIXTURES}/good/fixture_constant.so")
+
+    def test_shipped_plugins_are_good(self):
+        for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",)}.items():
+            with self.subTest(name):
+                self.assertEqual(self.check(BUILD / f"lib/lgabench/plugins/{name}.so", *setting, expect=0), {})
+
+
+if __name__ == "__main__":
+    unittest.main()
