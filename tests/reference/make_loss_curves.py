@@ -43,12 +43,16 @@ class Policy(nn.Module):
 def curve(channels, text, batch_norm, squared):
     policy = Policy(channels, text, batch_norm)
     parameters = list(policy.parameters())
-    first = (numbers(0, sum(p.numel() for p in parameters)) - .5) / 10
+    first = numbers(0, sum(p.numel() for p in parameters)) - .5
     with torch.no_grad():
         begin = 0
         for p in parameters:
-            p.copy_(first[begin:begin + p.numel()].view_as(p))
+            # Weights as PyTorch begins with them; all else within .05, and batch normalisation's scale at 1.
+            p.copy_(first[begin:begin + p.numel()].view_as(p) * (2 / p[0].numel() ** .5 if p.dim() > 1 else .1))
             begin += p.numel()
+        for module in policy.modules():
+            if isinstance(module, nn.BatchNorm2d):
+                module.weight.fill_(1)
     # Channels last in the formula, as in our samples.
     pictures = [numbers(10 + t, SAMPLES * 36 * 72 * c).view(SAMPLES, 36, 72, c).permute(0, 3, 1, 2).contiguous()
                 for t, c in enumerate(channels)]

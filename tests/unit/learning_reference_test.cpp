@@ -210,6 +210,26 @@ std::vector<float> numbers(std::uint64_t key, std::size_t count) {
   return all;
 }
 
+// The parameters that make_loss_curves.py begins with.
+std::vector<float> first_parameters(const NetworkShape& shape, std::size_t count) {
+  std::vector<float> all = numbers(0, count);
+  auto number = all.begin();
+  const auto fill = [&number](int out, int fan_in, bool normalised) {
+    for (int i = 0; i < out * fan_in; ++i, ++number) *number = (*number - .5f) * 2 / std::sqrt(static_cast<float>(fan_in));
+    for (int i = 0; i < out; ++i, ++number) *number = (*number - .5f) / 10;
+    if (!normalised) return;
+    for (int i = 0; i < out; ++i, ++number) *number = 1;
+    for (int i = 0; i < out; ++i, ++number) *number = (*number - .5f) / 10;
+  };
+  for (const int channels : shape.channels)
+    for (const auto& [out, fan_in] : {std::pair(32, 64 * channels), std::pair(64, 512), std::pair(32, 576)})
+      fill(out, fan_in, shape.batch_norm);
+  if (shape.text) fill(100, 384, false);
+  fill(12, 160 * static_cast<int>(shape.channels.size()) + (shape.text ? 100 : 0), false);
+  EXPECT_EQ(number, all.end());
+  return all;
+}
+
 TEST(Training, HasTheLossCurvesOfPyTorch) {
   const Json document = read_json(LGABENCH_TEST_REFERENCE "/loss_curves.json");
   ASSERT_EQ(document.at("curves").size(), 12u);
@@ -219,9 +239,7 @@ TEST(Training, HasTheLossCurvesOfPyTorch) {
     shape.text = curve.at("text");
     shape.batch_norm = curve.at("batch_norm");
     Network network(shape, 0);
-    std::vector<float> first = numbers(0, network.parameters().size());
-    for (float& number : first) number = (number - .5f) / 10;
-    network.set_parameters(first);
+    network.set_parameters(first_parameters(shape, network.parameters().size()));
     Samples samples(shape, 40);
     for (std::size_t t = 0; t < shape.channels.size(); ++t)
       samples.pictures[t] = numbers(10 + t, samples.pictures[t].size());

@@ -10,6 +10,7 @@ namespace lgabench {
 
 struct AdamCoefficients {
   float beta1, beta2, epsilon;
+  float rest1, rest2;  // 1 - beta, which single precision would round
   float rate;  // learning rate / (1 - beta1^t)
   float root;  // 1 / sqrt(1 - beta2^t)
 };

@@ -148,7 +148,7 @@ void sum_rows(const float* values, float* sums, int rows, int channels) {
 
 void adam(const AdamCoefficients& c, const float* __restrict gradients, float* __restrict mean,
           float* __restrict variance, float* __restrict parameters, std::size_t count) {
-  const float b1 = c.beta1, b2 = c.beta2, c1 = 1 - b1, c2 = 1 - b2, epsilon = c.epsilon, rate = c.rate, root = c.root;
+  const auto [b1, b2, epsilon, c1, c2, rate, root] = c;
   for (std::size_t i = 0; i < count; ++i) {
     const float g = gradients[i];
     mean[i] = b1 * mean[i] + c1 * g;

@@ -338,7 +338,7 @@ void Network::update(double learning_rate) {
   constexpr double beta1 = .9, beta2 = .999;
   const auto t = static_cast<double>(++impl_->steps);
   const AdamCoefficients coefficients = {
-      static_cast<float>(beta1), static_cast<float>(beta2), 1e-8f,
+      static_cast<float>(beta1), static_cast<float>(beta2), 1e-8f, static_cast<float>(1 - beta1), static_cast<float>(1 - beta2),
       static_cast<float>(learning_rate / (1 - std::pow(beta1, t))),
       static_cast<float>(1 / std::sqrt(1 - std::pow(beta2, t)))};
   impl_->kernels.adam(coefficients, impl_->gradients, impl_->mean, impl_->variance, impl_->parameters, impl_->count);
