@@ -43,7 +43,7 @@ class Policy(nn.Module):
 def curve(channels, text, batch_norm, squared):
     policy = Policy(channels, text, batch_norm)
     parameters = list(policy.parameters())
-    first = numbers(0, sum(p.numel() for p in parameters)) - .5
+    first = numbers(3, sum(p.numel() for p in parameters)) - .5
     with torch.no_grad():
         begin = 0
         for p in parameters:

@@ -32,7 +32,8 @@ void BatchNorm::train(float* values, int positions, const float* scale, const fl
     inverse_deviation_[k] = static_cast<float>(inverse);
     running_mean_[k] = static_cast<float>((1 - momentum) * running_mean_[k] + momentum * mean);
     // The running variance is the unbiased one.
-    running_variance_[k] = static_cast<float>((1 - momentum) * running_variance_[k] + momentum * squares / (positions - 1));
+    running_variance_[k] =
+        static_cast<float>((1 - momentum) * running_variance_[k] + momentum * squares / (positions - 1));
   }
 }
 
@@ -41,7 +42,8 @@ void BatchNorm::apply(float* values, int positions, const float* scale, const fl
     for (int c = 0; c < channels_; ++c) {
       const auto k = static_cast<std::size_t>(c);
       float& value = values[i * channels_ + c];
-      value = (value - running_mean_[k]) / std::sqrt(running_variance_[k] + static_cast<float>(epsilon)) * scale[c] + shift[c];
+      value = (value - running_mean_[k]) / std::sqrt(running_variance_[k] + static_cast<float>(epsilon)) * scale[c] +
+              shift[c];
     }
 }
 

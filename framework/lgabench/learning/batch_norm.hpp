@@ -1,4 +1,5 @@
-// Batch normalisation of channels-last numbers (Ioffe and Szegedy 2015), with PyTorch's constants: epsilon 1e-5, momentum .1.
+// Batch normalisation of channels-last numbers (Ioffe and Szegedy 2015), with PyTorch's constants: epsilon 1e-5,
+// momentum .1.
 #pragma once
 #include <vector>
 
@@ -19,7 +20,7 @@ class BatchNorm {
  private:
   int channels_;
   std::vector<float> running_mean_, running_variance_;
-  std::vector<float> normalised_;        // of the last train(), positions x channels
+  std::vector<float> normalised_;         // of the last train(), positions x channels
   std::vector<float> inverse_deviation_;  // likewise, by channel
 };
 

@@ -11,8 +11,8 @@ namespace lgabench {
 struct AdamCoefficients {
   float beta1, beta2, epsilon;
   float rest1, rest2;  // 1 - beta, which single precision would round
-  float rate;  // learning rate / (1 - beta1^t)
-  float root;  // 1 / sqrt(1 - beta2^t)
+  float rate;          // learning rate / (1 - beta1^t)
+  float root;          // 1 / sqrt(1 - beta2^t)
 };
 
 /// All arrays are the caller's; any alignment is right, 64 bytes is fast. `columns` is read for linear layers alone.
@@ -23,8 +23,8 @@ struct Kernels {
     /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other.
     void (*weight_gradient)(const float* const* in, const float* gradient, float* weight_gradient, int pictures,
                             int columns);
-    /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels). Null for
-    /// the layers that see the picture.
+    /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels). Null
+    /// for the layers that see the picture.
     void (*input_gradient)(const float* gradient, const float* transposed, float* in_gradient, int columns);
   };
 

@@ -1,5 +1,5 @@
-// Every kernel, for vectors of LGABENCH_LANES numbers: included once for each instruction set, by a file that is compiled
-// for it. Nothing here is shared between those files: an inline function of a header, compiled twice, would be
+// Every kernel, for vectors of LGABENCH_LANES numbers: included once for each instruction set, by a file that is
+// compiled for it. Nothing here is shared between those files: an inline function of a header, compiled twice, would be
 // linked once, and perhaps as the one that the processor cannot run.
 #include <lgabench/learning/kernels.hpp>
 
@@ -98,8 +98,8 @@ struct LayerKernels {
           const float* right = gradient + channel;
           for (int picture = 0; picture < pictures; ++picture)
             for (int y = 0; y < layer.out_rows(); ++y, right += width * out_channels)
-              multiply_add<n, vectors, 1, step, out_channels>(
-                  sum, row(in[picture], y * layer.stride + k) + first, right, width);
+              multiply_add<n, vectors, 1, step, out_channels>(sum, row(in[picture], y * layer.stride + k) + first,
+                                                              right, width);
           for (int r = 0; r < n; ++r)
             for (int v = 0; v < vectors; ++v)
               store(weight_gradient + (k * segment + first + r) * out_channels + channel + v * lanes, sum[r][v]);
@@ -129,8 +129,10 @@ struct LayerKernels {
   }
 
   static constexpr Kernels::OfLayer all() {
-    if constexpr (layer.channels < 16) return {forward, weight_gradient, nullptr};
-    else return {forward, weight_gradient, input_gradient};
+    if constexpr (layer.channels < 16)
+      return {forward, weight_gradient, nullptr};
+    else
+      return {forward, weight_gradient, input_gradient};
   }
 };
 
@@ -159,9 +161,9 @@ void adam(const AdamCoefficients& c, const float* __restrict gradients, float* _
 
 constexpr Kernels kernels_of(const char* name) {
   return {name,
-          {LayerKernels<mask_convolution>::all(), LayerKernels<rgb_convolution>::all(), LayerKernels<convolution2>::all(),
-           LayerKernels<convolution3>::all(), LayerKernels<text_linear>::all(), LayerKernels<tower_head>::all(),
-           LayerKernels<text_head>::all()},
+          {LayerKernels<mask_convolution>::all(), LayerKernels<rgb_convolution>::all(),
+           LayerKernels<convolution2>::all(), LayerKernels<convolution3>::all(), LayerKernels<text_linear>::all(),
+           LayerKernels<tower_head>::all(), LayerKernels<text_head>::all()},
           relu_gradient,
           sum_rows,
           adam};

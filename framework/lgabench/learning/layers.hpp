@@ -3,8 +3,9 @@
 
 namespace lgabench {
 
-/// A convolution without padding, channels last: weights are kernel x kernel x channels x out_channels. A linear layer is
-/// a 1 x 1 convolution on a picture one row high, with the batch along its columns; there columns is 0, as not known.
+/// A convolution without padding, channels last: weights are kernel x kernel x channels x out_channels. A linear layer
+/// is a 1 x 1 convolution on a picture one row high, with the batch along its columns; there columns is 0, as not
+/// known.
 struct Layer {
   int rows, columns, channels, kernel, stride, out_channels;
 

@@ -78,7 +78,7 @@ struct Network::Impl {
   std::vector<Tower> towers;
   Trained text{text_linear}, text_head_layer{text_head};
   std::size_t head_bias = 0;
-  std::size_t count = 0;                 // of parameters, padding included
+  std::size_t count = 0;                  // of parameters, padding included
   std::vector<std::size_t> from_pytorch;  // place in the flat arrays of each of PyTorch's parameters
   Numbers parameters, gradients, mean, variance;
   long long steps = 0;
@@ -148,7 +148,8 @@ struct Network::Impl {
 
   template <class Take, class Name>
   void lay_out_head(const Take& take, const Name& name) {
-    const int features = static_cast<int>(towers.size()) * layers[tower_head].channels + (shape.text ? text_features : 0);
+    const int features =
+        static_cast<int>(towers.size()) * layers[tower_head].channels + (shape.text ? text_features : 0);
     const Range range = within(features);
     for (Tower& tower : towers) tower.head.weights = take(tower.head.layer().weights());
     if (shape.text) text_head_layer.weights = take(text_head_layer.layer().weights());
@@ -337,10 +338,13 @@ double Network::backward(const Samples& samples, const std::vector<int>& batch, 
 void Network::update(double learning_rate) {
   constexpr double beta1 = .9, beta2 = .999;
   const auto t = static_cast<double>(++impl_->steps);
-  const AdamCoefficients coefficients = {
-      static_cast<float>(beta1), static_cast<float>(beta2), 1e-8f, static_cast<float>(1 - beta1), static_cast<float>(1 - beta2),
-      static_cast<float>(learning_rate / (1 - std::pow(beta1, t))),
-      static_cast<float>(1 / std::sqrt(1 - std::pow(beta2, t)))};
+  const AdamCoefficients coefficients = {static_cast<float>(beta1),
+                                         static_cast<float>(beta2),
+                                         1e-8f,
+                                         static_cast<float>(1 - beta1),
+                                         static_cast<float>(1 - beta2),
+                                         static_cast<float>(learning_rate / (1 - std::pow(beta1, t))),
+                                         static_cast<float>(1 / std::sqrt(1 - std::pow(beta2, t)))};
   impl_->kernels.adam(coefficients, impl_->gradients, impl_->mean, impl_->variance, impl_->parameters, impl_->count);
 }
 

@@ -12,8 +12,8 @@ std::vector<int> batch_order(std::uint64_t seed, int epoch, int samples) {
   return RandomStream(fmt::format("learning/order/{}/{}", seed, epoch)).permutation(samples);
 }
 
-void train(Network& network, const Samples& samples, const TrainingOptions& options,
-           std::uint64_t seed, TrainingLog& log) {
+void train(Network& network, const Samples& samples, const TrainingOptions& options, std::uint64_t seed,
+           TrainingLog& log) {
   if (samples.rows == 0) throw MethodError("training: expected at least one sample, got none");
   const int batch_rows = std::min(options.batch_size, samples.rows), batches = samples.rows / batch_rows;
   std::vector<int> batch(static_cast<std::size_t>(batch_rows));
