@@ -93,7 +93,8 @@ void BareMujoco::play(const std::vector<GripperFrame>& frames) {
         const Quat turn = frame.body_when_gripped.rotation, grip = frame.gripper_when_gripped.rotation;
         const Quat unturn{-turn.x, -turn.y, -turn.z, turn.w}, ungrip{-grip.x, -grip.y, -grip.z, grip.w};
         mjtNum* const data = model_->eq_data + mjNEQDATA * weld;
-        put({rotated(frame.gripper_when_gripped.position_m - frame.body_when_gripped.position_m, unturn), ungrip * turn},
+        put({rotated(frame.gripper_when_gripped.position_m - frame.body_when_gripped.position_m, unturn),
+             ungrip * turn},
             data, data + 6);
         std::fill_n(data + 3, 3, 0.0);
         data_->eq_active[weld] = 1;

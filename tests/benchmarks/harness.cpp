@@ -48,7 +48,9 @@ void workers(benchmark::State& state, int count) {
 void register_harness() {
   benchmark::RegisterBenchmark("list", list)->UseRealTime();
   for (const int count : {1, 2})
-    benchmark::RegisterBenchmark(fmt::format("workers/{}", count).c_str(), workers, count)->UseRealTime()->Iterations(1);
+    benchmark::RegisterBenchmark(fmt::format("workers/{}", count).c_str(), workers, count)
+        ->UseRealTime()
+        ->Iterations(1);
 }
 
 }  // namespace lgabench

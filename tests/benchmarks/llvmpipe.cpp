@@ -22,7 +22,8 @@ bool make_context() {
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (!get_display) return false;
   const EGLDisplay display = get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-  if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API)) return false;
+  if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
+    return false;
   const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_DEPTH_SIZE, 24,
                            EGL_NONE};
   EGLConfig config;
@@ -36,7 +37,7 @@ void draw(benchmark::State& state, bool shadow) {
   static const bool drawable = make_context();
   if (!drawable) return state.SkipWithError("no software OpenGL here");
   BareMujoco& bare = first_scene();
-  bare.model()->vis.quality.offsamples = 0;  // no antialiasing
+  bare.model()->vis.quality.offsamples = 0;    // no antialiasing
   bare.model()->vis.quality.shadowsize = 512;  // texels enough for this picture; its default is 4096
   mjrContext context;
   mjr_defaultContext(&context);

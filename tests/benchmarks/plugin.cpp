@@ -4,8 +4,8 @@
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <tabletop/sampler.hpp>
 #include <tabletop/renderer.hpp>
+#include <tabletop/sampler.hpp>
 
 #include "../../plugins/lga.cpp"
 #include "benchmarks.hpp"

@@ -53,8 +53,8 @@ Samples random_samples(const NetworkShape& shape) {
 
 void report(benchmark::State& state, const NetworkShape& shape) {
   state.SetItemsProcessed(state.iterations());
-  state.counters["flops"] = benchmark::Counter(flops_of(shape) * static_cast<double>(state.iterations()),
-                                               benchmark::Counter::kIsRate);
+  state.counters["flops"] =
+      benchmark::Counter(flops_of(shape) * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
 }
 
 void ours(benchmark::State& state, const NetworkShape& shape, const Kernels& kernels) {
@@ -153,8 +153,9 @@ void register_training() {
     const NetworkShape& s = shape;
     for (const Kernels* kernels : available_kernels()) {
       const bool best = kernels == available_kernels().front();
-      benchmark::RegisterBenchmark(("step/" + std::string(name) + (best ? "" : std::string("/") + kernels->name)).c_str(),
-                                   [&s, kernels](benchmark::State& state) { ours(state, s, *kernels); });
+      benchmark::RegisterBenchmark(
+          ("step/" + std::string(name) + (best ? "" : std::string("/") + kernels->name)).c_str(),
+          [&s, kernels](benchmark::State& state) { ours(state, s, *kernels); });
     }
     benchmark::RegisterBenchmark(("step/" + std::string(name) + "/libtorch").c_str(),
                                  [&s](benchmark::State& state) { torchs(state, s); });
