@@ -1,5 +1,7 @@
 // The live language model against a server on loopback that misbehaves on purpose.
 #include <httplib.h>
+#include <openssl/evp.h>
+#include <openssl/x509.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -288,12 +290,64 @@ TEST_F(Chat, NoServerAndNoTlsAreSaid) {
     nowhere.attempts = 1;
     OpenAiOptions tls = nowhere;
     tls.base_url.replace(0, 4, "https");
-    EXPECT_SAYS(message_of<MethodError>([&] { ask(&tls); }), "given up after 1 attempts: ");
+    EXPECT_SAYS(message_of<MethodError>([&] { ask(&tls); }), "given up after 1 attempts: TLS: ");
     OpenAiOptions file = nowhere;
     file.base_url = "file:///etc";
     EXPECT_THROW(ask(&file), MethodError);
   }
   EXPECT_SAYS(message_of<MethodError>([&] { ask(&nowhere); }), "given up after 1 attempts: ");
+}
+
+// A server over TLS with a certificate that nobody but itself vouches for.
+class SelfSignedServer {
+ public:
+  SelfSignedServer() : key_(EVP_RSA_gen(2048)), certificate_(X509_new()) {
+    ASN1_INTEGER_set(X509_get_serialNumber(certificate_), 1);
+    X509_gmtime_adj(X509_getm_notBefore(certificate_), 0);
+    X509_gmtime_adj(X509_getm_notAfter(certificate_), 3600);
+    X509_set_pubkey(certificate_, key_);
+    X509_NAME* name = X509_get_subject_name(certificate_);
+    X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>("127.0.0.1"), -1, -1,
+                               0);
+    X509_set_issuer_name(certificate_, name);
+    X509_sign(certificate_, key_, EVP_sha256());
+    server_ = std::make_unique<httplib::SSLServer>(certificate_, key_);
+    server_->Post("/v1/chat/completions", [this](const httplib::Request&, httplib::Response& response) {
+      ++requests;
+      response.set_content(completion("Final answer: yes"), "application/json");
+    });
+    port = server_->bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_->listen_after_bind(); });
+  }
+  ~SelfSignedServer() {
+    server_->stop();
+    thread_.join();
+    X509_free(certificate_);
+    EVP_PKEY_free(key_);
+  }
+
+  std::atomic<int> requests{0};
+  int port = 0;
+
+ private:
+  EVP_PKEY* key_;
+  X509* certificate_;
+  std::unique_ptr<httplib::SSLServer> server_;
+  std::thread thread_;
+};
+
+TEST_F(Chat, ACertificateThatNobodyTrustsEndsItBeforeTheKeyIsSent) {
+  SelfSignedServer server;
+  OpenAiOptions options;
+  options.base_url = "https://127.0.0.1:" + std::to_string(server.port) + "/v1";
+  options.api_key = key;
+  options.first_wait_s = 30;  // another attempt would be noticed
+  const std::string said = message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); });
+  EXPECT_SAYS(said, "TLS: ");
+  EXPECT_SAYS(said, "certificate");
+  EXPECT_SILENT(said, key);
+  EXPECT_EQ(server.requests, 0);
+  EXPECT_FALSE(fs::exists(tape()));
 }
 
 TEST(FinalAnswer, IsOnTheLastLine) {

@@ -109,6 +109,50 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
   }
 }
 
+// Those of claims.json, in the same way.
+TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
+  FabricatedRun run;
+  fill(run);
+  for (const char* id : {"p01", "p02"})
+    for (const char* method : {"human", "lga_hill"}) {  // invented people
+      FabricatedRun::Spec person{method, 18, "heart", 50, 0};
+      person.arms = {{"control", 18}, {"hard", 17}};
+      person.provenance = "human";
+      person.participant = id;
+      person.human_seconds = (*method == 'h' ? 150 : 50) + id[2];
+      run.add(person);
+    }
+  const std::string page = page_of(run);
+  const Json claims = read_json(run.path / "claims.json");
+  const std::regex value("<span data-claim=\"([^\"]*)\">([^<]*)</span>");
+  std::set<std::string> shown;
+  for (std::sregex_iterator it(page.begin(), page.end(), value), end; it != end; ++it) {
+    const std::string text = it->str(2);
+    const std::size_t dot = text.find('.');
+    const double half = dot == std::string::npos ? 0 : .5 * std::pow(10, -static_cast<double>(text.size() - dot - 1));
+    EXPECT_NEAR(std::stod(text), claims.at(Json::json_pointer(it->str(1))).get<double>(), half + 1e-9) << it->str(1);
+    shown.insert(it->str(1));
+  }
+  int tested = 0;
+  for (std::size_t c = 0; c < claims.at("claims").size(); ++c) {
+    const Json& claim = claims.at("claims")[c];
+    EXPECT_SAYS(page, claim.at("statement").get<std::string>());
+    for (std::size_t d = 0; d < claim.at("differences").size(); ++d) {
+      if (claim.at("differences")[d].at("difference").is_null()) continue;
+      ++tested;
+      const std::string place = "/claims/" + std::to_string(c) + "/differences/" + std::to_string(d) + "/";
+      for (const char* member : {"difference", "low", "high", "participants", "policies", "scenarios"})
+        EXPECT_EQ(shown.count(place + member), 1u) << place << member;
+    }
+  }
+  EXPECT_GE(tested, 1);  // C5
+  EXPECT_SAYS(page, "<b>held</b>");
+  EXPECT_SAYS(page, "not tested: no row gcbc_seg");
+  EXPECT_SAYS(page, "Human: 2 participants.");
+  EXPECT_SAYS(page, "LGA-HILL: 2 participants, who edited");
+  EXPECT_SILENT(page, "no human data.");
+}
+
 TEST(Html, NothingIsFetched) {
   FabricatedRun run;
   fill(run);
@@ -188,7 +232,8 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   report::Pictures pictures;
   pictures.wanted = 1;
   pictures.scenes[hex(19)] = "PNG";
-  const std::string page = report::html(results, report::summarize(results), report::paper_values("q1"), pictures);
+  const std::string page = report::html(results, report::summarize(results), report::test_claims(results),
+                                        report::paper_values("q1"), pictures);
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));

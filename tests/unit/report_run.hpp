@@ -26,6 +26,7 @@ class FabricatedRun : public TemporaryDirectory {
            {"build", {{"lgabench-worker", std::string(64, 'b')}}},
            {"request", Json::object()},
            {"command", "lgabench run q1"},
+           {"answers", Json::array()},
            {"started", "2024-05-07T12:00:00Z"}};
   }
 
@@ -45,6 +46,8 @@ class FabricatedRun : public TemporaryDirectory {
     int first_scene = 0;  // hash of the first of 20 scenes
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
+    std::string participant{};                             // whose answers the cell stands on
+    double human_seconds = 0;                              // of each command
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
@@ -63,29 +66,31 @@ class FabricatedRun : public TemporaryDirectory {
                           {"seen", seen},
                           {"truth", {{"target", {{"object_types", {"heart"}}, {"textures", "ALL"}}}}}});
     for (const Arm& arm : s.all_arms()) tests.push_back({{"arm", arm.name}});
-    return {{"suite", "q1"},
-            {"environment", "tabletop"},
-            {"layout", s.layout},
-            {"scenario",
-             {{"id", s.scenario},
+    Json cell{{"suite", "q1"},
               {"environment", "tabletop"},
-              {"task", "pick_and_place"},
-              {"commands", commands},
-              {"tests", tests}}},
-            {"engine", "mujoco"},
-            {"method",
-             {{"kind", s.kind},
-              {"id", s.method.substr(0, s.method.find('+'))},
-              {"name", s.method},
-              {"version", "0.1"},
-              {"options", Json::object()}}},
-            {"demonstrations", s.demonstrations},
-            {"training_seed", s.seed},
-            {"scene_seed", 7},
-            {"episodes", 20},
-            {"answers", "recorded"},
-            {"data", {{"answers", std::string(64, 'c')}}},
-            {"smoke", true}};
+              {"layout", s.layout},
+              {"scenario",
+               {{"id", s.scenario},
+                {"environment", "tabletop"},
+                {"task", "pick_and_place"},
+                {"commands", commands},
+                {"tests", tests}}},
+              {"engine", "mujoco"},
+              {"method",
+               {{"kind", s.kind},
+                {"id", s.method.substr(0, s.method.find('+'))},
+                {"name", s.method},
+                {"version", "0.1"},
+                {"options", Json::object()}}},
+              {"demonstrations", s.demonstrations},
+              {"training_seed", s.seed},
+              {"scene_seed", 7},
+              {"episodes", 20},
+              {"answers", "recorded"},
+              {"data", {{"answers", std::string(64, 'c')}}},
+              {"smoke", true}};
+    if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
+    return cell;
   }
 
   static Json selection_json(const Spec& s) {
@@ -99,7 +104,7 @@ class FabricatedRun : public TemporaryDirectory {
 
   static Json selected_json(const Spec& s) {
     const Json quality{{"precision", 1.0}, {"recall", 0.75}, {"size", 3}, {"true_size", 4}};
-    const bool selects = s.method == "lga" || s.method == "human";
+    const bool selects = s.method == "lga" || s.method == "human" || s.method == "lga_hill";
     return {
         {"selection",
          {{"target", {{"object_types", {"heart"}}, {"textures", {"red", "tiger"}}}},
@@ -107,10 +112,15 @@ class FabricatedRun : public TemporaryDirectory {
                          : s.method == "lga"   ? "recorded"
                          : selects             ? "truth"
                                                : "none"},
-          {"source", selects ? "gpt-4" : ""},
+          {"source", !s.participant.empty() ? "participant " + s.participant
+                     : selects              ? "gpt-4"
+                                            : ""},
           {"asked_as", selects ? "fetch | heart" : ""},
           {"cost",
-           {{"lm_queries", selects ? 112 : 0}, {"lm_tokens", 0}, {"lm_seconds", 0.0}, {"human_seconds", 0.0}}}}},
+           {{"lm_queries", selects ? 112 : 0},
+            {"lm_tokens", 0},
+            {"lm_seconds", 0.0},
+            {"human_seconds", s.human_seconds}}}}},
         {"quality",
          selects ? Json{{"target", {{"object_types", quality}, {"textures", quality}}}, {"avoid", nullptr}} : Json()}};
   }

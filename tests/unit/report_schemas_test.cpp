@@ -21,6 +21,16 @@ std::vector<std::pair<std::string, Json>> run_documents() {
   run.add_failed({"gcbc_dart", 0}, "plugin");
   run.add({"gcbc_dart", 5, "heart", 10});  // a claim's difference that is tested, and others that are not
   run.add({"lga", 15, "heart", 10});
+  for (const auto& [method, id, seconds] :  // invented people: seconds that are tested
+       {std::tuple("human", "p01", 150.), {"human", "p02", 170.}, {"lga_hill", "p01", 50.}, {"lga_hill", "p02", 60.}}) {
+    FabricatedRun::Spec person{method, 18};
+    person.provenance = "human";
+    person.participant = id;
+    person.human_seconds = seconds;
+    run.add(person);
+  }
+  run.run["answers"] = {
+      {{"name", std::string(64, 'd') + ".json"}, {"file", "people/p01.json"}, {"participant", "p01"}}};
   run.save();
   report::write_report(run.path);
   std::vector<std::pair<std::string, Json>> all;
@@ -71,7 +81,10 @@ TEST(Schemas, RefuseBrokenFiles) {
   const std::vector<std::tuple<std::string, std::string, Json>> faults{
       {"run", "/cells/0", "not a key"},
       {"run", "/smoke", "yes"},
+      {"run", "/answers/0/name", "p01.json"},
       {"cell", "/method/kind", "baseline"},
+      {"cell", "/answers", "cassette:tape.jsonl"},
+      {"cell", "/participant", {{"id", "p01"}}},
       {"cell", "/episodes", 0},
       {"cell", "/extra", 1},
       {"cell", "/scenario/commands", Json::array()},
@@ -101,6 +114,9 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"claims", "/claims/0/verdict", "maybe"},
       {"claims", "/claims/0/claim", "C6"},
       {"claims", "/claims/0/differences/0/p", 2},
+      {"claims", "/claims/0/differences/0/difference", 2},
+      {"claims", "/claims/0/differences/0/unit", "hours"},
+      {"claims", "/claims/4/differences/0/participants", -1},
       {"claims", "/claims/0/differences/0/policies", nullptr}};
   const auto all = run_documents();
   for (const auto& [schema, where, value] : faults) {

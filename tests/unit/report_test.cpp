@@ -114,6 +114,37 @@ TEST(Summary, SeveralSeedsAreAveraged) {
   EXPECT_EQ(row.at("high"), 1.0);
 }
 
+TEST(Summary, SeveralParticipantsAreAveragedEachOverTheirSeeds) {
+  FabricatedRun run;  // invented people
+  const auto add = [&run](const std::string& id, int won, int seed, double seconds) {
+    FabricatedRun::Spec spec{"human", won, "heart", 20, seed};
+    spec.provenance = "human";
+    spec.participant = id;
+    spec.human_seconds = seconds;
+    run.add(spec);
+  };
+  for (int seed = 0; seed < 3; ++seed) add("p01", 20, seed, 100);
+  add("p02", 0, 0, 50);
+  const Json summary = summary_of(run), row = row_of(summary, "heart", "human");
+  EXPECT_EQ(row.at("success"), 0.5) << "not 3/4: p01 is one person with three seeds";
+  EXPECT_EQ(row.at("seeds"), 3);
+  EXPECT_EQ(row.at("participants"), 2);
+  EXPECT_EQ(row.at("episodes"), 80);
+  EXPECT_EQ(row.at("low"), 0.0) << "one of the two is drawn twice in a quarter of all resamples";
+  EXPECT_EQ(row.at("high"), 1.0);
+  EXPECT_EQ(row.at("phi").at(0).at("source"), "2 participants");
+  EXPECT_EQ(row.at("phi").at(0).at("human_seconds"), 87.5);
+  EXPECT_SAYS(table_text(run.path), "Human: 2 participants.");
+
+  FabricatedRun one;  // is no level of its own
+  for (int seed = 0; seed < 2; ++seed) {
+    FabricatedRun::Spec spec{"human", 20 * seed, "heart", 20, seed};
+    spec.participant = "p01";
+    one.add(spec);
+  }
+  EXPECT_EQ(row_of(summary_of(one), "heart", "human").at("low"), 0.0);
+}
+
 TEST(Summary, ReferenceRowsMarkWhatLearnedNothing) {
   FabricatedRun run;
   run.add({"constant_action", 6, "heart", 20, 0, "reference"});
@@ -267,12 +298,13 @@ TEST(Report, CsvHoldsTheRows) {
   summary_of(run);
   const std::string csv = read_file(run.path / "summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
+            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,"
+            "success,low,high,"
             "against,difference,difference_low,difference_high,same_actions,n_error,marks,abstraction,policy,missed_"
             "object,wrong_object,"
             "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
-  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,20,15,0.75,0.53");
+  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,15,0.75,0.53");
   EXPECT_SAYS(csv, ",,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
 }
 

@@ -76,8 +76,11 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
     if (!cassette_.find(keys.back())) missing.push_back({keys.back(), question.candidate, request});
   }
   if (!missing.empty() && !client_)
-    throw InputError(fmt::format("cassette: expected replies of {} to \"{}\", {} of {} are missing", options_.model,
-                                 command.utterance, missing.size(), questions.size()));
+    throw InputError(fmt::format(
+        "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
+        "--space {6} --answers openai --model {1} --cassette {0}",
+        cassette_.file().string(), options_.model, command.utterance, missing.size(), questions.size(),
+        to_string(command.task), space.id));
   if (options_.max_queries >= 0 && asked_ + static_cast<int>(missing.size()) > options_.max_queries)
     throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, missing.size(),
                                  options_.max_queries - asked_));

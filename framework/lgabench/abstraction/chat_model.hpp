@@ -35,7 +35,8 @@ class ChatLanguageModel : public LanguageModel {
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
   /// @throws MethodError for the first question without an answer; the replies that came are in the cassette.
-  /// InputError without a client where the cassette lacks a reply, or where `max_queries` does not suffice.
+  /// InputError without a client where the cassette lacks a reply (names the command line that asks), or where
+  /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
   std::string model() const override { return options_.model; }

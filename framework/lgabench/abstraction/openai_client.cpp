@@ -17,6 +17,7 @@ struct Response {
   long status = 0;  // 0: none came
   std::string body, problem;
   double retry_after_s = 0;
+  bool untrusted = false;  // whoever answered has no certificate that this machine trusts: waiting will not help
 };
 
 std::size_t collect(char* bytes, std::size_t size, std::size_t count, void* into) {
@@ -59,7 +60,9 @@ Response post(const OpenAiOptions& options, const std::string& body) {
   set(CURLOPT_LOW_SPEED_TIME, std::max(options.timeout_s / 2, 1L));
   const CURLcode code = curl_easy_perform(easy.handle);
   if (code != CURLE_OK) {
-    response.problem = *problem ? problem : curl_easy_strerror(code);
+    response.untrusted = code == CURLE_PEER_FAILED_VERIFICATION;
+    const bool tls = response.untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
+    response.problem = (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
     return response;
   }
   curl_easy_getinfo(easy.handle, CURLINFO_RESPONSE_CODE, &response.status);
@@ -71,7 +74,7 @@ Response post(const OpenAiOptions& options, const std::string& body) {
 
 bool may_pass(const Response& response) {
   const long s = response.status;
-  return s == 0 || s == 408 || s == 409 || s == 429 || s >= 500;
+  return (s == 0 && !response.untrusted) || s == 408 || s == 409 || s == 429 || s >= 500;
 }
 
 // What went wrong, in a line, without the key that a server may repeat.

@@ -19,7 +19,8 @@ struct OpenAiOptions {
 class OpenAiClient : public ChatClient {
  public:
   explicit OpenAiClient(OpenAiOptions options);
-  /// @throws MethodError once the attempts are used up, for any other status, for a body that is not a completion, and
+  /// @throws MethodError once the attempts are used up, for any other status, for a TLS certificate that this machine
+  /// does not trust (the key is then not sent), for a body that is not a completion, and
   /// for a reply whose finish_reason is not "stop": it was cut off.
   ChatReply complete(const Json& request) override;
 

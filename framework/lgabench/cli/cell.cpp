@@ -60,6 +60,7 @@ void run(const Messages& messages) {
               std::nullopt,
               reader.at("directory").string(),
               reader.at("cache").string(),
+              reader.at("answers").string(),
               reader.at("build").json()};
   if (reader.has("method")) job.method = plugin(reader.at("method"));
   if (job.cell.method.is_reference() == job.method.has_value())

@@ -15,7 +15,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, answers = "recorded", out, cache, shard = "1/1";
+  std::string suite, preset, answers = "recorded", humans, out, cache, shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
@@ -79,6 +79,12 @@ fs::path default_cache() {
   return fs::temp_directory_path() / "lgabench-cache";
 }
 
+Json participant_hashes(const std::vector<Participant>& participants) {
+  Json hashes = Json::object();
+  for (const Participant& one : participants) hashes[one.id] = one.sha256;
+  return hashes;
+}
+
 // The command that takes this run up again, wherever its default directory was.
 std::string resuming_command(const Arguments& a, const fs::path& out) {
   Words words = command_line();
@@ -104,10 +110,19 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
 int run(const Arguments& a) {
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
-  const Variation variation{a.answers, options_of(a.settings), !a.no_reference};
+  Variation variation{a.answers, options_of(a.settings), !a.no_reference};
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
+  if (const std::string prefix = "cassette:"; a.answers.rfind(prefix, 0) == 0) {
+    const fs::path cassette = a.answers.substr(prefix.size());
+    const CassetteAnswers checked = check_cassette(cassette, grid.scenarios);
+    variation.answers = checked.answers;
+    plan.answers.push_back(cassette_file(cassette, checked.model));
+  }
+  if (!a.humans.empty())
+    for (AnswerFile& file : read_participants(a.humans, variation.participants))
+      plan.answers.push_back(std::move(file));
   plan.shard = read_shard(a.shard);
   plan.cells = expand(suite, grid, variation, catalogue);
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
@@ -115,7 +130,8 @@ int run(const Arguments& a) {
   plan.request = to_json(grid);
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
-                       {"answers", a.answers},
+                       {"answers", variation.answers},
+                       {"participants", participant_hashes(variation.participants)},
                        {"options", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
@@ -183,14 +199,21 @@ void add_run(CLI::App& app, int& exit) {
                    "method.option=value, for each of its rows that does not set it; may be given again")
       ->take_all();
   verb->add_option("--answers", a->answers,
-                   "Whose recorded answers; recorded: GPT-4's where it was asked, else Claude's")
-      ->check(CLI::IsMember({"recorded", "gpt4", "claude"}))
+                   "Which language model answered; recorded: GPT-4 where it was asked, else Claude; gpt4, claude: that "
+                   "one alone; cassette:FILE: the replies of a server's model, as lgabench select --suite keeps them")
+      ->check([](const std::string& word) {
+        const bool known = word == "recorded" || word == "gpt4" || word == "claude" || word.rfind("cassette:", 0) == 0;
+        return known ? "" : "expected recorded, gpt4, claude or cassette:FILE, got " + word;
+      })
       ->capture_default_str();
+  verb->add_option("--humans", a->humans,
+                   "A directory of participants' .json files: human and lga_hill then have a cell for each of them");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
       "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared\n"
+      "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }

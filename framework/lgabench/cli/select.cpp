@@ -12,12 +12,13 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string command, answers = "recorded", task = "pick_and_place", space = "tabletop", model, cassette;
+  std::string command, suite, answers = "recorded", task = "pick_and_place", space = "tabletop", model, cassette;
   int concurrency = 4, max_queries = -1;
   bool json = false;
 };
@@ -30,19 +31,16 @@ struct Asked {
   std::optional<Selection> truth;
 };
 
-// Whoever answers, and what it stands on.
+// Whoever answers all commands, and what it stands on; no model for recorded answers, which go by the scenario.
 struct Answerer {
   std::unique_ptr<ChatClient> client;
   std::unique_ptr<Cassette> cassette;
   std::unique_ptr<LanguageModel> model;
 };
 
-Answerer make_answerer(const Asked& asked, const Arguments& a) {
+Answerer make_answerer(const Arguments& a) {
   Answerer answerer;
-  if (a.answers != "openai" && a.answers != "cassette") {
-    answerer.model = std::make_unique<RecordedLanguageModel>(asked.space, asked.answers_of, a.answers);
-    return answerer;
-  }
+  if (a.answers != "openai" && a.answers != "cassette") return answerer;
   const bool live = a.answers == "openai";
   if (a.cassette.empty()) throw InputError(fmt::format("--answers {}: expected --cassette FILE too", a.answers));
   answerer.cassette = std::make_unique<Cassette>(a.cassette);
@@ -65,16 +63,32 @@ Answerer make_answerer(const Asked& asked, const Arguments& a) {
   return answerer;
 }
 
-// All commands of the scenario of that id, or the one with that utterance; else the words alone, which have no truth.
+std::vector<Asked> commands_of(const Scenario& scenario) {
+  std::vector<Asked> asked;
+  for (const ScenarioCommand& c : scenario.commands)
+    asked.push_back({scenario.answers_of, scenario.space, {c.utterance, scenario.task}, c.truth});
+  return asked;
+}
+
+// All commands of the suite, or of the scenario of that id, or the one with that utterance; else the words alone, which
+// have no truth.
 std::vector<Asked> find_commands(const Arguments& arguments) {
+  if (!arguments.suite.empty()) {
+    std::vector<Asked> all;
+    for (const std::string& id : load_suite(arguments.suite).grid.scenarios)
+      for (Asked& asked : commands_of(load_scenario(id))) all.push_back(std::move(asked));
+    return all;
+  }
+  std::vector<Asked> same_words;
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id);
-    std::vector<Asked> asked;
-    for (const ScenarioCommand& c : scenario.commands)
-      if (id == arguments.command || c.utterance == arguments.command)
-        asked.push_back({scenario.answers_of, scenario.space, {c.utterance, scenario.task}, c.truth});
-    if (!asked.empty()) return asked;
+    if (id == arguments.command) return commands_of(scenario);
+    for (Asked& asked : commands_of(scenario))
+      if (asked.command.utterance == arguments.command) same_words.push_back(std::move(asked));
   }
+  for (const Asked& asked : same_words)  // two scenarios may say the same in two spaces
+    if (asked.space.id == arguments.space) return {asked};
+  if (!same_words.empty()) return {same_words.front()};
   if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
   Asked asked{"", load_feature_space(arguments.space), {arguments.command, Task::pick_and_place}, std::nullopt};
   for (const Task task : {Task::pick_and_place, Task::rotate, Task::sweep})
@@ -103,9 +117,9 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("textures")));
 }
 
-void select(const Asked& asked, const Arguments& arguments) {
-  const Answerer answerer = make_answerer(asked, arguments);
-  const Selection selection = select_features(asked.command, asked.space, *answerer.model);
+void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
+  RecordedLanguageModel recorded(asked.space, asked.answers_of, model ? "recorded" : arguments.answers);
+  const Selection selection = select_features(asked.command, asked.space, model ? *model : recorded);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
@@ -133,7 +147,8 @@ void select(const Asked& asked, const Arguments& arguments) {
 void add_select(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("select", "Ask which features matter for a command, and print the Selection");
-  verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes")->required();
+  auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
+  verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
   verb->add_option(
           "--answers", arguments->answers,
           "recorded: GPT-4's where it was asked, else Claude's; gpt4, claude: theirs alone; openai: ask a server "
@@ -150,7 +165,7 @@ void add_select(CLI::App& app, int&) {
   verb->add_option("--concurrency", arguments->concurrency, "Questions under way at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option("--max-queries", arguments->max_queries, "Ask no more than so many questions; -1: no limit")
+  verb->add_option("--max-queries", arguments->max_queries, "Ask a server no more than so many questions; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
@@ -158,9 +173,19 @@ void add_select(CLI::App& app, int&) {
       "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one\n"
       "question for each object type and texture. What was interrupted goes on from the cassette.\n"
       "Example: lgabench select red_heart\n"
+      "For lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai --model M --cassette "
+      "M.jsonl\n"
       "         lgabench select \"Bring me a fruit.\" --space household --answers openai --model M --cassette M.jsonl");
   verb->callback([arguments] {
-    for (const Asked& asked : find_commands(*arguments)) select(asked, *arguments);
+    if (arguments->command.empty() && arguments->suite.empty())
+      throw InputError("select: expected a command, a scenario's id, or --suite");
+    const Answerer answerer = make_answerer(*arguments);
+    bool first = true;
+    for (const Asked& asked : find_commands(*arguments)) {
+      if (!first && !arguments->json) fmt::print("\n");
+      first = false;
+      select(asked, answerer.model.get(), *arguments);
+    }
   });
 }
 

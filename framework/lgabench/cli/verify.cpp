@@ -209,6 +209,7 @@ int verify(const Arguments& a) {
     plan.command = "lgabench verify";
     plan.out = scratch.path / "run";
     plan.cache = scratch.path / "cache";
+    plan.answers = kept_answers(a.run);
     plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     plan.pool.timeout_s = a.timeout_s;
     if (run_suite(plan, scan_plugins(plugin_directories(a.plugin_path))).interrupted) return interrupted;

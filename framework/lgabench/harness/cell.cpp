@@ -74,6 +74,26 @@ std::vector<Competitor> competitors(const Grid& grid, const Json& settings, cons
   return methods;
 }
 
+// Those whose answers the method stands on in this scenario; one that is nobody where it asks no people, or where the
+// truth stands in for them.
+using Answering = std::vector<std::optional<CellParticipant>>;
+Answering participants(const std::string& method, const Scenario& scenario, const std::vector<Participant>& all) {
+  if (all.empty() || (method != "human" && method != "lga_hill")) return {std::nullopt};
+  Answering some;
+  for (const Participant& one : all)
+    if (method == "human" ? one.specified_all(scenario) : one.edited_all(scenario))
+      some.push_back(CellParticipant{one.id, one.sha256});
+  return some;
+}
+
+// A method that people answer for shall not vanish from the table because they were asked about other scenarios.
+void expect_each_method(const std::vector<Competitor>& methods, const std::vector<Cell>& cells) {
+  for (const Competitor& method : methods)
+    if (std::none_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.method.name == method.name; }))
+      throw InputError(
+          fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
+}
+
 // The suite's own arms come after the scenario's.
 Scenario with_arms(const Scenario& scenario, const Suite& suite) {
   Json json = scenario.json;
@@ -88,35 +108,37 @@ Scenario with_arms(const Scenario& scenario, const Suite& suite) {
 }  // namespace
 
 std::string Cell::title() const {
-  return fmt::format("{} {} {} {} n={} seed={}", method.name, scenario_id(), layout, engine, demonstrations,
-                     training_seed);
+  return fmt::format("{} {} {} {} n={} seed={}{}", method.name, scenario_id(), layout, engine, demonstrations,
+                     training_seed, participant ? " participant=" + participant->id : "");
 }
 
 Json to_json(const Cell& cell) {
-  return {{"suite", cell.suite},
-          {"environment", cell.environment},
-          {"layout", cell.layout},
-          {"scenario", cell.scenario},
-          {"engine", cell.engine},
-          {"method",
-           {{"kind", cell.method.kind},
-            {"id", cell.method.id},
-            {"name", cell.method.name},
-            {"version", cell.method.version},
-            {"options", cell.method.options}}},
-          {"demonstrations", cell.demonstrations},
-          {"training_seed", cell.training_seed},
-          {"scene_seed", cell.scene_seed},
-          {"episodes", cell.episodes},
-          {"answers", cell.answers},
-          {"data", cell.data},
-          {"smoke", cell.smoke}};
+  Json json{{"suite", cell.suite},
+            {"environment", cell.environment},
+            {"layout", cell.layout},
+            {"scenario", cell.scenario},
+            {"engine", cell.engine},
+            {"method",
+             {{"kind", cell.method.kind},
+              {"id", cell.method.id},
+              {"name", cell.method.name},
+              {"version", cell.method.version},
+              {"options", cell.method.options}}},
+            {"demonstrations", cell.demonstrations},
+            {"training_seed", cell.training_seed},
+            {"scene_seed", cell.scene_seed},
+            {"episodes", cell.episodes},
+            {"answers", cell.answers},
+            {"data", cell.data},
+            {"smoke", cell.smoke}};
+  if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
+  return json;
 }
 
 Cell read_cell(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
-               "scene_seed", "episodes", "answers", "data", "smoke"});
+               "scene_seed", "episodes", "answers", "participant", "data", "smoke"});
   const JsonReader method = reader.at("method");
   method.only({"kind", "id", "name", "version", "options"});
   constexpr long long most = std::numeric_limits<int>::max();
@@ -136,6 +158,11 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.scene_seed = seed_at(reader.at("scene_seed"));
   cell.episodes = static_cast<int>(reader.at("episodes").integer(1, most));
   cell.answers = reader.at("answers").string();
+  if (reader.has("participant")) {
+    const JsonReader participant = reader.at("participant");
+    participant.only({"id", "sha256"});
+    cell.participant = CellParticipant{participant.at("id").string(), participant.at("sha256").string()};
+  }
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();
   return cell;
@@ -173,7 +200,10 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       cell.method = method;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
-      cells.push_back(cell);
+      for (const auto& participant : participants(method.id, scenario, variation.participants)) {
+        cell.participant = participant;
+        cells.push_back(cell);
+      }
     };
     const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
     for (const std::string& layout : grid.layouts) {
@@ -192,6 +222,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       }
     }
   }
+  expect_each_method(methods, cells);
   return cells;
 }
 

@@ -1,9 +1,11 @@
 // A cell: the unit of work, failure and resuming. It trains one policy and plays every arm of its scenario.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/harness/suite.hpp>
@@ -22,6 +24,11 @@ struct Competitor {
   bool is_reference() const { return kind == "reference"; }
 };
 
+/// A person whose answers a cell stands on.
+struct CellParticipant {
+  std::string id, sha256;  // pseudonym; of the file
+};
+
 /// All that a cell's results depend on, besides the programs themselves.
 struct Cell {
   std::string suite, environment, layout, engine;
@@ -30,8 +37,9 @@ struct Cell {
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
   int episodes = 0;
-  std::string answers;  // recorded, gpt4 or claude
-  Json data;            // sha256 of the shipped data that the cell reads
+  std::string answers;                         // recorded, gpt4, claude, or "cassette:" and the cassette's SHA-256
+  std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
+  Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
 
   std::string scenario_id() const { return scenario.at("id"); }
@@ -51,15 +59,17 @@ Json data_hashes(const Scenario& scenario);
 
 /// What is not on the grid.
 struct Variation {
-  std::string answers = "recorded";
+  std::string answers = "recorded";  // as Cell::answers
   Json options =
       Json::object();      // method id -> option -> value, for each row of it that does not set the option itself
   bool references = true;  // add the reference rows
+  std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
-/// Every cell of the grid: scenario by scenario, reference rows after the methods.
+/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of human or
+/// lga_hill for each one who specified, or edited, all commands of the scenario; for none, where nobody did.
 /// @throws PluginError for an unknown method or engine, InputError for an unknown option, for a method that is not
-/// written ID+OPTION=VALUE+..., and for two that name one row.
+/// written ID+OPTION=VALUE+..., for two that name one row, and for one that no participant answered at all.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

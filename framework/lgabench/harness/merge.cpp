@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
 
 namespace lgabench {
@@ -162,6 +163,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
 
   const RunDirectory directory(out, merged_json(parts, command), Existing::resume);
+  for (const Part& part : parts) keep_answers(kept_answers(part.path()), out);
   for (const auto& [key, from] : chosen) {
     copy_cell(from, directory.scratch(key));
     directory.keep(key);

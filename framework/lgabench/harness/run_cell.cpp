@@ -7,11 +7,10 @@
 #include <chrono>
 #include <cmath>
 
-#include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/quality.hpp>
-#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
@@ -135,10 +134,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  RecordedLanguageModel lm(scenario.space, scenario.answers_of, cell.answers);
-  TruthAsHuman human(scenario.commands);
+  const Answers answers = answers_for(cell, scenario, job.answers);
   TrainingLines training(phases);
-  Services services{lm, human, cell.method.options, cell.training_seed, training};
+  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training};
   Needs needs;
   std::vector<Instruction> instructions;
   if (method) needs = guarded(id, [&] { return method->needs(services.options); });

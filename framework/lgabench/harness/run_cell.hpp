@@ -16,6 +16,7 @@ struct CellJob {
   std::optional<PluginInfo> method;  // none for a reference row
   std::filesystem::path directory;   // gets the cell's files
   std::filesystem::path cache;       // of demonstrations
+  std::filesystem::path answers;     // files of answers that the cell names (see answers.hpp)
   Json build;                        // of build_hashes()
 };
 

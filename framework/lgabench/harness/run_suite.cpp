@@ -61,6 +61,11 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     programs = build_of(cell, catalogue);
   }
   for (const char* plugin : {"engine", "method"}) programs.erase(plugin);
+  Json answers = Json::array();
+  for (const AnswerFile& file : plan.answers) {
+    answers.push_back(file.about);
+    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
+  }
   utsname system{};
   ::uname(&system);
   return {{"suite", plan.request.at("suite")},
@@ -72,6 +77,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"build", programs},
           {"version", LGABENCH_VERSION},
           {"command", plan.command},
+          {"answers", answers},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",
            {{"processor", processor()},
@@ -196,6 +202,7 @@ std::string TimeSpent::text(int jobs) const {
 
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
+  keep_answers(plan.answers, plan.out);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
   RunOutcome outcome;
   outcome.reused = complete.size();
@@ -212,6 +219,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     Json job{{"cell", to_json(cell)},
              {"directory", fs::absolute(scratch[i]).string()},
              {"cache", fs::absolute(plan.cache).string()},
+             {"answers", fs::absolute(plan.out / "answers").string()},
              {"build", build_of(cell, catalogue)},
              {"limits", limits(plan.pool)},
              {"engine", plugin_json(catalogue.find("engine", cell.engine))}};

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
@@ -19,6 +20,7 @@ struct RunPlan {
   std::string command;        // as typed
   std::filesystem::path out;  // the run directory
   std::filesystem::path cache;
+  std::vector<AnswerFile> answers{};  // that the cells name
   Existing existing = Existing::same;
   PoolOptions pool;
 };

@@ -21,7 +21,9 @@ struct Field {
   std::string layout, engine;
   std::vector<std::string> arms;  // as the scenarios list them
   std::set<int> demonstrations;   // of the methods
-  using Policies = std::map<std::pair<std::string, long long>, const CellResult*>;
+  // By scenario and training seed, then participant ("" where nobody was asked).
+  using People = std::map<std::string, const CellResult*>;
+  using Policies = std::map<std::pair<std::string, long long>, People>;
   std::map<std::string, std::map<int, Policies>> rows;
 
   const Policies* find(const std::string& row, int n) const {
@@ -36,10 +38,21 @@ bool has_arm(const CellResult& cell, const std::string& arm) {
   return std::find(cell.arms.begin(), cell.arms.end(), arm) != cell.arms.end();
 }
 
-// A row's policy on an arm, nullptr where it did not finish.
-const CellResult* finished(const Field::Policies& policies, const Field::Policies::key_type& which) {
-  const auto it = policies.find(which);
-  return it == policies.end() || it->second->failed ? nullptr : it->second;
+// The policy that stands on the participant's answers, or the one that stands on nobody's; nullptr where it did not
+// finish.
+const CellResult* finished(const Field::People& people, const std::string& participant) {
+  auto it = people.find(participant);
+  if (it == people.end()) it = people.find("");
+  return it == people.end() || it->second->failed ? nullptr : it->second;
+}
+
+// Whose answers the one or the other of two rows stands on; "" alone where both stand on nobody's.
+std::set<std::string> participants(const Field::People& one, const Field::People& other) {
+  std::set<std::string> names;
+  for (const Field::People* people : {&one, &other})
+    for (const auto& item : *people) names.insert(item.first);
+  if (names.size() > 1) names.erase("");
+  return names;
 }
 
 // `above` against `below`, every policy of the one with its pair; not tested where one lacks its pair, since whoever
@@ -57,11 +70,18 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const s
   all.insert(low->begin(), low->end());
   PairedRow pairs;
   int wanted = 0;
-  for (const auto& [which, cell] : all) {
-    if (!has_arm(*cell, arm)) continue;
-    ++wanted;
-    const CellResult *first = finished(*low, which), *second = finished(*high, which);
-    if (first && second) pairs.add(which.first, pair_policies(*first, *second, arm));
+  const auto people = [](const Field::Policies& row, const Field::Policies::key_type& which) {
+    const auto found = row.find(which);
+    return found == row.end() ? Field::People() : found->second;
+  };
+  for (const auto& item : all) {
+    if (!has_arm(*item.second.begin()->second, arm)) continue;
+    const Field::People a = people(*low, item.first), b = people(*high, item.first);
+    for (const std::string& participant : participants(a, b)) {
+      ++wanted;
+      const CellResult *first = finished(a, participant), *second = finished(b, participant);
+      if (first && second) pairs.add(item.first.first, pair_policies(*first, *second, arm), participant);
+    }
   }
   if (pairs.policies() < wanted || wanted == 0) {
     d.reason = fmt::format("{} of {} policies finished in both rows", pairs.policies(), wanted);
@@ -69,6 +89,7 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const s
   }
   d.scenarios = pairs.scenarios();
   d.policies = pairs.policies();
+  d.participants = pairs.participants();
   d.change =
       pairs.change(fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, above, below, arm, n));
   return d;
@@ -141,8 +162,10 @@ std::vector<std::string> shifted_baselines(const Field& field, const std::string
   for (const std::string& row : rows)
     if (const Field::Policies* policies = field.find(row, n)) {
       PairedRow itself;
-      for (const auto& [which, cell] : *policies)
-        if (!cell->failed && has_arm(*cell, arm)) itself.add(which.first, pair_policies(*cell, *cell, arm));
+      for (const auto& [which, people] : *policies)
+        for (const auto& [participant, cell] : people)
+          if (!cell->failed && has_arm(*cell, arm))
+            itself.add(which.first, pair_policies(*cell, *cell, arm), participant);
       if (itself.policies() > 0) success.push_back(itself.first_success());
     }
   if (success.size() < rows.size()) return {"gcbc_dart", rows[0], rows[1]};
@@ -156,38 +179,96 @@ std::vector<std::string> unseen_arms(const Field& field) {
     bool seen = false;
     for (const auto& [row, by_number] : field.rows)
       for (const auto& [n, policies] : by_number)
-        for (const auto& [which, cell] : policies)
-          if (!cell->failed && has_arm(*cell, arm))
-            for (const PlayedEpisode& e : cell->episodes.at(arm)) seen = seen || cell->commands[e.command].seen;
+        for (const auto& [which, people] : policies)
+          for (const auto& [participant, cell] : people)
+            if (!cell->failed && has_arm(*cell, arm))
+              for (const PlayedEpisode& e : cell->episodes.at(arm)) seen = seen || cell->commands[e.command].seen;
     if (!seen) unseen.push_back(arm);
   }
   return unseen;
 }
 
-// Rows of the method `human` whose every Selection is a person's.
-std::vector<std::string> people(const Field& field, int n) {
-  std::vector<std::string> rows;
-  for (const auto& [row, by_number] : field.rows) {
-    const Field::Policies* policies = field.find(row, n);
-    if (row.substr(0, row.find('+')) != "human" || !policies) continue;
-    bool real = true;
-    for (const auto& [which, cell] : *policies)
-      for (const CommandResult& command : cell->commands)
-        real = real && !cell->failed && command.selection.value("provenance", "") == "human";
-    if (real) rows.push_back(row);
-  }
-  return rows;
+bool from_people(const CellResult& cell) {
+  return std::all_of(cell.commands.begin(), cell.commands.end(), [&cell](const CommandResult& command) {
+    return cell.failed || command.selection.value("provenance", "") == "human";
+  });
+}
+
+// Whether people made every Selection of the row human.
+bool people_selected(const Field& field, int n) {
+  const Field::Policies* policies = field.find("human", n);
+  return policies && std::all_of(policies->begin(), policies->end(), [](const auto& item) {
+           return std::all_of(item.second.begin(), item.second.end(),
+                              [](const auto& one) { return from_people(*one.second); });
+         });
 }
 
 void test_equivalence(Claim& claim, const Field& field) {
   constexpr int n = 50;
-  for (const std::string& row : people(field, n))
+  if (people_selected(field, n))
     for (const std::string& arm : field.arms) {
-      claim.differences.push_back(measured(field, claim.id, "lga", row, arm, n));
+      claim.differences.push_back(measured(field, claim.id, "lga", "human", arm, n));
       judge_equivalence(claim.differences.back());
     }
   if (claim.differences.empty()) claim.reason = "no human data at 50 demonstrations";
   conclude(claim);
+}
+
+// Of each participant, the seconds that each command took; one command has one answer, however many cells it is in.
+using Seconds = std::map<std::string, std::map<std::pair<std::string, std::string>, double>>;
+Seconds seconds_of(const Field& field, const std::string& method) {
+  Seconds seconds;
+  for (const auto& [row, by_number] : field.rows) {
+    if (row.substr(0, row.find('+')) != method) continue;  // what is learned from an answer takes the person no time
+    for (const auto& [n, policies] : by_number)
+      for (const auto& [which, people] : policies)
+        for (const auto& [participant, cell] : people)
+          if (!participant.empty() && !cell->failed)
+            for (const CommandResult& command : cell->commands)
+              seconds[participant][{which.first, command.utterance}] =
+                  command.selection.at("cost").at("human_seconds").get<double>();
+  }
+  return seconds;
+}
+
+// Seconds a command, of each participant on the mean over those that they answered in both ways.
+void test_seconds(Claim& claim, const Field& field) {
+  const Seconds human = seconds_of(field, "human"), edited = seconds_of(field, "lga_hill");
+  ClaimedDifference d;
+  d.above = "human", d.below = "lga_hill", d.unit = "seconds";
+  std::vector<double> differences;
+  std::set<std::string> scenarios;
+  for (const auto& [participant, commands] : human) {
+    const auto other = edited.find(participant);
+    if (other == edited.end()) continue;
+    double sum = 0;
+    int both = 0;
+    for (const auto& [command, s] : commands)
+      if (const auto same = other->second.find(command); same != other->second.end()) {
+        sum += s - same->second;
+        ++both;
+        scenarios.insert(command.first);
+      }
+    if (both > 0) differences.push_back(sum / both);
+  }
+  if (human.empty() || edited.empty()) {
+    claim.reason = "no human data";
+  } else {
+    d.participants = static_cast<int>(differences.size());
+    d.scenarios = static_cast<int>(scenarios.size());
+    if (differences.size() < 2)
+      d.reason = fmt::format("{} participants answered a command in both ways, expected 2 or more", differences.size());
+    else
+      d.change = paired_t(differences);
+    claim.differences = {d};
+    judge_orderings(claim.differences);
+  }
+  conclude(claim);
+}
+
+// All but the first, which is what the others are compared with: nothing shifts there.
+std::vector<std::string> shifted_arms(const Field& field) {
+  return field.arms.empty() ? field.arms : std::vector<std::string>(field.arms.begin() + 1, field.arms.end());
 }
 
 std::vector<Claim> test_field(const std::string& suite, const Field& field) {
@@ -196,7 +277,8 @@ std::vector<Claim> test_field(const std::string& suite, const Field& field) {
   };
   Claim c1 = claim("C1", "LGA above GCBC-SEG and GCBC-DART, at every number of demonstrations"),
         c2 = claim("C2", "LGA within 0.10 of Human at 50 demonstrations"),
-        c3 = claim("C3", "LGA and LGA-S above GCBC-DART and the better LGA-L under covariate shift, in each arm"),
+        c3 = claim("C3",
+                   "LGA and LGA-S above GCBC-DART and the better LGA-L under covariate shift, in each shifted arm"),
         c4 = claim("C4", "LGA and LGA-S above GCBC-DART and the better LGA-L on unseen commands"),
         c5 = claim("C5", "LGA-HILL takes people fewer seconds than Human");
   const Baselines shifted = [&field](const std::string& arm, int n) { return shifted_baselines(field, arm, n); };
@@ -210,9 +292,9 @@ std::vector<Claim> test_field(const std::string& suite, const Field& field) {
       return std::vector<std::string>{"gcbc_seg", "gcbc_dart"};
     });
   if (needs(c2, "q1")) test_equivalence(c2, field);
-  if (needs(c3, "q2")) test_orderings(c3, field, field.arms, {"lga", "lga_s"}, shifted);
+  if (needs(c3, "q2")) test_orderings(c3, field, shifted_arms(field), {"lga", "lga_s"}, shifted);
   if (needs(c4, "q3")) test_orderings(c4, field, unseen_arms(field), {"lga", "lga_s"}, shifted);
-  c5.reason = "no human data";
+  test_seconds(c5, field);
   return {c1, c2, c3, c4, c5};
 }
 
@@ -233,7 +315,7 @@ std::vector<Claim> test_claims(const RunResults& run) {
     for (const std::string& arm : cell.arms)
       if (std::find(field.arms.begin(), field.arms.end(), arm) == field.arms.end()) field.arms.push_back(arm);
     field.demonstrations.insert(cell.demonstrations);
-    field.rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}] = &cell;
+    field.rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}][cell.participant] = &cell;
   }
   std::vector<Claim> claims;
   for (const auto& item : fields)

@@ -14,15 +14,17 @@ enum class Verdict { held, reversed, undecided, not_tested };
 /// "not tested", for readers.
 std::string to_string(Verdict verdict);
 
-/// Two rows on the mean over scenarios, paired by scenario, training seed and scene.
+/// Two rows on the mean over scenarios, paired by scenario, training seed, participant and scene; or the seconds that
+/// participants took for both.
 struct ClaimedDifference {
-  std::string above, below, arm;  // rows; the change is above minus below
+  std::string above, below, arm;  // rows; the change is above minus below; no arm for seconds
+  std::string unit = "success";   // or "seconds", a participant
   int demonstrations = 0;
   Verdict verdict = Verdict::not_tested;
   std::string reason;            // why not tested; else empty
   std::optional<Change> change;  // none where not tested
   double p_holm = 1;             // over the rows compared for this claim in this arm at this number of demonstrations
-  int scenarios = 0, policies = 0;
+  int scenarios = 0, policies = 0, participants = 0;
 };
 
 /// A claim on one (layout, engine).
@@ -35,13 +37,18 @@ struct Claim {
 
 /// C1 to C5 for every (layout, engine) of the run. An ordering is held if the 95 % interval of the difference is above
 /// 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if the interval lies within the margin,
-/// reversed if outside. A claim is what the worst of its differences is: reversed, undecided, not tested, held.
-/// Deterministic. @throws InputError where cells of the run did not play the same scenes.
+/// reversed if outside; C5 is Student's paired t test over participants. A claim is what the worst of its differences
+/// is: reversed, undecided, not tested, held. Deterministic. @throws InputError where cells of the run did not play the
+/// same scenes.
 std::vector<Claim> test_claims(const RunResults& run);
 
 /// claims.json (docs/formats), the terminal's table, and the section of report.md.
 Json to_json(const std::string& suite, const std::vector<Claim>& claims);
 std::string claims_text(const std::string& suite, const std::vector<Claim>& claims);
+/// "+0.90 [+0.80, +0.97]", "+100.1 s [+90.0, +110.2]". @pre it was tested
+std::string claimed_text(const ClaimedDifference& difference);
+/// "6 policies, 2 scenarios": what it stands on.
+std::string sample_text(const ClaimedDifference& difference);
 std::string claims_markdown(const std::vector<Claim>& claims);
 
 }  // namespace lgabench::report

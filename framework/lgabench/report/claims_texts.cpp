@@ -13,16 +13,32 @@ std::string rows_text(const ClaimedDifference& d) {
   return fmt::format("{} − {}", display_name(d.above), display_name(d.below));
 }
 
-std::string sample_text(const ClaimedDifference& d) {
-  return fmt::format("{} {}, {} {}", d.policies, d.policies == 1 ? "policy" : "policies", d.scenarios,
-                     d.scenarios == 1 ? "scenario" : "scenarios");
+// Seconds do not depend on demonstrations.
+std::string demonstrations_text(const ClaimedDifference& d, const char* prefix) {
+  return d.unit == "seconds" ? "" : fmt::format("{}{}", prefix, d.demonstrations);
 }
+
+std::string counted(int n, const char* one, const char* more) { return fmt::format("{} {}", n, n == 1 ? one : more); }
 
 std::string with_reason(Verdict verdict, const std::string& reason) {
   return reason.empty() ? to_string(verdict) : fmt::format("{}: {}", to_string(verdict), reason);
 }
 
 }  // namespace
+
+std::string sample_text(const ClaimedDifference& d) {
+  std::vector<std::string> parts;
+  if (d.participants > 0) parts.push_back(counted(d.participants, "participant", "participants"));
+  if (d.policies > 0) parts.push_back(counted(d.policies, "policy", "policies"));
+  parts.push_back(counted(d.scenarios, "scenario", "scenarios"));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string claimed_text(const ClaimedDifference& d) {
+  return d.unit == "seconds" ? fmt::format("{:+.1f} s [{:+.1f}, {:+.1f}]", d.change->difference, d.change->interval.low,
+                                           d.change->interval.high)
+                             : change_text(*d.change);
+}
 
 Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
   Json all = Json::array();
@@ -34,6 +50,7 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
       differences.push_back({{"above", d.above},
                              {"below", d.below},
                              {"arm", d.arm},
+                             {"unit", d.unit},
                              {"demonstrations", d.demonstrations},
                              {"verdict", to_string(d.verdict)},
                              {"reason", d.reason},
@@ -43,7 +60,8 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
                              {"p", number(change.p)},
                              {"p_holm", number(d.p_holm)},
                              {"scenarios", d.scenarios},
-                             {"policies", d.policies}});
+                             {"policies", d.policies},
+                             {"participants", d.participants}});
     }
     all.push_back({{"claim", claim.id},
                    {"statement", claim.statement},
@@ -65,9 +83,9 @@ std::string claims_text(const std::string& suite, const std::vector<Claim>& clai
     field = here;
     text += fmt::format("{}  {}\n      {}\n", claim.id, claim.statement, with_reason(claim.verdict, claim.reason));
     for (const ClaimedDifference& d : claim.differences) {
-      text +=
-          fmt::format("      {:<10}  n={:<4} {:<10} {}", to_string(d.verdict), d.demonstrations, d.arm, rows_text(d));
-      text += d.change ? fmt::format("  {}  {} (Holm)  {}\n", change_text(*d.change), p_text(d.p_holm), sample_text(d))
+      text += fmt::format("      {:<10}  {:<6} {:<10} {}", to_string(d.verdict), demonstrations_text(d, "n="), d.arm,
+                          rows_text(d));
+      text += d.change ? fmt::format("  {}  {} (Holm)  {}\n", claimed_text(d), p_text(d.p_holm), sample_text(d))
                        : fmt::format("  {}\n", d.reason);
     }
   }
@@ -86,12 +104,13 @@ std::string claims_markdown(const std::vector<Claim>& claims) {
     for (const ClaimedDifference& d : claim.differences)
       if (d.change)
         details += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", claim.id, plain(claim.layout),
-                               plain(claim.engine), plain(d.arm), d.demonstrations, plain(rows_text(d)),
-                               change_text(*d.change), p_text(d.p_holm), sample_text(d), to_string(d.verdict));
+                               plain(claim.engine), plain(d.arm), demonstrations_text(d, ""), plain(rows_text(d)),
+                               claimed_text(d), p_text(d.p_holm), sample_text(d), to_string(d.verdict));
   }
   if (details.empty()) return text;
   return text +
-         "\nEach difference, on the mean over scenarios, paired by training seed and scene; p is Holm's over the rows "
+         "\nEach difference, on the mean over scenarios, paired by training seed, participant and scene; p is Holm's "
+         "over the rows "
          "compared in one arm at one number of demonstrations.\n\n"
          "| claim | layout | engine | arm | demonstrations | difference | | | from | verdict |\n"
          "| --- | --- | --- | --- | ---: | --- | --- | --- | --- | --- |\n" +

@@ -18,7 +18,7 @@ struct CellPair {
 };
 
 auto measures(const CellResult& c) {
-  return std::tuple(c.layout, c.engine, c.scenario, c.method, c.demonstrations, c.training_seed);
+  return std::tuple(c.layout, c.engine, c.scenario, c.method, c.demonstrations, c.training_seed, c.participant);
 }
 
 // Cells that finished in both runs; the others are counted.
@@ -72,7 +72,7 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
       row.arm = a.arms[arm];
       row.demonstrations = a.demonstrations;
       const PolicyPair policies = pair_policies(a, *pair.b, a.arms[arm]);
-      draft.policies.add(a.scenario, policies);
+      draft.policies.add(a.scenario, policies, a.participant);
       draft.p.push_back(mcnemar(policies.only_first, policies.only_second));
       draft.direction.push_back(policies.only_second - policies.only_first);
     }

@@ -11,7 +11,9 @@
 namespace lgabench::report {
 namespace {
 
-auto place(const CellResult& c) { return std::tuple(c.scenario, c.kind, c.method, c.demonstrations, c.training_seed); }
+auto place(const CellResult& c) {
+  return std::tuple(c.scenario, c.kind, c.method, c.participant, c.demonstrations, c.training_seed);
+}
 
 // Scenes and actions that were counted already: methods that select alike act alike.
 using Seen = std::set<std::pair<std::string, std::vector<double>>>;

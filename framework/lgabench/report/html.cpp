@@ -172,12 +172,12 @@ std::string embedded(const Json& json) {
 
 }  // namespace
 
-std::string html(const RunResults& run, const Summary& summary, const std::vector<EngineAgreement>& agreements,
-                 const PaperValues& paper, const Pictures& pictures) {
+std::string html(const RunResults& run, const Summary& summary, const std::vector<Claim>& tested,
+                 const std::vector<EngineAgreement>& agreements, const PaperValues& paper, const Pictures& pictures) {
   const fs::path installed = data_directory() / "page";
   const RowNumbers numbers(summary);
   const std::string body = what_was_run(run, summary, pictures) + success(summary, paper, numbers) +
-                           arms(summary, paper, numbers) + scenarios(summary, paper, numbers) +
+                           arms(summary, paper, numbers) + scenarios(summary, paper, numbers) + claims(tested) +
                            phi(run, summary, numbers) + failures(summary, numbers) + attribution(summary, numbers) +
                            engines(agreements, pictures) + times(run) + failed_cells(summary) + provenance(run);
   return filled(read_file(installed / "page.html"), {{"suite", escaped(run.suite)},

@@ -87,6 +87,7 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
     cells.push_back({{"cell", cell.key},
                      {"scenario", cell.scenario},
                      {"seed", cell.training_seed},
+                     {"participant", cell.participant},
                      {"commands", commands},
                      {"masks", masks},
                      {"arms", played}});

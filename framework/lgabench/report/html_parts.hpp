@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include <lgabench/report/claims.hpp>
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/pictures.hpp>
 #include <lgabench/report/summary.hpp>
@@ -47,6 +48,7 @@ std::string legend(const Table& table, const PaperValues& paper);
 std::string success(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
 std::string arms(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
 std::string scenarios(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
+std::string claims(const std::vector<Claim>& all);
 std::string phi(const RunResults& run, const Summary& summary, const RowNumbers& numbers);
 std::string failures(const Summary& summary, const RowNumbers& numbers);
 std::string attribution(const Summary& summary, const RowNumbers& numbers);

@@ -71,6 +71,7 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
                                          : phi_value(row, numbers, place(number), "{:.2f}"));
         }
       cells.push_back(phi_value(row, numbers, fmt::format("phi/{}/lm_queries", of.command), "{:.4g}"));
+      cells.push_back(phi_value(row, numbers, fmt::format("phi/{}/human_seconds", of.command), "{:.1f}"));
       cells.push_back(escaped(provenance_words(one.at("provenance"))));
       cells.push_back(escaped(one.at("source")));
       cells.push_back(asked_as == utterance || asked_as.empty() ? "as the command" : "“" + escaped(asked_as) + "”");
@@ -78,11 +79,12 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
     }
   }
   if (body.empty()) return "";
-  return section("phi", "The feature abstraction φ̂",
-                 table("What was selected, against the scenario’s true distribution; size: selected of true",
-                       {"scenario", "method", "command", "about", "types: precision", "recall", "size",
-                        "textures: precision", "recall", "size", "queries", "answered by", "source", "asked as"},
-                       body, true));
+  return section(
+      "phi", "The feature abstraction φ̂",
+      table("What was selected, against the scenario’s true distribution; size: selected of true",
+            {"scenario", "method", "command", "about", "types: precision", "recall", "size", "textures: precision",
+             "recall", "size", "queries", "a person’s seconds", "answered by", "source", "asked as"},
+            body, true));
 }
 
 std::string failures(const Summary& summary, const RowNumbers& numbers) {

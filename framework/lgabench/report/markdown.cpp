@@ -162,6 +162,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
         cells.push_back(count(numbers.value("size", Json())) + " of " + count(numbers.value("true_size", Json())));
       }
       cells.push_back(count(phi.at("lm_queries")));
+      cells.push_back(count(phi.at("human_seconds")));
       text += row_of(cells);
     }
     if (phi.at("asked_as") != phi.at("utterance"))
@@ -172,7 +173,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
   return "\n## The feature abstraction φ̂\n\nAgainst the scenario's true distribution: precision and recall of what was "
          "selected, and how many were selected of how many that are true.\n\n" +
          head_of({"scenario", "command", "method", "about", "answered by", "source", "types: precision", "recall",
-                  "selected", "textures: precision", "recall", "selected", "queries"},
+                  "selected", "textures: precision", "recall", "selected", "queries", "a person's seconds"},
                  6) +
          text + (wordings.empty() ? "" : "\nWhere the question was worded otherwise than the command:\n\n") +
          fmt::format("{}", fmt::join(wordings, ""));
@@ -262,9 +263,8 @@ constexpr const char* how_to_read =
     "\n## How to read the numbers\n\n"
     "- Success is the mean over scenarios of the mean over training seeds of the share of test episodes won.\n"
     "- Brackets hold a 95 % interval: Wilson's where the number stands on one policy; otherwise a percentile interval "
-    "from a cluster bootstrap over scenarios, then training seeds (10,000 times), nowhere narrower than Wilson's on "
-    "all "
-    "episodes. With few seeds or scenarios it is rough.\n"
+    "from a cluster bootstrap over scenarios, then training seeds (participants, where there are several; 10,000 "
+    "times), nowhere narrower than Wilson's on all episodes. With few seeds or scenarios it is rough.\n"
     "- A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired scene by "
     "scene. Its interval is the cluster bootstrap's, nowhere narrower than Bonett and Price's for paired proportions "
     "on all episodes.\n"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
+#include <algorithm>
 
 namespace lgabench::report {
 
@@ -28,13 +28,15 @@ PolicyPair pair_policies(const CellResult& first, const CellResult& second, cons
   return pair;
 }
 
-void PairedRow::add(const std::string& scenario, const PolicyPair& pair) {
+void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const std::string& participant) {
   const std::size_t at = index_.emplace(scenario, differences_.size()).first->second;
-  for (auto* clusters : {&first_, &second_, &differences_})
-    if (at == clusters->size()) clusters->emplace_back();
-  first_[at].push_back(static_cast<double>(pair.won_first) / pair.episodes);
-  second_[at].push_back(static_cast<double>(pair.won_second) / pair.episodes);
-  differences_[at].push_back(pair.difference());
+  for (auto* values : {&first_, &second_, &differences_})
+    if (at == values->size()) values->emplace_back();
+  first_[at].add(participant, static_cast<double>(pair.won_first) / pair.episodes);
+  second_[at].add(participant, static_cast<double>(pair.won_second) / pair.episodes);
+  differences_[at].add(participant, pair.difference());
+  if (!participant.empty()) participants_.insert(participant);
+  ++policies_;
   total_.episodes += pair.episodes;
   total_.won_first += pair.won_first;
   total_.won_second += pair.won_second;
@@ -43,13 +45,17 @@ void PairedRow::add(const std::string& scenario, const PolicyPair& pair) {
   total_.same_actions = total_.same_actions && pair.same_actions;
 }
 
-int PairedRow::policies() const {
-  return std::accumulate(differences_.begin(), differences_.end(), 0,
-                         [](int n, const Cluster& seeds) { return n + static_cast<int>(seeds.size()); });
+std::vector<Cluster> PairedRow::clusters(const std::vector<PolicyValues>& scenarios) {
+  std::vector<Cluster> all;
+  for (const PolicyValues& values : scenarios) all.push_back(values.cluster());
+  return all;
 }
 
 Change PairedRow::change(const std::string& name) const {
-  return paired_change(differences_, total_.only_first, total_.only_second, total_.episodes, name);
+  const int n = std::max(participants(), 1);
+  const auto each = [n](int count) { return (count + n - 1) / n; };
+  return paired_change(clusters(differences_), each(total_.only_first), each(total_.only_second), each(total_.episodes),
+                       name);
 }
 
 std::string change_text(const Change& change) {

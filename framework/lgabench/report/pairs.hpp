@@ -1,6 +1,7 @@
 // Policies that played the same scenes, paired episode by episode.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -22,23 +23,30 @@ struct PolicyPair {
 /// finished and have the arm
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm);
 
-/// Pairs of policies of one row of a table: scenarios, and training seeds within each.
+/// Pairs of policies of one row of a table: scenarios, and within each training seeds, or participants where a row has
+/// several.
 class PairedRow {
  public:
-  void add(const std::string& scenario, const PolicyPair& pair);
+  void add(const std::string& scenario, const PolicyPair& pair, const std::string& participant = "");
 
   const PolicyPair& total() const { return total_; }  // of all pairs
   int scenarios() const { return static_cast<int>(differences_.size()); }
-  int policies() const;
-  /// Mean over scenarios of the mean over training seeds of the policies' success.
-  double first_success() const { return cluster_mean(first_); }
-  double second_success() const { return cluster_mean(second_); }
-  /// paired_change of second minus first; `name` seeds its random stream. @pre not empty
+  int policies() const { return policies_; }
+  int participants() const { return static_cast<int>(participants_.size()); }
+  /// Mean over scenarios of the mean over training seeds (participants) of the policies' success.
+  double first_success() const { return cluster_mean(clusters(first_)); }
+  double second_success() const { return cluster_mean(clusters(second_)); }
+  /// paired_change of second minus first, with the episodes of one participant on the mean, as the other row's policy
+  /// may be the same in all their pairs; `name` seeds its random stream. @pre not empty
   Change change(const std::string& name) const;
 
  private:
+  static std::vector<Cluster> clusters(const std::vector<PolicyValues>& scenarios);
+
   std::map<std::string, std::size_t> index_;  // of each scenario in what follows
-  std::vector<Cluster> first_, second_, differences_;
+  std::vector<PolicyValues> first_, second_, differences_;
+  std::set<std::string> participants_;
+  int policies_ = 0;
   PolicyPair total_;
 };
 

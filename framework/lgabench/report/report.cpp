@@ -34,8 +34,8 @@ Report write_report(const fs::path& run) {
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, report.claims, report.agreements, paper, figures));
-  write_file(run / "report.html",
-             html(results, summary, report.agreements, paper, draw_pictures(run, results, report.agreements)));
+  write_file(run / "report.html", html(results, summary, report.claims, report.agreements, paper,
+                                       draw_pictures(run, results, report.agreements)));
   return report;
 }
 

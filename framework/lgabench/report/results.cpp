@@ -101,6 +101,7 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.kind = method.at("kind").string();
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
+  if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();
   cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
 }
 
@@ -173,7 +174,8 @@ RunResults read_run(const fs::path& run) {
     order.emplace(results.cells.back().scenario, order.size());
   }
   const auto place = [&order](const CellResult& c) {
-    return std::tuple(c.layout, c.engine, order.at(c.scenario), c.kind, c.method, c.demonstrations, c.training_seed);
+    return std::tuple(c.layout, c.engine, order.at(c.scenario), c.kind, c.method, c.demonstrations, c.training_seed,
+                      c.participant);
   };
   std::sort(results.cells.begin(), results.cells.end(),
             [&place](const CellResult& a, const CellResult& b) { return place(a) < place(b); });
@@ -183,7 +185,7 @@ RunResults read_run(const fs::path& run) {
   if (twice != results.cells.end())
     throw InputError(
         fmt::format("{}: /cells: {} and {} measure the same (scenario, layout, engine, method, "
-                    "demonstrations, training seed), expected one of them",
+                    "demonstrations, training seed, participant), expected one of them",
                     run_file.string(), twice->key, (twice + 1)->key));
   return results;
 }

@@ -35,6 +35,7 @@ struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
+  std::string participant;  // whose answers it stands on; empty where nobody was asked
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
   bool failed = false;
@@ -48,11 +49,12 @@ struct CellResult {
 
 struct RunResults {
   std::string suite;
-  Json json;                      // run.json
-  std::vector<CellResult> cells;  // by layout, engine, scenario (in run.json's order), method, demonstrations, seed
-  bool smoke = false;             // stamped as not for the leaderboard
-  int not_run = 0;                // asked for by run.json, not there
-  int foreign = 0;                // there, not asked for by run.json: ignored
+  Json json;  // run.json
+  std::vector<CellResult>
+      cells;           // by layout, engine, scenario (run.json's order), method, demonstrations, seed, participant
+  bool smoke = false;  // stamped as not for the leaderboard
+  int not_run = 0;     // asked for by run.json, not there
+  int foreign = 0;     // there, not asked for by run.json: ignored
 };
 
 /// Every word that `failure` may be on an episode that was not won, in a fixed order.

@@ -93,6 +93,13 @@ Interval paired_difference(int only_first, int only_second, int episodes) {
   return {std::max(-1.0, centre - half), std::min(1.0, centre + half)};
 }
 
+Cluster PolicyValues::cluster() const {
+  if (values_.size() == 1) return values_.begin()->second;
+  Cluster means;
+  for (const auto& item : values_) means.push_back(mean(item.second));
+  return means;
+}
+
 double cluster_mean(const std::vector<Cluster>& clusters) {
   double sum = 0;
   for (const Cluster& rates : clusters) sum += mean(rates);

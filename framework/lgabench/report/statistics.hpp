@@ -1,5 +1,7 @@
 // Intervals and tests for success rates.
 #pragma once
+#include <map>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,6 +26,18 @@ Interval paired_difference(int only_first, int only_second, int episodes);
 
 /// Success rates (or differences of them) of the policies of one scenario, one a training seed.
 using Cluster = std::vector<double>;
+
+/// Values of one scenario's policies, by the participant whose answers each stands on ("" where nobody was asked).
+class PolicyValues {
+ public:
+  void add(const std::string& participant, double value) { values_[participant].push_back(value); }
+  /// What the bootstrap draws from: the participants, each with the mean over their training seeds, where there are
+  /// several; else the policies. @pre not empty
+  Cluster cluster() const;
+
+ private:
+  std::map<std::string, Cluster> values_;
+};
 
 /// Mean over clusters of the mean within each. @pre no cluster is empty, nor the list
 double cluster_mean(const std::vector<Cluster>& clusters);

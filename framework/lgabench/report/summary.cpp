@@ -13,6 +13,7 @@ namespace {
 
 // What one cell adds to a row: a policy on one arm.
 struct Policy {
+  std::string participant;
   int episodes = 0, successes = 0;
   // Beside the first arm, scene by scene:
   bool paired = false;                // the arms give the same commands
@@ -45,6 +46,7 @@ void pair(Policy& policy, const Episodes& first, const Episodes& here) {
 struct Draft {
   Row row;
   std::vector<std::vector<Policy>> scenarios;
+  std::set<std::string> participants;
 };
 
 void add_new(std::vector<std::string>& all, const std::string& one) {
@@ -75,6 +77,21 @@ std::string words_at(const std::vector<Json>& all, const Json::json_pointer& pat
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
+// Who selected: "gpt-4, edited by 3 participants". People are counted, not listed.
+std::string source_of(const std::vector<Json>& selections) {
+  std::map<std::string, std::set<std::string>> people;  // by what stands before "participant ID"
+  for (const Json& one : selections)
+    if (one.value("provenance", "") == "human") {
+      const std::string source = one.value("source", "");
+      people[source.substr(0, source.rfind("participant "))].insert(source);
+    }
+  if (people.empty()) return words_at(selections, "/source"_json_pointer);
+  std::vector<std::string> words;
+  for (const auto& [before, sources] : people)
+    words.push_back(sources.size() == 1 ? *sources.begin() : fmt::format("{}{} participants", before, sources.size()));
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
 // Provenance, cost and quality of a row's Selections for one command; null if none of its cells selects.
 Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
   std::vector<Json> selections, qualities;
@@ -94,9 +111,10 @@ Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
   return {{"utterance", cells.front()->commands[command].utterance},
           {"seen", cells.front()->commands[command].seen},
           {"provenance", words_at(selections, "/provenance"_json_pointer)},
-          {"source", words_at(selections, "/source"_json_pointer)},
+          {"source", source_of(selections)},
           {"asked_as", words_at(selections, "/asked_as"_json_pointer)},
           {"lm_queries", mean_at(selections, "/cost/lm_queries"_json_pointer)},
+          {"human_seconds", mean_at(selections, "/cost/human_seconds"_json_pointer)},
           {"quality", quality}};
 }
 
@@ -124,17 +142,17 @@ void estimate(Draft& draft, const std::string& first_arm) {
   all.paired = all.same_actions = true;
   for (const auto& policies : draft.scenarios) {
     if (policies.empty()) continue;
-    Cluster rate, difference;
+    PolicyValues rate, difference;
     for (const Policy& p : policies) {
-      rate.push_back(p.rate());
-      difference.push_back(p.difference());
+      rate.add(p.participant, p.rate());
+      difference.add(p.participant, p.difference());
       all.paired = all.paired && p.paired;
       all.same_actions = all.same_actions && p.same_actions;
       all.only_first += p.only_first;
       all.only_here += p.only_here;
     }
-    rates.push_back(std::move(rate));
-    differences.push_back(std::move(difference));
+    rates.push_back(rate.cluster());
+    differences.push_back(difference.cluster());
   }
   if (rates.empty()) return;
   Row& row = draft.row;
@@ -146,7 +164,7 @@ void estimate(Draft& draft, const std::string& first_arm) {
   row.shift = Shift{first_arm, change.difference, change.interval, all.same_actions};
 }
 
-// The row of `cells`: all seeds of one (scenario, method, demonstrations).
+// The row of `cells`: all seeds and participants of one (scenario, method, demonstrations).
 Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::string& arm,
                      const std::string& first_arm) {
   const CellResult& first = *cells.front();
@@ -161,6 +179,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.demonstrations = first.demonstrations;
   row.phi = phi_of(cells, arm);
   auto& policies = draft.scenarios.emplace_back();
+  std::set<long long> seeds;
   for (const CellResult* cell : cells) {
     if (cell->failed) {
       if (cell->fault == "host") row.n_error += cell->episodes_per_arm;
@@ -168,17 +187,21 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
     }
     const Episodes& episodes = cell->episodes.at(arm);
     Policy policy = played(episodes);
+    policy.participant = cell->participant;
+    if (!cell->participant.empty()) draft.participants.insert(cell->participant);
+    seeds.insert(cell->training_seed);
     if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
       pair(policy, control->second, episodes);
     for (const PlayedEpisode& e : episodes) {
       if (!e.success) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
     }
-    ++row.seeds;
     row.episodes += policy.episodes;
     row.successes += policy.successes;
     policies.push_back(policy);
   }
+  row.seeds = static_cast<int>(seeds.size());
+  row.participants = static_cast<int>(draft.participants.size());
   if (policies.size() < cells.size()) row.marks.emplace_back("incomplete");
   estimate(draft, first_arm);
   return draft;
@@ -207,7 +230,9 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
     for (const auto& [to, n] : draft->row.attribution) row.attribution[to] += n;
     complete = complete && !draft->row.marked("incomplete");
     mean.scenarios.push_back(draft->scenarios.front());
+    mean.participants.insert(draft->participants.begin(), draft->participants.end());
   }
+  row.participants = static_cast<int>(mean.participants.size());
   if (!complete) row.marks.emplace_back("incomplete");
   estimate(mean, first_arm);
   return row;

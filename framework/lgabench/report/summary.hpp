@@ -26,7 +26,9 @@ struct Row {
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
   int seeds = 0, episodes = 0, successes = 0;
-  std::optional<double> success;  // mean over scenarios of the mean over training seeds; none without episodes
+  int participants = 0;           // whose answers the row stands on; 0 where nobody was asked
+  std::optional<double> success;  // mean over scenarios of the mean over training seeds (participants, where there are
+                                  // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
   std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures laid to each

@@ -28,6 +28,7 @@ Json to_json(const Summary& summary) {
                       {"demonstrations", row.demonstrations},
                       {"arm", row.arm},
                       {"seeds", row.seeds},
+                      {"participants", row.participants},
                       {"episodes", row.episodes},
                       {"successes", row.successes},
                       {"success", row.success ? Json(*row.success) : Json()},
@@ -55,7 +56,8 @@ std::string to_csv(const Summary& summary) {
 
   const std::vector<std::string> words = failure_words();
   std::string csv = fmt::format(
-      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,episodes,successes,success,low,high,"
+      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,success,low,"
+      "high,"
       "against,difference,difference_low,difference_high,same_actions,n_error,marks,{},{}\n",
       fmt::join(attributions, ","), fmt::join(words, ","));
   for (const Table& table : summary.tables)
@@ -63,9 +65,9 @@ std::string to_csv(const Summary& summary) {
       const bool known = row.success.has_value();
       const bool shifted = row.shift.has_value();
       const Shift shift = row.shift.value_or(Shift());
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
+      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
                          quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations,
-                         quoted(row.arm), row.seeds, row.episodes, row.successes,
+                         quoted(row.arm), row.seeds, row.participants, row.episodes, row.successes,
                          number(known, row.success.value_or(0)), number(known, row.interval.low),
                          number(known, row.interval.high), quoted(shift.against), number(shifted, shift.difference),
                          number(shifted, shift.interval.low), number(shifted, shift.interval.high),

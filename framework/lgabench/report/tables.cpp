@@ -64,8 +64,9 @@ std::string shift_text(const Row* row) {
 
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   bool not_learned = false, incomplete = false;
-  std::set<std::string> same_as;                 // arms
-  std::map<std::string, std::string> no_people;  // method -> provenance, where that has to be said
+  std::set<std::string> same_as;              // arms
+  std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
+  std::set<std::string> models;               // behind cassettes
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       not_learned = not_learned || row.marked("baseline_not_learned");
@@ -73,8 +74,13 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
       if (acts_the_same(row)) same_as.insert(row.shift->against);
       for (const Json& phi : row.phi) {
         const std::string provenance = phi.at("provenance");
-        if (provenance == "truth" || provenance == "simulated_edit") no_people[row.method] = provenance;
+        if (provenance == "truth" || provenance == "simulated_edit") people[row.method] = provenance_words(provenance);
+        if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
       }
+      if (row.is_mean() && row.participants > 0)
+        people[row.method] =
+            fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+                        row.method.rfind("lga_hill", 0) == 0 ? ", who edited a language model's φ̂" : "");
     }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
@@ -88,8 +94,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   if (incomplete) lines.emplace_back("‡ incomplete: a cell failed, or the mean lacks a scenario.");
   for (const std::string& arm : same_as)
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
-  for (const auto& [method, provenance] : no_people)
-    lines.push_back(fmt::format("{}: {}.", display_name(method), provenance_words(provenance)));
+  for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
+  for (const std::string& model : models)
+    lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   return lines;
 }
 

@@ -33,8 +33,8 @@ std::string success_text(const Row* row);
 /// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
 std::string shift_text(const Row* row);
 
-/// What a reader of the tables must know, one line each: what †, ‡ and = say, whose Selections are no measurement of
-/// people, cells that have not run, that the run is not for the leaderboard.
+/// What a reader of the tables must know, one line each: what †, ‡ and = say, how many people made Selections or that
+/// none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
 /// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.

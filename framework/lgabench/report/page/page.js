@@ -86,8 +86,10 @@ function arrow(action) {
     `<circle cx="${x0}" cy="${y0}" r="3.5" fill="#fff" stroke="#000" stroke-width="1.5"/></g>`;
 }
 
+const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`;
+
 function card(e) {
-  const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}`;
+  const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
   const told = `<b>${e.failure}</b>${e.attribution ? `, laid to the ${e.attribution}` : ""}`;
   const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
@@ -119,7 +121,7 @@ function show(row) {
     (failed.length > seen.length ? `; ${seen.length} of these with a picture on this page` : "") +
     ". The arrow is the action, from where it takes hold to where it lets go.</p>";
   if (seen.length) body.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
-  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed, e.index, e.command, e.failure || "won", e.attribution]
+  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "won", e.attribution]
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
   body.append(growing([...failed, ...all.filter((e) => !e.failure)], 100, (some) =>
     `<div class="frame"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +

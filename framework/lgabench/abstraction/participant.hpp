@@ -1,0 +1,55 @@
+// What a person selected in a study, from their file (docs/formats: participant.schema.json).
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/language_model.hpp>
+
+namespace lgabench {
+
+/// A participant's file, read and checked.
+struct Participant {
+  /// For one command: a Selection made from scratch, and one that began as a language model's proposal.
+  struct Answer {
+    std::optional<Selection> specified, edited;  // provenance human, with seconds; distributions in the space's order
+    Selection proposal;                          // what was edited
+  };
+
+  std::string id;                                                 // a pseudonym
+  std::string sha256;                                             // of the file
+  std::map<std::pair<std::string, std::string>, Answer> answers;  // by scenario (its answers_of) and utterance
+
+  /// nullptr where the participant was not asked.
+  const Answer* find(const Scenario& scenario, const std::string& utterance) const;
+  /// Every command of the scenario was answered so: from scratch, or by editing.
+  bool specified_all(const Scenario& scenario) const;
+  bool edited_all(const Scenario& scenario) const;
+};
+
+/// @throws InputError with file and place: also for a command that no scenario has, and where consent was not given.
+Participant read_participant(const std::filesystem::path& file);
+
+/// One person's answers in place of the truth.
+class ParticipantAsHuman : public HumanAnswers {
+ public:
+  ParticipantAsHuman(Participant participant, Scenario scenario);
+
+  /// @throws InputError where the participant was not asked.
+  Selection specify(const Command& command) override;
+  /// Costs what the proposal cost and the person's seconds. @throws InputError where the participant was not asked, or
+  /// edited another proposal than this one: an edit says nothing about what the person would have made of it.
+  Selection edit(const Command& command, const Selection& proposal) override;
+
+ private:
+  const Participant::Answer& answer(const Command& command) const;
+  [[noreturn]] void refuse(const Command& command, const char* what) const;
+
+  Participant participant_;
+  Scenario scenario_;
+};
+
+}  // namespace lgabench

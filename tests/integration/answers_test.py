@@ -1,0 +1,245 @@
+"""Answers that people bring along: a cassette of a language model, files of participants.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 answers_test.py Cassettes
+"""
+import hashlib
+import http.server
+import json
+import re
+import shlex
+import threading
+import unittest
+
+from case import BUILD, Case
+
+DATA = BUILD / "share/lgabench"
+SECRET = "sk-secret-1234567890"
+RUN = ["--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "2", "--set", "lga.epochs=2"]
+
+
+class Server(http.server.ThreadingHTTPServer):
+    """A chat server on loopback that says yes to the candidates `yes`, to everything else no."""
+    daemon_threads = True
+
+    def __init__(self, yes):
+        super().__init__(("127.0.0.1", 0), Handler)
+        self.yes, self.asked = yes, []
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    def do_POST(self):
+        request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+        question = request["messages"][1]["content"]
+        self.server.asked.append(question)
+        candidate = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)[1]
+        text = "Final answer: " + ("yes" if candidate in self.server.yes else "no")
+        body = json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop"}],
+                           "usage": {"total_tokens": 9}}).encode()
+        self.send_response(200)
+        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, *_):
+        pass
+
+
+class Cassettes(Case):
+    def setUp(self):
+        super().setUp()
+        suite = json.loads((DATA / "suites/q1.json").read_text())
+        suite.update(id="small", scenarios=["heart", "red_heart"], presets={})
+        self.suite = self.dir / "small.json"
+        self.suite.write_text(json.dumps(suite))
+        self.server = Server({"heart", "red", "dark red"})
+        self.addCleanup(self.server.server_close)
+        self.addCleanup(self.server.shutdown)
+
+    def ask(self, *more, **options):
+        self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{self.server.server_port}/v1", OPENAI_API_KEY=SECRET)
+        return self.call("select", "--suite", self.suite, "--answers", "openai", "--model", "made-up-1", "--cassette",
+                         "tape.jsonl", *more, **options)
+
+    def test_a_suite_is_asked_once_and_played_without_a_server(self):
+        # The first command fits; the second would take more than is left, and goes on where the first ended.
+        self.assertIn("takes 112 queries, expected no more than 88", self.ask("--max-queries", "200", expect=2).stderr)
+        self.assertEqual(len(self.server.asked), 112)
+        run = ["run", self.suite, *RUN, "--out", "out", "--answers", "cassette:tape.jsonl"]
+        refused = self.call(*run, expect=2)
+        self.assertEqual(len(refused.stderr.splitlines()), 1, refused.stderr)
+        fill = re.search(r"expected replies of made-up-1 to \"Bring me the red heart.\", 112 of 112 are missing; to ask: "
+                         r"lgabench (select .*)$", refused.stderr)
+        self.assertFalse((self.dir / "out").exists())
+        self.call(*shlex.split(fill[1]))
+        self.assertEqual(len(self.server.asked), 224)
+        shown = self.ask("--json").stdout.splitlines()
+        self.assertEqual(len(self.server.asked), 224, "what is on the cassette is not asked again")
+        self.assertEqual([json.loads(line)["selection"]["provenance"] for line in shown], ["cassette"] * 2)
+
+        self.server.shutdown()
+        del self.environment["OPENAI_BASE_URL"], self.environment["OPENAI_API_KEY"]
+        table = self.call(*run).stdout
+        self.assertIn("made-up-1", table)
+        self.assert_matches_schemas("out")
+        tape = (self.dir / "tape.jsonl").read_bytes()
+        digest = hashlib.sha256(tape).hexdigest()
+        self.assertEqual({cell["answers"] for cell, _ in self.cells("out").values()}, {"cassette:" + digest})
+        self.assertEqual((self.dir / "out/answers" / (digest + ".jsonl")).read_bytes(), tape)
+        record = json.loads((self.dir / "out/run.json").read_text())
+        self.assertEqual(record["answers"], [{"file": "tape.jsonl", "model": "made-up-1", "name": digest + ".jsonl"}])
+        for path in (self.dir / "out").rglob("*"):
+            self.assertFalse(path.is_file() and SECRET.encode() in path.read_bytes(), path)
+        for key, (cell, _) in self.cells("out").items():
+            if cell["method"]["id"] == "lga":
+                selection, = json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"]
+                self.assertEqual(selection["selection"]["target"], {"object_types": ["heart"], "textures": ["red", "dark red"]})
+                self.assertEqual(selection["selection"]["source"], "made-up-1")
+                self.assertEqual(selection["selection"]["cost"]["lm_queries"], 112)
+
+        # The run holds what it stands on: it is verified, and merged, where the cassette is not.
+        (self.dir / "tape.jsonl").rename(self.dir / "elsewhere.jsonl")
+        self.assertIn("bit-identical", self.call("verify", "out", "--sample", "1").stdout)
+        self.call("merge", "merged", "out")
+        self.assertIn("bit-identical", self.call("verify", "merged", "--sample", "1").stdout)
+        self.assertIn("tape.jsonl: cannot be read", self.call(*run, expect=2).stderr)
+        kept = self.dir / "out/answers" / (digest + ".jsonl")
+        kept.write_bytes(kept.read_bytes().replace(b"Final answer: no", b"Final answer: yes", 1))
+        self.assertIn("does not have the bytes that its name says", self.call("verify", "out", expect=2).stderr)
+
+        # One answer that is another makes other cells.
+        (self.dir / "tape.jsonl").write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
+        self.assertIn("out: holds another run (answers", self.call(*run, expect=2).stderr)
+        self.call(*run[:-4], "--out", "edited", *run[-2:])
+        self.assertFalse(set(self.cells("edited")) & set(self.cells("out")))
+
+    def test_what_is_no_cassette_of_one_model_is_refused(self):
+        run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
+        self.assertIn("--answers: expected recorded, gpt4, claude or cassette:FILE", self.call(*run, "gpt5", expect=2).stderr)
+        (self.dir / "empty.jsonl").write_text("")
+        self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
+        line = {"key": "k", "request": {}, "reply": "Final answer: no", "tokens": 1, "seconds": 1.0}
+        (self.dir / "two.jsonl").write_text("".join(json.dumps(dict(line, model=m, key=m)) + "\n" for m in "ab"))
+        self.assertIn("it has those of a, b", self.call(*run, "cassette:two.jsonl", expect=2).stderr)
+        self.assertIn("expected a command", self.call("select", expect=2).stderr)
+
+
+class Humans(Case):
+    """Three people who are invented here, with what they would have answered."""
+    RUN = ["run", "q1", "--scenarios", "heart,red_heart", "--methods", "lga,lga_hill,human", "--demos", "10", "--seeds",
+           "0", "--episodes", "4", *(word for method in ("lga", "lga_hill", "human")
+                                     for word in ("--set", f"{method}.epochs=2"))]
+    # textures chosen for the red heart, and seconds from scratch and edited
+    PEOPLE = {"made-up-1": (["red"], 150, 50), "made-up-2": (["red", "dark red"], 160, 59),
+              "made-up-3": (["red", "red swirl"], 170, 71)}
+
+    def setUp(self):
+        super().setUp()
+        (self.dir / "people").mkdir()
+        self.proposals = {}
+        for scenario in ("heart", "red_heart"):
+            said = json.loads(self.call("select", scenario, "--json").stdout)
+            self.proposals[scenario] = said["utterance"], {"target": said["selection"]["target"]}
+        for person in self.PEOPLE:
+            self.write(person)
+
+    def write(self, person, **changes):
+        textures, specified_s, edited_s = self.PEOPLE[person]
+        answers = []
+        for scenario, (utterance, proposal) in self.proposals.items():
+            chosen = {"target": {"object_types": ["heart"], "textures": "ALL" if scenario == "heart" else textures}}
+            answers.append({"scenario": scenario, "command": utterance,
+                            "specified": {"selection": chosen, "seconds": specified_s},
+                            "edited": {"proposal": proposal, "proposed_by": "gpt-4", "selection": chosen,
+                                       "seconds": edited_s}})
+        (self.dir / "people" / (person + ".json")).write_text(json.dumps(dict({
+            "participant": person, "study": "invented for a test", "license": "CC0-1.0", "answers": answers,
+            "consent": {"given": True, "statement": "invented", "ethics": "none needed"}}, **changes)))
+
+    def test_a_cell_for_each_of_them(self):
+        stand_ins = self.call(*self.RUN, "--out", "without")
+        self.assertIn("Human epochs=2: true φ̂: an upper bound, no human data.", stand_ins.stdout)
+        table = self.call(*self.RUN, "--out", "out", "--humans", "people").stdout
+        self.assertIn("Human epochs=2: 3 participants.", table)
+        self.assertIn("LGA-HILL epochs=2: 3 participants, who edited a language model's φ̂.", table)
+        self.assertNotIn("no human data", table)
+        self.assert_matches_schemas("out")
+
+        found = {}
+        for key, (cell, status) in self.cells("out").items():
+            self.assertEqual(status["state"], "ok")
+            self.assertEqual("participant" in cell, cell["method"]["id"] in ("human", "lga_hill"))
+            if "participant" not in cell:
+                continue
+            person = cell["participant"]["id"]
+            file = (self.dir / "people" / (person + ".json")).read_bytes()
+            self.assertEqual(cell["participant"]["sha256"], hashlib.sha256(file).hexdigest())
+            self.assertEqual((self.dir / "out/answers" / (cell["participant"]["sha256"] + ".json")).read_bytes(), file)
+            command, = json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"]
+            found[cell["method"]["id"], cell["scenario"]["id"], person] = command["selection"]
+        self.assertEqual(len(found), 2 * 2 * 3)
+        for person, (textures, specified_s, edited_s) in self.PEOPLE.items():
+            for method, seconds, source in (("human", specified_s, f"participant {person}"),
+                                            ("lga_hill", edited_s, f"gpt-4, edited by participant {person}")):
+                selection = found[method, "red_heart", person]
+                self.assertEqual(selection["target"]["textures"], textures)
+                self.assertEqual(selection["provenance"], "human")
+                self.assertEqual(selection["source"], source)
+                self.assertEqual(selection["cost"]["human_seconds"], seconds)
+                self.assertEqual(selection["cost"]["lm_queries"], 112 if method == "lga_hill" else 0)
+
+        summary = json.loads((self.dir / "out/summary.json").read_text())
+        rows = {(row["method"].split("+")[0], row["scenario"]): row for row in summary["rows"]}
+        self.assertEqual([rows["human", s]["participants"] for s in ("heart", "(mean)")], [3, 3])
+        self.assertEqual((rows["human", "heart"]["seeds"], rows["human", "heart"]["episodes"]), (1, 12))
+        self.assertEqual(rows["human", "red_heart"]["phi"][0]["source"], "3 participants")
+        self.assertEqual(rows["lga_hill", "red_heart"]["phi"][0]["source"], "gpt-4, edited by 3 participants")
+        self.assertAlmostEqual(rows["human", "red_heart"]["phi"][0]["human_seconds"], 160)
+        claims = {claim["claim"]: claim for claim in json.loads((self.dir / "out/claims.json").read_text())["claims"]}
+        self.assertEqual(claims["C5"]["verdict"], "held")
+        self.assertAlmostEqual(claims["C5"]["differences"][0]["difference"], 100)
+        self.assertEqual(claims["C2"]["reason"], "no human data at 50 demonstrations")
+        self.assertIn("bit-identical", self.call("verify", "out", "--sample", "4", "--seed", "1").stdout)
+
+        # Who takes another texture is another cell; nobody else is.
+        self.PEOPLE = dict(self.PEOPLE, **{"made-up-2": (["red"], 160, 59)})
+        self.write("made-up-2")
+        self.call(*self.RUN, "--out", "edited", "--humans", "people")
+        changed = set(self.cells("out")) - set(self.cells("edited"))
+        self.assertEqual({self.cells("out")[key][0]["participant"]["id"] for key in changed}, {"made-up-2"})
+        self.assertEqual(len(changed), 4)
+
+    def test_who_was_not_asked_has_no_cell(self):
+        answers = json.loads((self.dir / "people/made-up-1.json").read_text())["answers"]
+        del answers[0]["edited"], answers[1]["specified"]
+        self.write("made-up-1", answers=answers)
+        table = self.call(*self.RUN, "--out", "out", "--humans", "people", "--no-reference").stdout
+        who = sorted((cell["method"]["id"], cell["scenario"]["id"], cell["participant"]["id"][-1])
+                     for cell, _ in self.cells("out").values() if "participant" in cell)
+        self.assertEqual(who, [("human", "heart", "1"), ("human", "heart", "2"), ("human", "heart", "3"),
+                               ("human", "red_heart", "2"), ("human", "red_heart", "3"),
+                               ("lga_hill", "heart", "2"), ("lga_hill", "heart", "3"),
+                               ("lga_hill", "red_heart", "1"), ("lga_hill", "red_heart", "2"), ("lga_hill", "red_heart", "3")])
+        for person in ("made-up-2", "made-up-3"):
+            (self.dir / "people" / (person + ".json")).unlink()
+        one = self.call(*self.RUN, "--out", "one", "--humans", "people", "--no-reference").stdout
+        self.assertRegex(one, r"Human epochs=2 .*‡")  # a scenario is missing from the mean
+        refused = self.call(*self.RUN[:2], "--scenarios", "letter", *self.RUN[4:], "--out", "none", "--humans", "people", expect=2)
+        self.assertIn("--humans: expected answers for lga_hill+epochs=2 in a scenario of this run", refused.stderr)
+
+    def test_what_was_edited_must_be_what_is_proposed(self):
+        proposal = self.proposals["red_heart"][1]
+        proposal["target"]["textures"].pop()
+        self.write("made-up-1")
+        self.call(*self.RUN, "--out", "out", "--humans", "people", expect=3)
+        (failed, status), = [(cell, status) for cell, status in self.cells("out").values() if status["state"] == "failed"]
+        self.assertEqual((failed["method"]["id"], failed["participant"]["id"]), ("lga_hill", "made-up-1"))
+        self.assertEqual(status["fault"], "host")
+        self.assertIn("edited another proposal than the language model of this run makes", status["reason"])
+        self.write("made-up-1", consent={"given": False, "statement": "-", "ethics": "-"})
+        self.assertIn("answers are used with consent alone", self.call(*self.RUN, "--humans", "people", expect=2).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
