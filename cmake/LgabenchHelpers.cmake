@@ -22,11 +22,11 @@ function(lgabench_install_package)
   include(CMakePackageConfigHelpers)
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lgabench)
   install(TARGETS lgabench_core lgabench_learning lgabench_openai EXPORT lgabenchTargets)
-  install(TARGETS lgabench_tabletop)  # the programs need it, plugins do not
+  install(TARGETS lgabench_tabletop lgabench_encoder)  # the programs need them, plugins do not
   install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
           FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"
-          PATTERN reader.hpp EXCLUDE
+          PATTERN reader.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE
           PATTERN cli EXCLUDE PATTERN harness EXCLUDE PATTERN report EXCLUDE
           PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
   # An SDK of another version is refused when a plugin is read; CMake may say so first.

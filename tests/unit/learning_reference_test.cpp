@@ -3,7 +3,9 @@
 #include <torch/torch.h>
 
 #include <cmath>
+#include <numeric>
 
+#include <lgabench/core/json.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/network.hpp>
 
@@ -11,28 +13,6 @@ namespace lgabench {
 namespace {
 
 namespace nn = torch::nn;
-
-TEST(Adam, FollowsTorchsOverFiftySteps) {
-  const std::int64_t size = 1000;
-  RandomStream random("adam");
-  torch::Tensor reference = torch::empty({size});
-  for (std::int64_t i = 0; i < size; ++i) reference[i] = random.gaussian();
-  std::vector<float> ours(reference.data_ptr<float>(), reference.data_ptr<float>() + size);
-  reference.requires_grad_();
-  reference.mutable_grad() = torch::zeros({size});
-  torch::optim::Adam optimiser({reference}, torch::optim::AdamOptions(1e-3));
-  Adam adam(size, 1e-3);
-  for (int step = 0; step < 50; ++step) {
-    float* gradient = reference.mutable_grad().data_ptr<float>();
-    // From tiny to large, and some that vanish for a while.
-    for (int i = 0; i < size; ++i)
-      gradient[i] = (i + step) % 7 == 0 ? 0 : static_cast<float>(random.gaussian() * std::pow(10, i % 9 - 6));
-    adam.step(ours.data(), gradient);
-    optimiser.step();
-  }
-  for (std::int64_t i = 0; i < size; ++i)
-    EXPECT_NEAR(ours[static_cast<std::size_t>(i)], reference[i].item<float>(), 1e-6) << i;
-}
 
 // The same network from torch's modules, its parameters in the order of ours.
 struct Reference {
@@ -73,9 +53,13 @@ struct Reference {
       sizes.insert(sizes.begin(), s.rows);
       return torch::from_blob(const_cast<float*>(values.data()), sizes);
     };
+    // Ours has channels last.
     std::vector<torch::Tensor> features;
     for (std::size_t t = 0; t < towers.size(); ++t)
-      features.push_back(towers[t]->forward(tensor(s.pictures[t], {shape.channels[t], 36, 72})).flatten(1));
+      features.push_back(
+          towers[t]
+              ->forward(tensor(s.pictures[t], {36, 72, shape.channels[t]}).permute({0, 3, 1, 2}).contiguous())
+              .flatten(1));
     if (text) features.push_back(text(tensor(s.text, {384})));
     return head(torch::cat(features, 1));
   }
@@ -97,51 +81,194 @@ struct Case {
   std::size_t parameters;
 };
 
-class Networks : public testing::TestWithParam<Case> {};
+// Ours and torch's, with the same weights.
+class Pair {
+ public:
+  Pair(const NetworkShape& wanted, const Kernels& kernels)
+      : shape(wanted), ours(wanted, 3, kernels), torchs(wanted), optimiser_(torchs.parameters(), 1e-3) {
+    std::vector<float> first = ours.parameters();
+    float* begin = first.data();
+    for (torch::Tensor& p : torchs.parameters()) {
+      const torch::NoGradGuard no_grad;
+      p.copy_(torch::from_blob(begin, p.sizes()));
+      begin += p.numel();
+    }
+    EXPECT_EQ(begin, first.data() + first.size());
+  }
+
+  double torchs_backward(const Samples& samples) {
+    const torch::Tensor labels = torch::from_blob(const_cast<float*>(samples.labels.data()), {samples.rows, 12});
+    const torch::Tensor loss = (torchs.forward(shape, samples) - labels).norm(2, 1).mean();
+    optimiser_.zero_grad();
+    loss.backward();
+    return loss.item<double>();
+  }
+  void torchs_update() { optimiser_.step(); }
+
+  NetworkShape shape;
+  Network ours;
+  Reference torchs;
+
+ private:
+  torch::optim::Adam optimiser_;
+};
+
+std::vector<int> all_rows(const Samples& samples) {
+  std::vector<int> rows(static_cast<std::size_t>(samples.rows));
+  std::iota(rows.begin(), rows.end(), 0);
+  return rows;
+}
+
+class Networks : public testing::TestWithParam<std::tuple<Case, const Kernels*>> {};
 
 TEST_P(Networks, HaveTorchsOutputsLossAndGradients) {
-  const NetworkShape& shape = GetParam().shape;
-  Network network(shape, 3);
-  EXPECT_EQ(network.size(), GetParam().parameters);
+  const auto& [tested, kernels] = GetParam();
+  Pair pair(tested.shape, *kernels);
+  EXPECT_EQ(pair.ours.parameters().size(), tested.parameters);
 
-  Reference reference(shape);
-  std::size_t begin = 0;
-  for (torch::Tensor& p : reference.parameters()) {
-    const torch::NoGradGuard no_grad;
-    p.copy_(torch::from_blob(network.parameters() + begin, p.sizes()));
-    begin += static_cast<std::size_t>(p.numel());
-  }
-  ASSERT_EQ(begin, network.size());
-
-  const Samples samples = random_samples(shape, 10);
-  const torch::Tensor labels = torch::from_blob(const_cast<float*>(samples.labels.data()), {10, 12});
-  const torch::Tensor loss = (reference.forward(shape, samples) - labels).norm(2, 1).mean();
-  loss.backward();
-  EXPECT_NEAR(network.backward(samples, Loss::norm), loss.item<double>(), 1e-6);
-  begin = 0;
-  for (const torch::Tensor& p : reference.parameters()) {
-    const torch::Tensor ours = torch::from_blob(const_cast<float*>(network.gradients()) + begin, p.sizes());
-    const double scale = p.grad().abs().max().item<double>();
-    // A bias before batch normalisation has gradient 0 but for rounding.
-    EXPECT_LT((ours - p.grad()).abs().max().item<double>(), 1e-5 * scale + 1e-6) << "parameters from " << begin;
-    begin += static_cast<std::size_t>(p.numel());
+  // 10 as in training, 3 as where there are few, 25 so that buffers grow.
+  for (const int rows : {10, 3, 25}) {
+    const Samples samples = random_samples(tested.shape, rows);
+    EXPECT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples), 1e-6);
+    const std::vector<float> gradients = pair.ours.gradients();
+    const float* begin = gradients.data();
+    for (const torch::Tensor& p : pair.torchs.parameters()) {
+      const torch::Tensor ours = torch::from_blob(const_cast<float*>(begin), p.sizes());
+      const double scale = p.grad().abs().max().item<double>();
+      // A bias before batch normalisation has gradient 0 but for rounding.
+      EXPECT_LT((ours - p.grad()).abs().max().item<double>(), 1e-5 * scale + 1e-6)
+          << rows << " rows, parameters from " << begin - gradients.data();
+      begin += p.numel();
+    }
   }
 
-  for (auto& tower : reference.towers) tower->eval();  // running statistics, which the pass above moved
-  const torch::Tensor outputs = reference.forward(shape, samples).contiguous();
-  const std::vector<float> predicted = network.predict(samples);
+  for (auto& tower : pair.torchs.towers) tower->eval();  // running statistics, which the passes above moved
+  const Samples samples = random_samples(tested.shape, 10);
+  const torch::Tensor outputs = pair.torchs.forward(tested.shape, samples).contiguous();
+  const std::vector<float> predicted = pair.ours.predict(samples);
   ASSERT_EQ(predicted.size(), 120u);
   for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], outputs.data_ptr<float>()[i], 1e-5);
 }
 
+TEST_P(Networks, TakeTheRowsThatABatchNames) {
+  const auto& [tested, kernels] = GetParam();
+  Network network(tested.shape, 3, *kernels);
+  const Samples samples = random_samples(tested.shape, 6);
+  const double one = network.backward(samples, {4}, Loss::norm), other = network.backward(samples, {1}, Loss::norm);
+  if (!tested.shape.batch_norm) {
+    EXPECT_NEAR(network.backward(samples, {1, 4}, Loss::norm), (one + other) / 2, 1e-6);
+  }
+  EXPECT_NE(one, other);
+}
+
+TEST_P(Networks, FollowTorchsAdamOverTwentySteps) {
+  const auto& [tested, kernels] = GetParam();
+  Pair pair(tested.shape, *kernels);
+  const Samples samples = random_samples(tested.shape, 10);
+  for (int step = 0; step < 20; ++step) {
+    ASSERT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples), 1e-4)
+        << step;
+    pair.ours.update(1e-3);
+    pair.torchs_update();
+  }
+}
+
 // A tower has 32(64c + 1) + 64(512 + 1) + 32(576 + 1) parameters, the text layer 100(384 + 1), the head 12 a feature
 // + 12.
-INSTANTIATE_TEST_SUITE_P(Shapes, Networks,
-                         testing::Values(Case{"mask", {{1}, false, false}, 55308},
-                                         Case{"rgb_and_text", {{3}, true, false}, 99104},
-                                         Case{"mask_and_rgb", {{1, 3}, false, false}, 53376 + 57472 + 3852},
-                                         Case{"batch_norm", {{1}, false, true}, 55308 + 2 * (32 + 64 + 32)}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, Networks,
+    testing::Combine(
+        testing::Values(Case{"mask", {{1}, false, false}, 55308}, Case{"rgb_and_text", {{3}, true, false}, 99104},
+                        Case{"mask_and_rgb", {{1, 3}, false, false}, 53376 + 57472 + 3852},
+                        Case{"rgb_segmentation_and_text", {{3, 1}, true, false}, 57472 + 53376 + 38500 + 5052},
+                        Case{"text", {{}, true, false}, 38500 + 1212},
+                        Case{"batch_norm", {{1}, false, true}, 55308 + 2 * (32 + 64 + 32)}),
+        testing::ValuesIn(available_kernels())),
+    [](const auto& tested) {
+      return std::string(std::get<0>(tested.param).name) + "_" + std::get<1>(tested.param)->name;
+    });
+
+TEST(Kernels, WithFusedMultiplyAddGiveTheSameBits) {
+  const NetworkShape shape{{1, 3}, true, false};
+  const Samples samples = random_samples(shape, 10);
+  std::vector<std::vector<float>> trained;
+  for (const Kernels* kernels : available_kernels()) {
+    if (kernels->name == std::string("portable")) continue;
+    Network network(shape, 3, *kernels);
+    for (int step = 0; step < 5; ++step) {
+      network.backward(samples, all_rows(samples), Loss::norm);
+      network.update(1e-3);
+    }
+    trained.push_back(network.parameters());
+  }
+  if (trained.size() < 2) GTEST_SKIP() << "this processor has one instruction set with fused multiply-add, or none";
+  EXPECT_EQ(trained[0], trained[1]);
+}
+
+// The formula of make_loss_curves.py.
+std::vector<float> numbers(std::uint64_t key, std::size_t count) {
+  std::vector<float> all(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t x = ((i + 1) * 2654435761u + key * 40503u) % (std::uint64_t{1} << 32);
+    x = ((x ^ (x >> 15)) * 2246822519u) % (std::uint64_t{1} << 32);
+    all[i] = static_cast<float>(static_cast<double>(x ^ (x >> 13)) / 4294967296.);
+  }
+  return all;
+}
+
+// The parameters that make_loss_curves.py begins with.
+std::vector<float> first_parameters(const NetworkShape& shape, std::size_t count) {
+  std::vector<float> all = numbers(3, count);
+  auto number = all.begin();
+  const auto fill = [&number](int out, int fan_in, bool normalised) {
+    for (int i = 0; i < out * fan_in; ++i, ++number)
+      *number = (*number - .5f) * 2 / std::sqrt(static_cast<float>(fan_in));
+    for (int i = 0; i < out; ++i, ++number) *number = (*number - .5f) / 10;
+    if (!normalised) return;
+    for (int i = 0; i < out; ++i, ++number) *number = 1;
+    for (int i = 0; i < out; ++i, ++number) *number = (*number - .5f) / 10;
+  };
+  for (const int channels : shape.channels)
+    for (const auto& [out, fan_in] : {std::pair(32, 64 * channels), std::pair(64, 512), std::pair(32, 576)})
+      fill(out, fan_in, shape.batch_norm);
+  if (shape.text) fill(100, 384, false);
+  fill(12, 160 * static_cast<int>(shape.channels.size()) + (shape.text ? 100 : 0), false);
+  EXPECT_EQ(number, all.end());
+  return all;
+}
+
+TEST(Training, HasTheLossCurvesOfPyTorch) {
+  const Json document = read_json(LGABENCH_TEST_REFERENCE "/loss_curves.json");
+  ASSERT_EQ(document.at("curves").size(), 12u);
+  for (const Json& curve : document.at("curves")) {
+    NetworkShape shape;
+    shape.channels = curve.at("channels").get<std::vector<int>>();
+    shape.text = curve.at("text");
+    shape.batch_norm = curve.at("batch_norm");
+    Network network(shape, 0);
+    network.set_parameters(first_parameters(shape, network.parameters().size()));
+    Samples samples(shape, 40);
+    for (std::size_t t = 0; t < shape.channels.size(); ++t)
+      samples.pictures[t] = numbers(10 + t, samples.pictures[t].size());
+    samples.text = numbers(20, samples.text.size());
+    for (float& number : samples.text) number = (number - .5f) / 5;
+    samples.labels = numbers(30, samples.labels.size());
+
+    const Loss loss = curve.at("squared") ? Loss::squared : Loss::norm;
+    const auto expected = curve.at("losses").get<std::vector<double>>();
+    ASSERT_EQ(expected.size(), 50u);
+    double furthest = 0;
+    for (int step = 0; step < 50; ++step) {
+      std::vector<int> batch;
+      for (int i = 0; i < 10; ++i) batch.push_back((step * 10 + i) % 40);
+      furthest = std::max(furthest,
+                          std::abs(network.backward(samples, batch, loss) - expected[static_cast<std::size_t>(step)]));
+      network.update(1e-3);
+    }
+    EXPECT_LT(furthest, 1e-4) << curve.at("network") << (shape.batch_norm ? ", batch_norm and squared loss" : "");
+    EXPECT_LT(expected.back(), .9 * expected.front()) << "the curve shows no learning";
+  }
+}
 
 }  // namespace
 }  // namespace lgabench

@@ -59,7 +59,7 @@ TEST(Inputs, RgbIsTheAreaMeanOver255) {
           for (int x = 0; x < columns; ++x)
             mean += overlap(r, input_rows, y, rows) * overlap(c, input_columns, x, columns) *
                     rgb[static_cast<std::size_t>((y * columns + x) * 3 + channel)] / area / 255;
-        EXPECT_NEAR(small[static_cast<std::size_t>((channel * input_rows + r) * input_columns + c)], mean, 1e-5)
+        EXPECT_NEAR(small[static_cast<std::size_t>((r * input_columns + c) * 3 + channel)], mean, 1e-5)
             << channel << " " << r << " " << c;
       }
 }
@@ -72,32 +72,33 @@ TEST(Inputs, RefusePicturesOfAnotherSize) {
 
 TEST(Losses, HaveTheGradientOfFiniteDifferences) {
   RandomStream random("loss");
-  std::vector<float> outputs(36), labels(36), gradient(36), unused(36);
-  for (auto* values : {&outputs, &labels})
+  std::vector<float> output(12), label(12), gradient(12), unused(12);
+  for (auto* values : {&output, &label})
     for (float& v : *values) v = static_cast<float>(random.gaussian());
   for (const Loss loss : {Loss::norm, Loss::squared}) {
-    loss_and_gradient(loss, outputs.data(), labels.data(), 3, gradient.data());
-    for (std::size_t i = 0; i < outputs.size(); ++i) {
-      const float step = 0x1p-8f, here = outputs[i];
-      outputs[i] = here + step;
-      const double above = loss_and_gradient(loss, outputs.data(), labels.data(), 3, unused.data());
-      outputs[i] = here - step;
-      const double below = loss_and_gradient(loss, outputs.data(), labels.data(), 3, unused.data());
-      outputs[i] = here;
-      EXPECT_NEAR(gradient[i], (above - below) / (2 * step), 1e-5);
+    loss_and_gradient(loss, output.data(), label.data(), .1, gradient.data());
+    for (std::size_t i = 0; i < output.size(); ++i) {
+      const float step = 0x1p-8f, here = output[i];
+      output[i] = here + step;
+      const double above = loss_and_gradient(loss, output.data(), label.data(), 1, unused.data());
+      output[i] = here - step;
+      const double below = loss_and_gradient(loss, output.data(), label.data(), 1, unused.data());
+      output[i] = here;
+      EXPECT_NEAR(gradient[i], .1 * (above - below) / (2 * step), 1e-5);
     }
   }
 }
 
 TEST(Losses, ArePlainNumbersAndTheNormsSubgradientAtZeroIsZero) {
-  std::vector<float> outputs(24), labels(24), gradient(24, NAN);
-  outputs[0] = 3;
-  outputs[1] = 4;  // the first row's error is 5 long, the second's is 0
-  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::norm, outputs.data(), labels.data(), 2, gradient.data()), 2.5);
-  EXPECT_FLOAT_EQ(gradient[0], .3f);  // 3/5, halved by the mean
+  std::vector<float> output(12), label(12), gradient(12, NAN);
+  EXPECT_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), .5, gradient.data()), 0);
+  for (const float number : gradient) EXPECT_EQ(number, 0);
+  output[0] = 3;
+  output[1] = 4;
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), .5, gradient.data()), 5);
+  EXPECT_FLOAT_EQ(gradient[0], .3f);  // 3/5, halved by the weight
   EXPECT_FLOAT_EQ(gradient[1], .4f);
-  for (std::size_t i = 12; i < 24; ++i) EXPECT_EQ(gradient[i], 0);
-  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::squared, outputs.data(), labels.data(), 2, gradient.data()), 12.5);
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::squared, output.data(), label.data(), .5, gradient.data()), 25);
 }
 
 TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
@@ -105,7 +106,8 @@ TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
   struct Range {
     int count, fan_in;
   };
-  const float* value = network.parameters();
+  const std::vector<float> parameters = network.parameters();
+  auto value = parameters.begin();
   for (const auto [count, fan_in] : {Range{2080, 64}, Range{32832, 512}, Range{18464, 576}, Range{1932, 160}}) {
     const double bound = 1 / std::sqrt(fan_in);
     double highest = 0, squares = 0;
@@ -117,7 +119,7 @@ TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
     EXPECT_GT(highest, .99 * bound);
     EXPECT_NEAR(squares / count / (bound * bound / 3), 1, .1);  // a uniform's variance
   }
-  EXPECT_EQ(value, network.parameters() + network.size());
+  EXPECT_EQ(value, parameters.end());
 }
 
 TEST(BatchOrder, IsAnotherPermutationInEveryPassAndForEverySeed) {

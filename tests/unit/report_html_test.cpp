@@ -233,7 +233,7 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   pictures.wanted = 1;
   pictures.scenes[hex(19)] = "PNG";
   const std::string page = report::html(results, report::summarize(results), report::test_claims(results),
-                                        report::paper_values("q1"), pictures);
+                                        {}, report::paper_values("q1"), pictures);
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));

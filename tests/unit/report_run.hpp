@@ -42,7 +42,7 @@ class FabricatedRun : public TemporaryDirectory {
     int won = 0;         // of 20: the first
     std::string scenario = "heart";
     int demonstrations = 20, seed = 0;
-    std::string kind = "method", layout = "cells", failure = "missed_object";
+    std::string kind = "method", layout = "cells", failure = "missed_object", engine = "mujoco";
     int first_scene = 0;  // hash of the first of 20 scenes
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
@@ -75,7 +75,7 @@ class FabricatedRun : public TemporaryDirectory {
                 {"task", "pick_and_place"},
                 {"commands", commands},
                 {"tests", tests}}},
-              {"engine", "mujoco"},
+              {"engine", s.engine},
               {"method",
                {{"kind", s.kind},
                 {"id", s.method.substr(0, s.method.find('+'))},

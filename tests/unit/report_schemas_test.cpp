@@ -18,6 +18,9 @@ std::vector<std::pair<std::string, Json>> run_documents() {
   FabricatedRun::Spec arms{"lga", 0, "letter"};
   arms.arms = {{"test", 15}, {"hard", 10}};
   run.add(arms);
+  FabricatedRun::Spec elsewhere{"lga", 12};
+  elsewhere.engine = "bullet";
+  run.add(elsewhere);
   run.add_failed({"gcbc_dart", 0}, "plugin");
   run.add({"gcbc_dart", 5, "heart", 10});  // a claim's difference that is tested, and others that are not
   run.add({"lga", 15, "heart", 10});

@@ -24,7 +24,7 @@ const Json& golden() {
 }
 
 const SentenceEncoder& encoder() {
-  static const SentenceEncoder shared(SentenceEncoder::default_directory());
+  static const SentenceEncoder shared(encoder_directory());
   return shared;
 }
 
@@ -35,7 +35,7 @@ double farthest(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 TEST(WordPieces, AreThoseOfTheReference) {
-  const WordPieces tokenizer(SentenceEncoder::default_directory() / "vocab.txt");
+  const WordPieces tokenizer(encoder_directory() / "vocab.txt");
   EXPECT_GE(golden().size(), 50u);
   for (const Json& row : golden())
     EXPECT_EQ(tokenizer.ids(row.at("sentence"), 256), row.at("ids").get<std::vector<std::int64_t>>())
@@ -43,7 +43,7 @@ TEST(WordPieces, AreThoseOfTheReference) {
 }
 
 TEST(WordPieces, RefuseWhatIsNotText) {
-  const WordPieces tokenizer(SentenceEncoder::default_directory() / "vocab.txt");
+  const WordPieces tokenizer(encoder_directory() / "vocab.txt");
   for (const char* bad : {"\xff", "a\xc3", "\xed\xa0\x80"})
     EXPECT_SAYS(message_of<InputError>([&] { tokenizer.ids(bad, 256); }), "expected UTF-8");
   const TemporaryDirectory directory;
@@ -69,7 +69,7 @@ TEST(SentenceEncoder, AgreesWithTheCommittedEmbeddings) {
 
 TEST(SentenceEncoder, RefusesOtherWeightsAndSaysWhichItWants) {
   const TemporaryDirectory directory;
-  fs::copy_file(SentenceEncoder::default_directory() / "vocab.txt", directory.path / "vocab.txt");
+  fs::copy_file(encoder_directory() / "vocab.txt", directory.path / "vocab.txt");
   write_file(directory.path / "model.safetensors", "nothing of the kind");
   EXPECT_SAYS(message_of<InputError>([&] { SentenceEncoder encoder(directory.path); }),
               "expected the weights with SHA-256 53aa");
@@ -108,7 +108,7 @@ TEST_F(WithoutWeights, TheShippedCommandsAndSelectionsHaveEmbeddings) {
 TEST(SentenceEmbeddings, OfOtherSentencesComeFromTheEncoder) {
   SentenceEmbeddings embeddings;
   const std::vector<float> moon = embeddings.of("Bring me the moon.");
-  EXPECT_EQ(moon, SentenceEncoder(SentenceEncoder::default_directory()).encode("Bring me the moon."));
+  EXPECT_EQ(moon, SentenceEncoder(encoder_directory()).encode("Bring me the moon."));
   EXPECT_EQ(moon, embeddings.of("Bring me the moon."));
 }
 

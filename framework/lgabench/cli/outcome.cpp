@@ -45,7 +45,8 @@ void print_report(const fs::path& run, bool json) {
   if (json)
     fmt::print("{}", read_file(run / "summary.json"));
   else
-    fmt::print("{}\nreport: {}\n", report::plain_text(report.run, report.summary), (run / "report.html").string());
+    fmt::print("{}{}\nreport: {}\n", report::plain_text(report.run, report.summary),
+               report::agreement_text(report.agreements), (run / "report.html").string());
 }
 
 }  // namespace lgabench::cli

@@ -15,6 +15,7 @@
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <tabletop/renderer.hpp>
 
 namespace lgabench::cli {
@@ -44,7 +45,9 @@ struct Played {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...]}, in base64. @throws InputError where the scene is not the one asked for.
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...]}, in base64: the scene, goal masks of the request's
+  // Selections, and the scene after its action on each of its engines (null for one that is not there). @throws
+  // InputError where the scene is not the one asked for.
   Json draw(const JsonReader& request) {
     const Played& played = cell(request.at("cell").string());
     const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
@@ -62,10 +65,43 @@ class Pictures {
       const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    return {{"picture", png([&](std::size_t i) { return pixel_colour(seen, i); })}, {"masks", masks}};
+    return {{"picture", picture_of(seen)},
+            {"masks", masks},
+            {"ends", request.has("engines") ? ends(played.scenario, scene, request) : Json::array()}};
   }
 
  private:
+  static std::string picture_of(const Observation& seen) {
+    return png([&](std::size_t i) { return pixel_colour(seen, i); });
+  }
+
+  Json ends(const Scenario& scenario, const Scene& scene, const JsonReader& request) {
+    ActionVector action;
+    const std::vector<JsonReader> numbers = request.at("action").elements();
+    if (numbers.size() != action.size()) request.at("action").fail("12 numbers");
+    for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+    Json pictures = Json::array();
+    for (const JsonReader& name : request.at("engines").elements()) {
+      Environment* const environment = on(name.string(), scenario);
+      if (environment) environment->reset(scene);
+      pictures.push_back(environment ? Json(picture_of(environment->step(from_vector(action)).observation)) : Json());
+    }
+    return pictures;
+  }
+
+  // Null for an engine that is not there.
+  Environment* on(const std::string& engine, const Scenario& scenario) {
+    std::unique_ptr<Environment>& made = environments_[{engine, scenario.space.id}];
+    if (made) return made.get();
+    static const Catalogue catalogue = scan_plugins(plugin_directories());
+    try {
+      made = make_environment(scenario, load_engine(catalogue.find("engine", engine)));
+    } catch (const PluginError&) {
+      return nullptr;
+    }
+    return made.get();
+  }
+
   const Played& cell(const std::string& file) {
     const auto known = cells_.find(file);
     if (known != cells_.end()) return *known->second;
@@ -75,7 +111,8 @@ class Pictures {
   }
 
   tabletop::Renderer renderer_;
-  std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
+  std::map<std::pair<std::string, std::string>, std::unique_ptr<Environment>> environments_;  // by engine and space
+  std::map<std::string, std::unique_ptr<Played>> cells_;                                      // by file
 };
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace lgabench::cli {
 namespace {
 
 int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
-  const auto& [results, summary, claims] = report;
+  const auto& [results, summary, claims, agreements] = report;
   if (format == "text")
     fmt::print("{}", report::claims_text(summary.suite, claims));
   else if (format == "json")
@@ -56,7 +56,7 @@ void add_report(CLI::App& app, int& exit) {
       return;
     }
     if (options->format == "text")
-      fmt::print("{}", report::plain_text(report.run, report.summary));
+      fmt::print("{}{}", report::plain_text(report.run, report.summary), report::agreement_text(report.agreements));
     else if (options->format == "md")
       fmt::print("{}", read_file(run / "report.md"));
     else

@@ -106,7 +106,7 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
     }
 
   auto policy = std::make_unique<CloningPolicy>(featurizer, shape, services.seed);
-  train(policy->network, shape, samples, training, services.seed, services.log);
+  train(policy->network, samples, training, services.seed, services.log);
   return policy;
 }
 

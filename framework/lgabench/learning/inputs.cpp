@@ -22,12 +22,9 @@ void expect_size(const char* what, std::size_t size, std::size_t expected) {
 void shrink_rgb(const std::vector<std::uint8_t>& rgb, float* out) {
   expect_size("rgb", rgb.size(), std::size_t{rows} * columns * 3);
   // In floating point: OpenCV would round the means of bytes to bytes.
-  cv::Mat native, small;
+  cv::Mat native, small(input_rows, input_columns, CV_32FC3, out);
   cv::Mat(rows, columns, CV_8UC3, const_cast<std::uint8_t*>(rgb.data())).convertTo(native, CV_32FC3, 1 / 255.0);
   cv::resize(native, small, cv::Size(input_columns, input_rows), 0, 0, cv::INTER_AREA);
-  cv::Mat channels[3];
-  for (int c = 0; c < 3; ++c) channels[c] = cv::Mat(input_rows, input_columns, CV_32FC1, out + c * input_pixels);
-  cv::split(small, channels);
 }
 
 void shrink_mask(const std::vector<std::uint8_t>& mask, float* out) {

@@ -9,7 +9,7 @@ namespace lgabench {
 
 constexpr int input_rows = 36, input_columns = 72, input_pixels = input_rows * input_columns;
 
-/// Area mean of the colours over 255, written to `out` as 3 x 36 x 72 (channel first, red first).
+/// Area mean of the colours over 255, written to `out` as 36 x 72 x 3 (red first).
 /// @throws InputError if the picture is not 128 x 256 x 3.
 void shrink_rgb(const std::vector<std::uint8_t>& rgb, float* out);
 

@@ -2,13 +2,30 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <boost/dll/import.hpp>
+#include <cstdlib>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/sentence_encoder.hpp>
 
 namespace lgabench {
+namespace {
+
+decltype(&make_sentence_encoder) load_encoder() {
+  // Never unloaded, since LibTorch in a process cannot be; found by this library's run path.
+  static const auto& library = *new boost::dll::shared_library(
+      LGABENCH_ENCODER_LIBRARY, boost::dll::load_mode::search_system_folders | boost::dll::load_mode::rtld_local);
+  return library.get_alias<decltype(make_sentence_encoder)>("sentence_encoder");
+}
+
+}  // namespace
+
+fs::path encoder_directory() {
+  const char* named = std::getenv("LGABENCH_ENCODER");
+  return named && *named ? fs::path(named) : data_directory() / "encoder";
+}
 
 SentenceEmbeddings::SentenceEmbeddings() {
   const fs::path directory = data_directory() / "embeddings";
@@ -34,17 +51,16 @@ SentenceEmbeddings::SentenceEmbeddings() {
 const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) {
   const auto found = embeddings_.find(sentence);
   if (found != embeddings_.end()) return found->second;
-  if (!encoder_) {
-    const fs::path directory = SentenceEncoder::default_directory();
+  if (!encode_) {
+    const fs::path directory = encoder_directory();
     if (!fs::exists(directory / "model.safetensors"))
-      throw InputError(
-          fmt::format("\"{}\": expected a sentence with a committed embedding, or the sentence encoder's weights in "
-                      "{}; cmake/encoder "
-                      "fetches them, $LGABENCH_ENCODER names another directory",
-                      sentence, directory.string()));
-    encoder_ = std::make_unique<SentenceEncoder>(directory);
+      throw InputError(fmt::format(
+          "\"{}\": expected a sentence with a committed embedding, or the sentence encoder's weights in {}; "
+          "cmake/encoder fetches them, $LGABENCH_ENCODER names another directory",
+          sentence, directory.string()));
+    encode_ = load_encoder()(directory);
   }
-  return embeddings_.emplace(sentence, encoder_->encode(sentence)).first->second;
+  return embeddings_.emplace(sentence, encode_(sentence)).first->second;
 }
 
 }  // namespace lgabench

@@ -1,14 +1,16 @@
-// Sentences as vectors: committed embeddings of what is shipped, computed once with all-MiniLM-L6-v2; its encoder for the
-// rest.
+// Sentences as vectors: committed embeddings of what is shipped, computed once with all-MiniLM-L6-v2; its encoder for
+// the rest.
 #pragma once
+#include <filesystem>
+#include <functional>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <lgabench/learning/sentence_encoder.hpp>
-
 namespace lgabench {
+
+/// Where the encoder's weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.
+std::filesystem::path encoder_directory();
 
 /// One thread.
 class SentenceEmbeddings {
@@ -23,7 +25,7 @@ class SentenceEmbeddings {
 
  private:
   std::map<std::string, std::vector<float>> embeddings_;
-  std::unique_ptr<SentenceEncoder> encoder_;  // once it was needed
+  std::function<std::vector<float>(const std::string&)> encode_;  // once it was needed
 };
 
 }  // namespace lgabench

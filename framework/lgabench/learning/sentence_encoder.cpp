@@ -1,14 +1,19 @@
 #include <lgabench/learning/sentence_encoder.hpp>
 
 #include <ATen/ATen.h>
+#include <ATen/Parallel.h>
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 
+#include <boost/dll/alias.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/learning/safetensors.hpp>
 #include <lgabench/learning/word_pieces.hpp>
+
+// Of OpenBLAS where ATen uses it: its own pool of threads does not heed at::set_num_threads.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace lgabench {
 namespace {
@@ -63,14 +68,13 @@ struct SentenceEncoder::Impl {
   }
 };
 
-fs::path SentenceEncoder::default_directory() {
-  const char* named = std::getenv("LGABENCH_ENCODER");
-  return named && *named ? fs::path(named) : data_directory() / "encoder";
-}
-
 SentenceEncoder::SentenceEncoder(const fs::path& directory)
-    : impl_(new Impl{WordPieces(directory / "vocab.txt"),
-                     Safetensors(directory / "model.safetensors", weights_sha256)}) {}
+    : impl_(
+          new Impl{WordPieces(directory / "vocab.txt"), Safetensors(directory / "model.safetensors", weights_sha256)}) {
+  at::set_num_threads(1);
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
+  flush_denormals();
+}
 
 SentenceEncoder::~SentenceEncoder() = default;
 
@@ -80,5 +84,12 @@ std::vector<float> SentenceEncoder::encode(const std::string& sentence) const {
   const float* values = embedding.data_ptr<float>();
   return {values, values + embedding.numel()};
 }
+
+Encode make_sentence_encoder(const fs::path& directory) {
+  return [encoder = std::make_shared<SentenceEncoder>(directory)](const std::string& sentence) {
+    return encoder->encode(sentence);
+  };
+}
+BOOST_DLL_ALIAS(lgabench::make_sentence_encoder, sentence_encoder)
 
 }  // namespace lgabench

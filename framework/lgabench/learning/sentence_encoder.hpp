@@ -1,6 +1,8 @@
-// all-MiniLM-L6-v2: a sentence as a vector (Reimers and Gurevych 2019; Wang et al. 2020).
+// all-MiniLM-L6-v2: a sentence as a vector (Reimers and Gurevych 2019; Wang et al. 2020). In a library of its own,
+// since LibTorch takes longer to load than most cells take to evaluate.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,11 +12,9 @@ namespace lgabench {
 /// BERT with 6 layers of width 384 and 12 heads, post-norm, exact GELU; mean over tokens, unit norm. One thread.
 class SentenceEncoder {
  public:
-  /// Where the weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.
-  static std::filesystem::path default_directory();
-
-  /// Reads model.safetensors and vocab.txt. @throws InputError naming the file that is missing or not as expected: the
-  /// weights are those of one published file, known by its SHA-256.
+  /// Computes on one processor; flushes subnormal numbers in this thread. Reads model.safetensors and vocab.txt.
+  /// @throws InputError naming the file that is missing or not as expected: the weights are those of one published
+  /// file, known by its SHA-256.
   explicit SentenceEncoder(const std::filesystem::path& directory);
   ~SentenceEncoder();
 
@@ -25,5 +25,9 @@ class SentenceEncoder {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+using Encode = std::function<std::vector<float>(const std::string&)>;
+/// What the library exports, by the name of sentence_encoder: encode() of an encoder that it keeps.
+Encode make_sentence_encoder(const std::filesystem::path& directory);
 
 }  // namespace lgabench

@@ -21,7 +21,7 @@ std::vector<int> batch_order(std::uint64_t seed, int epoch, int samples);
 /// `epochs` passes of floor(rows / batch_size) shuffled batches, or of one batch of all rows where there are fewer;
 /// Adam; no early stopping: the network keeps its last weights. Logs every tenth pass and the last.
 /// @throws MethodError if there are no samples or the loss is not finite.
-void train(Network& network, const NetworkShape& shape, const Samples& samples, const TrainingOptions& options,
-           std::uint64_t seed, TrainingLog& log);
+void train(Network& network, const Samples& samples, const TrainingOptions& options, std::uint64_t seed,
+           TrainingLog& log);
 
 }  // namespace lgabench

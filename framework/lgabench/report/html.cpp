@@ -173,13 +173,13 @@ std::string embedded(const Json& json) {
 }  // namespace
 
 std::string html(const RunResults& run, const Summary& summary, const std::vector<Claim>& tested,
-                 const PaperValues& paper, const Pictures& pictures) {
+                 const std::vector<EngineAgreement>& agreements, const PaperValues& paper, const Pictures& pictures) {
   const fs::path installed = data_directory() / "page";
   const RowNumbers numbers(summary);
   const std::string body = what_was_run(run, summary, pictures) + success(summary, paper, numbers) +
                            arms(summary, paper, numbers) + scenarios(summary, paper, numbers) + claims(tested) +
                            phi(run, summary, numbers) + failures(summary, numbers) + attribution(summary, numbers) +
-                           times(run) + failed_cells(summary) + provenance(run);
+                           engines(agreements, pictures) + times(run) + failed_cells(summary) + provenance(run);
   return filled(read_file(installed / "page.html"), {{"suite", escaped(run.suite)},
                                                      {"style", read_file(installed / "page.css")},
                                                      {"body", body},

@@ -13,6 +13,6 @@ namespace lgabench::report {
 /// The page, from the installed page/ (template, style sheet, script). The same values give the same bytes.
 /// @throws InputError where the installed page is missing.
 std::string html(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
-                 const PaperValues& paper, const Pictures& pictures);
+                 const std::vector<EngineAgreement>& agreements, const PaperValues& paper, const Pictures& pictures);
 
 }  // namespace lgabench::report

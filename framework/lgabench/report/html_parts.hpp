@@ -53,6 +53,8 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
 std::string failures(const Summary& summary, const RowNumbers& numbers);
 std::string attribution(const Summary& summary, const RowNumbers& numbers);
 std::string times(const RunResults& run);
+/// With the scene of each disagreement, and its end on either engine, side by side.
+std::string engines(const std::vector<EngineAgreement>& agreements, const Pictures& pictures);
 std::string failed_cells(const Summary& summary);
 
 /// What the script shows of a row: its episodes, and the pictures of those that failed.

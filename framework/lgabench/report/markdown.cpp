@@ -275,7 +275,8 @@ constexpr const char* how_to_read =
 }  // namespace
 
 std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
-                     const PaperValues& paper, const std::vector<std::vector<Figure>>& figures) {
+                     const std::vector<EngineAgreement>& agreements, const PaperValues& paper,
+                     const std::vector<std::vector<Figure>>& figures) {
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
@@ -284,8 +285,8 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
                         paper.rates.count(mean_scenario)
                             ? "on the mean over its own scenarios, not only those of this run"
                             : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
-  return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + attribution(summary) + times(run) +
-         failed_cells(summary) + how_to_read;
+  return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + attribution(summary) +
+         agreement_markdown(agreements) + times(run) + failed_cells(summary) + how_to_read;
 }
 
 }  // namespace lgabench::report

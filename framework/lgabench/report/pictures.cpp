@@ -18,8 +18,9 @@ namespace lgabench::report {
 namespace {
 
 struct Request {
-  Json json;                       // as lgabench-worker reads it
-  std::vector<std::string> masks;  // mask_key of each of its selections
+  Json json;                        // as lgabench-worker reads it
+  std::vector<std::string> masks;   // mask_key of each of its selections
+  std::vector<std::string> ends{};  // end_key of each engine that is asked for
 };
 
 Json distribution(const Json& selection) {
@@ -60,6 +61,23 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   return all;
 }
 
+void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreements, std::vector<Request>& requests) {
+  std::size_t added = 0;
+  for (const EngineAgreement& agreement : agreements)
+    for (const Disagreement& d : agreement.disagreements) {
+      if (added++ == most_ends) return;
+      requests.push_back({{{"cell", (run / "cells" / d.cell->key / "cell.json").string()},
+                           {"arm", d.arm},
+                           {"index", d.index},
+                           {"scene", d.episode().scene},
+                           {"selections", Json::array()},
+                           {"engines", {agreement.first, agreement.second}},
+                           {"action", d.episode().action}},
+                          {},
+                          {end_key(d, agreement.first), end_key(d, agreement.second)}});
+    }
+}
+
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 // Standard output of `lgabench-worker pictures`, given `input`. Returns what went wrong, or "".
@@ -96,12 +114,17 @@ std::string mask_key(const std::string& scene, const Json& selection) {
   return scene + "/" + sha256(canonical(distribution(selection))).substr(0, 8);
 }
 
-Pictures draw_pictures(const fs::path& run, const RunResults& results) {
+std::string end_key(const Disagreement& d, const std::string& engine) {
+  return fmt::format("{}/{}/{}/{}", d.cell->key, d.arm, d.index, engine);
+}
+
+Pictures draw_pictures(const fs::path& run, const RunResults& results, const std::vector<EngineAgreement>& agreements) {
   Pictures pictures;
   std::vector<Request> requests = requests_of(run, results);
   pictures.wanted = requests.size();
-  if (requests.empty()) return pictures;
   if (requests.size() > most_pictures) requests.resize(most_pictures);
+  add_ends(run, agreements, requests);
+  if (requests.empty()) return pictures;
 
   Json asked = Json::array();
   for (const Request& request : requests) asked.push_back(request.json);
@@ -114,6 +137,11 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results) {
     begin = std::min(end + 1, lines.size());
     if (!drawn.is_object() || !drawn.contains("picture")) {
       if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";
+      continue;
+    }
+    if (!request.ends.empty()) {
+      for (std::size_t i = 0; i < request.ends.size(); ++i) pictures.ends[request.ends[i]] = drawn.at("ends").at(i);
+      pictures.ends[request.ends.front().substr(0, request.ends.front().rfind('/') + 1)] = drawn.at("picture");
       continue;
     }
     const std::string scene = request.json.at("scene");

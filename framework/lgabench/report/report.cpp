@@ -21,16 +21,21 @@ Report write_report(const fs::path& run) {
   report.run = read_cells(run);
   report.summary = summarize(report.run);
   report.claims = test_claims(report.run);
-  const auto& [results, summary, claims] = report;
-  write_file(run / "summary.json", canonical(to_json(summary)) + "\n");
+  report.agreements = engine_agreement(report.run);
+  const RunResults& results = report.run;
+  const Summary& summary = report.summary;
+  Json values = to_json(summary);
+  if (!report.agreements.empty()) values["engine_agreement"] = to_json(report.agreements);
+  write_file(run / "summary.json", canonical(values) + "\n");
   write_file(run / "summary.csv", to_csv(summary));
-  write_file(run / "claims.json", canonical(to_json(summary.suite, claims)) + "\n");
+  write_file(run / "claims.json", canonical(to_json(summary.suite, report.claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
-  write_file(run / "report.md", markdown(results, summary, claims, paper, figures));
-  write_file(run / "report.html", html(results, summary, claims, paper, draw_pictures(run, results)));
+  write_file(run / "report.md", markdown(results, summary, report.claims, report.agreements, paper, figures));
+  write_file(run / "report.html", html(results, summary, report.claims, report.agreements, paper,
+                                       draw_pictures(run, results, report.agreements)));
   return report;
 }
 

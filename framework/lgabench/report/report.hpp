@@ -4,15 +4,20 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/report/claims.hpp>
+#include <lgabench/report/engines.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
 
-/// What a run's report is made of.
+/// What a run's report is made of. Not to be copied: agreements name cells of the run.
 struct Report {
+  Report() = default;
+  Report(Report&&) = default;
+
   RunResults run;
   Summary summary;
   std::vector<Claim> claims;
+  std::vector<EngineAgreement> agreements;
 };
 
 /// Reads RUN's cells, writes RUN/summary.json, summary.csv, claims.json, report.md, report.html and figures/*.svg. The

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/report/claims.hpp>
+#include <lgabench/report/engines.hpp>
 #include <lgabench/report/figure.hpp>
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/summary.hpp>
@@ -60,7 +61,8 @@ bool has_unseen(const RunResults& run);
 
 /// report.md. `figures` of each of the summary's tables, in their order.
 std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
-                     const PaperValues& paper, const std::vector<std::vector<Figure>>& figures);
+                     const std::vector<EngineAgreement>& agreements, const PaperValues& paper,
+                     const std::vector<std::vector<Figure>>& figures);
 
 /// The table for a terminal, fixed width, without colour: a block a scenario and one for their mean; success with its
 /// 95 % interval for each method and number of demonstrations (with several arms: for each arm, and the change against

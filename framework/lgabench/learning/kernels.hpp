@@ -1,0 +1,45 @@
+// The arithmetic of a training step, compiled for several instruction sets; the processor's best is chosen at run time.
+// No kernel adds across the numbers of a vector, so every set with fused multiply-add gives the same bits.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include <lgabench/learning/layers.hpp>
+
+namespace lgabench {
+
+struct AdamCoefficients {
+  float beta1, beta2, epsilon;
+  float rest1, rest2;  // 1 - beta, which single precision would round
+  float rate;          // learning rate / (1 - beta1^t)
+  float root;          // 1 / sqrt(1 - beta2^t)
+};
+
+/// All arrays are the caller's; any alignment is right, 64 bytes is fast. `columns` is read for linear layers alone.
+struct Kernels {
+  struct OfLayer {
+    /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
+    void (*forward)(const float* in, const float* weights, const float* bias, float* out, bool relu, int columns);
+    /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other.
+    void (*weight_gradient)(const float* const* in, const float* gradient, float* weight_gradient, int pictures,
+                            int columns);
+    /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels). Null
+    /// for the layers that see the picture.
+    void (*input_gradient)(const float* gradient, const float* transposed, float* in_gradient, int columns);
+  };
+
+  const char* name;  // "avx512", "avx2" or "portable"
+  OfLayer of[layer_kinds];
+  /// Zeroes the gradient where `out` was cut off at 0.
+  void (*relu_gradient)(const float* out, float* gradient, std::size_t count);
+  /// Sums `rows` x `channels` numbers over rows; channels is a multiple of 16.
+  void (*sum_rows)(const float* values, float* sums, int rows, int channels);
+  /// Adam in place (Kingma and Ba 2015, algorithm 1).
+  void (*adam)(const AdamCoefficients& c, const float* gradients, float* mean, float* variance, float* parameters,
+               std::size_t count);
+};
+
+/// Those that this processor can run, the fastest first. Thread-safe.
+const std::vector<const Kernels*>& available_kernels();
+
+}  // namespace lgabench

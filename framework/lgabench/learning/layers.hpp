@@ -1,0 +1,35 @@
+// The layers that a policy network is made of, and how their numbers lie in memory. Private to learning/.
+#pragma once
+
+namespace lgabench {
+
+/// A convolution without padding, channels last: weights are kernel x kernel x channels x out_channels. A linear layer
+/// is a 1 x 1 convolution on a picture one row high, with the batch along its columns; there columns is 0, as not
+/// known.
+struct Layer {
+  int rows, columns, channels, kernel, stride, out_channels;
+
+  constexpr int out_rows() const { return (rows - kernel) / stride + 1; }
+  constexpr int out_columns() const { return (columns - kernel) / stride + 1; }
+  /// Numbers of one kernel row, which lie side by side in the picture as in the weights.
+  constexpr int segment() const { return kernel * channels; }
+  constexpr int weights() const { return kernel * segment() * out_channels; }
+  constexpr int inputs() const { return rows * columns * channels; }
+  constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }
+};
+
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 128, 12 actions to 16.
+constexpr int text_features = 100, padded_text_features = 128, padded_action = 16;
+
+enum LayerKind { mask_convolution, rgb_convolution, convolution2, convolution3, text_linear, tower_head, text_head };
+
+constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
+                            {36, 72, 3, 8, 4, 32},
+                            {8, 17, 32, 4, 2, 64},
+                            {3, 7, 64, 3, 1, 32},
+                            {1, 0, 384, 1, 1, padded_text_features},
+                            {1, 0, 160, 1, 1, padded_action},
+                            {1, 0, padded_text_features, 1, 1, padded_action}};
+constexpr int layer_kinds = sizeof(layers) / sizeof(layers[0]);
+
+}  // namespace lgabench

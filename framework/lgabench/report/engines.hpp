@@ -1,0 +1,44 @@
+// Does a result depend on the engine? The same scene and the same action on two of them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/report/results.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::report {
+
+/// An episode that one engine calls won and the other lost.
+struct Disagreement {
+  const CellResult* cell = nullptr;  // the first engine's; of the run that was given
+  std::string arm;
+  std::size_t index = 0;       // of the scene in the arm
+  std::string failure_second;  // on the second engine; the first's is the episode's own
+
+  const PlayedEpisode& episode() const { return cell->episodes.at(arm)[index]; }
+};
+
+struct AgreementRow {
+  std::string method;     // a row's name; "" for all of them
+  int episodes = 0;       // of a scene that both engines played with the same action, bit for bit
+  int other_actions = 0;  // with another one: the policy was trained on what the other engine showed
+  int won_first = 0, won_second = 0, agreed = 0;  // of `episodes`
+  Interval interval;                              // Wilson's, 95 %, of agreed / episodes
+};
+
+/// Two engines of one layout.
+struct EngineAgreement {
+  std::string layout, first, second;
+  std::vector<AgreementRow> rows;  // in the order of tables; all of them last, where an action counts once a scene
+  std::vector<Disagreement> disagreements;  // likewise once
+};
+
+/// Every pair of engines that share a layout; empty for a run on one engine. Pairs cells by scenario, row,
+/// demonstrations and training seed, their episodes by arm and index.
+std::vector<EngineAgreement> engine_agreement(const RunResults& run);
+
+Json to_json(const std::vector<EngineAgreement>& agreements);
+std::string agreement_text(const std::vector<EngineAgreement>& agreements);      // for a terminal
+std::string agreement_markdown(const std::vector<EngineAgreement>& agreements);  // "" for none
+
+}  // namespace lgabench::report

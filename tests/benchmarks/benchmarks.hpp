@@ -1,0 +1,23 @@
+// The benchmarks of each part, registered by main().
+#pragma once
+#include <string>
+#include <vector>
+
+namespace lgabench {
+
+void register_training();
+void register_environment();
+void register_llvmpipe();  // where EGL's headers are
+void register_plugin();
+void register_harness();
+
+/// A promise of DESIGN, section 9: what `measured` must be beside `reference`, both names of benchmarks.
+struct Promise {
+  std::string what, measured, reference;
+  enum class Unit { times_as_fast, times_as_long } unit;
+  double floor, goal;
+  double reference_s = 0;  // in place of a benchmark
+};
+const std::vector<Promise>& promises();
+
+}  // namespace lgabench

@@ -1,0 +1,153 @@
+// A whole episode, a reset and a picture.
+#include <benchmark/benchmark.h>
+
+#include <map>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <mujoco/mujoco_world.hpp>
+#include <tabletop/objects.hpp>
+#include <tabletop/renderer.hpp>
+#include <tabletop/sampler.hpp>
+#include <tabletop/tabletop.hpp>
+
+#include "bare_mujoco.hpp"
+#include "benchmarks.hpp"
+
+namespace lgabench {
+namespace {
+
+constexpr int scenes = 10;
+
+// The engine, which remembers what it was asked for.
+class Recorder final : public PhysicsWorld {
+ public:
+  void load(const std::vector<BodyModel>& models, int copies) override { world_.load(known = models, copies); }
+  void reset(const std::vector<BodyPlacement>& placements) override {
+    world_.reset(placed = placements);
+    frames.clear();
+    now_ = {};
+  }
+  double time_step_s() const override { return world_.time_step_s(); }
+  void step() override {
+    world_.step();
+    frames.push_back(now_);
+  }
+  Pose pose(int body) const override { return world_.pose(body); }
+  std::vector<Contact> contacts() const override { return world_.contacts(); }
+  int cast_down(Vec2 point, double& height_m) const override { return world_.cast_down(point, height_m); }
+  void grip(int body, const Pose& gripper) override {
+    now_ = {body, gripper, world_.pose(body), gripper};
+    world_.grip(body, gripper);
+  }
+  void move_gripper(const Pose& gripper) override { world_.move_gripper(now_.gripper = gripper); }
+  void release() override {
+    now_.held = no_body;
+    world_.release();
+  }
+  void place_spatula(Vec3 size_m, const Pose& pose) override { world_.place_spatula(size_m, pose); }
+  void move_spatula(const Pose& pose) override { world_.move_spatula(pose); }
+  void remove_spatula() override { world_.remove_spatula(); }
+
+  std::vector<BodyModel> known;
+  std::vector<BodyPlacement> placed;
+  std::vector<GripperFrame> frames;
+
+ private:
+  MujocoWorld world_;
+  GripperFrame now_;
+};
+
+// Ten test scenes of a scenario, the oracle's actions on them, and what the engine was asked for.
+struct Played {
+  struct Episode {
+    Scene scene;
+    Action action;
+    std::vector<BodyPlacement> placed;
+    std::vector<GripperFrame> frames;
+    std::unique_ptr<BareMujoco> bare;
+  };
+  std::unique_ptr<Environment> environment;
+  std::unique_ptr<MujocoWorld> world;  // for resets without pictures
+  std::vector<Episode> episodes;
+};
+
+Played& played(const std::string& name) {
+  static std::map<std::string, Played> all;
+  const auto found = all.find(name);
+  if (found != all.end()) return found->second;
+  Played& played = all[name];
+  const Scenario scenario = load_scenario(name);
+  played.environment = tabletop::make_environment(std::make_unique<MujocoWorld>(), scenario.space);
+  auto owned = std::make_unique<Recorder>();
+  Recorder& recorder = *owned;
+  const auto recorded = tabletop::make_environment(std::move(owned), scenario.space);
+  for (int i = 0; i < scenes; ++i) {
+    const Scene scene = tabletop::sample_scene(scenario, {"cells", "test", "test", 0}, i);
+    recorded->reset(scene);
+    const Action action = recorded->expert_action();
+    recorded->step(action);
+    played.episodes.push_back({scene, action, recorder.placed, recorder.frames,
+                               std::make_unique<BareMujoco>(recorder.known, recorder.placed)});
+  }
+  played.world = std::make_unique<MujocoWorld>();
+  played.world->load(recorder.known, 3);
+  return played;
+}
+
+// Calls each(episode) once an iteration, the ten in turn.
+template <class Each>
+void over_episodes(benchmark::State& state, const char* scenario, const Each& each) {
+  Played& p = played(scenario);
+  std::size_t i = 0;
+  for (auto _ : state) each(p, p.episodes[i++ % p.episodes.size()]);
+  state.SetItemsProcessed(state.iterations());
+}
+
+void episode(benchmark::State& state, const char* scenario) {
+  over_episodes(state, scenario, [](Played& p, const Played::Episode& e) {
+    benchmark::DoNotOptimize(p.environment->reset(e.scene));
+    benchmark::DoNotOptimize(p.environment->step(e.action));
+  });
+}
+
+void bare_episode(benchmark::State& state, const char* scenario) {
+  double steps = 0;
+  over_episodes(state, scenario, [&steps](Played&, const Played::Episode& e) {
+    e.bare->reset();
+    e.bare->play(e.frames);
+    steps += static_cast<double>(e.frames.size());
+  });
+  state.counters["steps"] = steps / static_cast<double>(state.iterations());
+}
+
+void reset(benchmark::State& state) {
+  over_episodes(state, "heart", [](Played& p, const Played::Episode& e) { p.world->reset(e.placed); });
+}
+void bare_reset(benchmark::State& state) {
+  over_episodes(state, "heart", [](Played&, const Played::Episode& e) { e.bare->reset(); });
+}
+
+void picture(benchmark::State& state) {
+  tabletop::Renderer renderer;
+  over_episodes(state, "heart", [&renderer](Played&, const Played::Episode& e) {
+    benchmark::DoNotOptimize(renderer.render(tabletop::visible_objects(e.scene), tabletop::ground_of(e.scene)));
+  });
+}
+
+}  // namespace
+
+BareMujoco& first_scene() { return *played("heart").episodes[0].bare; }
+
+void register_environment() {
+  for (const char* scenario : {"heart", "rotate_block"}) {
+    benchmark::RegisterBenchmark((std::string("episode/") + scenario).c_str(), episode, scenario);
+    benchmark::RegisterBenchmark((std::string("episode/") + scenario + "/bare").c_str(), bare_episode, scenario);
+  }
+  benchmark::RegisterBenchmark("episode/sweep_block_without_touching_pan", episode, "sweep_block_without_touching_pan");
+  benchmark::RegisterBenchmark("reset", reset);
+  benchmark::RegisterBenchmark("reset/bare", bare_reset);
+  benchmark::RegisterBenchmark("picture", picture);
+}
+
+}  // namespace lgabench

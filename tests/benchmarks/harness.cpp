@@ -1,0 +1,56 @@
+// Whole programs: how long a list takes, and what a second worker brings.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "benchmarks.hpp"
+
+namespace lgabench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Scratch {
+  Scratch() {
+    if (!mkdtemp(path.data())) throw std::runtime_error("no temporary directory");
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  std::string path = (fs::temp_directory_path() / "lgabench-benchmark-XXXXXX").string();
+};
+
+void execute(benchmark::State& state, const std::string& arguments) {
+  if (std::system(fmt::format("'{}' {} >/dev/null 2>&1", LGABENCH_PROGRAM, arguments).c_str()) != 0)
+    state.SkipWithError(("failed: lgabench " + arguments).c_str());
+}
+
+void list(benchmark::State& state) {
+  for (auto _ : state) execute(state, "list");
+}
+
+// Sixteen cells of about the same length, demonstrations at hand.
+void workers(benchmark::State& state, int count) {
+  static const Scratch scratch;
+  for (auto _ : state)
+    execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 30 --seeds 0:8 --no-reference "
+                               "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",
+                               count, scratch.path, scratch.path));
+}
+
+}  // namespace
+
+void register_harness() {
+  benchmark::RegisterBenchmark("list", list)->UseRealTime();
+  for (const int count : {1, 2})
+    benchmark::RegisterBenchmark(fmt::format("workers/{}", count).c_str(), workers, count)
+        ->UseRealTime()
+        ->Iterations(1);
+}
+
+}  // namespace lgabench

@@ -1,0 +1,85 @@
+"""Writes loss_curves.json: 50 training steps of every network in PyTorch, which tests hold ours against.
+
+Needs PyTorch (Debian: python3-torch). Weights, inputs and labels come from one formula, so that a test makes the same
+numbers without a file: number i of a list named by `key` is ((i + 1) * 2654435761 + key * 40503) mod 2^32 / 2^32.
+    python3 make_loss_curves.py > loss_curves.json
+"""
+import json
+
+import torch
+from torch import nn
+
+SAMPLES, BATCH, STEPS = 40, 10, 50
+
+
+def numbers(key, count):
+    i = torch.arange(1, count + 1, dtype=torch.int64)
+    # Products modulo 2^32, then scrambled once more: neighbours must not be alike.
+    x = (i * 2654435761 + key * 40503) % 2**32
+    x = ((x ^ (x >> 15)) * 2246822519) % 2**32
+    return ((x ^ (x >> 13)).double() / 2**32).float()
+
+
+class Policy(nn.Module):
+    def __init__(self, channels, text, batch_norm):
+        super().__init__()
+
+        def block(from_, to, kernel, stride):
+            normalise = [nn.BatchNorm2d(to)] if batch_norm else []
+            return [nn.Conv2d(from_, to, kernel, stride), *normalise, nn.ReLU()]
+
+        self.towers = nn.ModuleList(
+            nn.Sequential(*block(c, 32, 8, 4), *block(32, 64, 4, 2), *block(64, 32, 3, 1), nn.Flatten()) for c in channels)
+        self.text = nn.Linear(384, 100) if text else None
+        self.head = nn.Linear(160 * len(channels) + 100 * text, 12)
+
+    def forward(self, pictures, text):
+        features = [tower(picture) for tower, picture in zip(self.towers, pictures)]
+        if self.text:
+            features.append(self.text(text))
+        return self.head(torch.cat(features, 1))
+
+
+def curve(channels, text, batch_norm, squared):
+    policy = Policy(channels, text, batch_norm)
+    parameters = list(policy.parameters())
+    first = numbers(3, sum(p.numel() for p in parameters)) - .5
+    with torch.no_grad():
+        begin = 0
+        for p in parameters:
+            # Weights as PyTorch begins with them; all else within .05, and batch normalisation's scale at 1.
+            p.copy_(first[begin:begin + p.numel()].view_as(p) * (2 / p[0].numel() ** .5 if p.dim() > 1 else .1))
+            begin += p.numel()
+        for module in policy.modules():
+            if isinstance(module, nn.BatchNorm2d):
+                module.weight.fill_(1)
+    # Channels last in the formula, as in our samples.
+    pictures = [numbers(10 + t, SAMPLES * 36 * 72 * c).view(SAMPLES, 36, 72, c).permute(0, 3, 1, 2).contiguous()
+                for t, c in enumerate(channels)]
+    texts = (numbers(20, SAMPLES * 384).view(SAMPLES, 384) - .5) / 5
+    labels = numbers(30, SAMPLES * 12).view(SAMPLES, 12)
+    optimiser = torch.optim.Adam(parameters, lr=1e-3)
+    losses = []
+    for step in range(STEPS):
+        rows = [(step * BATCH + i) % SAMPLES for i in range(BATCH)]
+        error = policy([p[rows] for p in pictures], texts[rows]) - labels[rows]
+        loss = (error ** 2).sum(1).mean() if squared else error.norm(dim=1).mean()
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        losses.append(round(loss.item(), 7))
+    return losses
+
+
+def main():
+    torch.set_num_threads(1)
+    networks = {"mask": ([1], False), "rgb": ([3], False), "mask_and_rgb": ([1, 3], False), "text": ([], True),
+                "rgb_and_text": ([3], True), "rgb_segmentation_and_text": ([3, 1], True)}
+    curves = [{"network": name, "channels": channels, "text": text, "batch_norm": paper, "squared": paper,
+               "losses": curve(channels, text, paper, paper)}
+              for name, (channels, text) in networks.items() for paper in (False, True)]
+    print(json.dumps({"torch": torch.__version__, "curves": curves}, indent=None, separators=(",", ":")).replace(
+        '{"network"', '\n{"network"'))
+
+
+main()

@@ -1,0 +1,101 @@
+// Two engines on the same scenes: what counts, and what does not.
+#include <gtest/gtest.h>
+
+#include <lgabench/report/engines.hpp>
+#include <lgabench/report/report.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+FabricatedRun::Spec on(const std::string& engine, FabricatedRun::Spec spec) {
+  spec.engine = engine;
+  return spec;
+}
+
+FabricatedRun::Spec acting(FabricatedRun::Spec spec, double action) {
+  spec.arms = {{"test", spec.won, {0}, action}};
+  return spec;
+}
+
+TEST(Engines, AgreeWhereTheSameActionEndsAlike) {
+  FabricatedRun run;
+  // LGA and LGA-HILL act alike: each of their twenty actions counts once among all.
+  for (const char* method : {"lga", "lga_hill"}) {
+    run.add(on("mujoco", {method, 15}));
+    run.add(on("bullet", {method, 13}));
+  }
+  run.add(on("mujoco", acting({"gcbc_dart", 4}, .1)));
+  run.add(on("bullet", acting({"gcbc_dart", 9}, .2)));  // trained on what the other engine showed
+  run.add(on("mujoco", {"oracle", 20, "heart", 0, 0, "reference"}));
+  run.save();
+  const report::RunResults results = report::read_run(run.path);
+  const auto agreements = report::engine_agreement(results);
+  ASSERT_EQ(agreements.size(), 1u);
+  const report::EngineAgreement& a = agreements[0];
+  EXPECT_EQ(a.first + a.second, "bulletmujoco");
+  ASSERT_EQ(a.rows.size(), 4u);
+  for (const std::size_t same : {0u, 1u}) {
+    EXPECT_EQ(a.rows[same].episodes, 20);
+    EXPECT_EQ(a.rows[same].won_first, 13);
+    EXPECT_EQ(a.rows[same].won_second, 15);
+    EXPECT_EQ(a.rows[same].agreed, 18);
+    EXPECT_NEAR(a.rows[same].interval.low, .699, .001);  // Wilson's of 18 of 20
+    EXPECT_NEAR(a.rows[same].interval.high, .972, .001);
+  }
+  EXPECT_EQ(a.rows[2].method, "gcbc_dart");
+  EXPECT_EQ(a.rows[2].episodes, 0);
+  EXPECT_EQ(a.rows[2].other_actions, 20);
+  EXPECT_EQ(a.rows[3].method, "");
+  EXPECT_EQ(a.rows[3].episodes, 20);
+  ASSERT_EQ(a.disagreements.size(), 2u);
+  EXPECT_EQ(a.disagreements[0].index, 13u);
+  EXPECT_EQ(a.disagreements[0].episode().failure, "missed_object");
+  EXPECT_EQ(a.disagreements[0].failure_second, "none");
+}
+
+TEST(Engines, OtherScenesAreNotCompared) {
+  FabricatedRun run;
+  FabricatedRun::Spec elsewhere{"lga", 15};
+  elsewhere.first_scene = 10;  // ten of them at another index, ten unknown
+  run.add(on("mujoco", {"lga", 15}));
+  run.add(on("bullet", elsewhere));
+  run.save();
+  const report::RunResults results = report::read_run(run.path);
+  EXPECT_EQ(report::engine_agreement(results)[0].rows[0].episodes, 0);
+}
+
+TEST(Engines, OneHasNoAgreement) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.save();
+  const report::Report report = report::write_report(run.path);
+  EXPECT_TRUE(report.agreements.empty());
+  EXPECT_EQ(read_file(run.path / "report.html").find("Does it depend on the engine"), std::string::npos);
+}
+
+TEST(Engines, AreInEveryTextOfTheReport) {
+  FabricatedRun run;
+  run.add(on("mujoco", {"lga", 15}));
+  run.add(on("bullet", {"lga", 13}));
+  run.save();
+  const report::Report report = report::write_report(run.path);
+  const std::string text = report::agreement_text(report.agreements);
+  EXPECT_EQ(text.find("bullet and mujoco, layout cells: the same verdict on the same action [95 % interval]\n\n"), 0u);
+  EXPECT_NE(text.find("  LGA                                 20      0.65      0.75  0.900 [0.699, 0.972]\n"),
+            std::string::npos)
+      << text;
+  const std::string markdown = read_file(run.path / "report.md");
+  EXPECT_NE(markdown.find("| LGA | 20 | 0 | 0.65 | 0.75 | 0.900 [0.699, 0.972] |"), std::string::npos);
+  EXPECT_NE(
+      markdown.find("| heart, LGA, 20 demonstrations, training seed 0, arm test, scene 14 | missed_object | won |"),
+      std::string::npos);
+  const Json summary = read_json(run.path / "summary.json");
+  EXPECT_EQ(summary.at("engine_agreement").at(0).at("rows").at(1).at("agreed"), 18);
+  const std::string page = read_file(run.path / "report.html");
+  EXPECT_NE(page.find("<span data-value=\"/engine_agreement/0/rows/0/episodes\">20</span>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lgabench
