@@ -8,6 +8,7 @@
 
 namespace lgabench {
 
+/// Of step t (Kingma and Ba 2015, algorithm 1), each rounded once.
 struct AdamCoefficients {
   float beta1, beta2, epsilon;
   float rest1, rest2;  // 1 - beta, which single precision would round
@@ -17,6 +18,7 @@ struct AdamCoefficients {
 
 /// All arrays are the caller's; any alignment is right, 64 bytes is fast. `columns` is read for linear layers alone.
 struct Kernels {
+  /// Those of one kind of layer.
   struct OfLayer {
     /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
     void (*forward)(const float* in, const float* weights, const float* bias, float* out, bool relu, int columns);

@@ -9,18 +9,19 @@ namespace lgabench {
 struct Layer {
   int rows, columns, channels, kernel, stride, out_channels;
 
-  constexpr int out_rows() const { return (rows - kernel) / stride + 1; }
-  constexpr int out_columns() const { return (columns - kernel) / stride + 1; }
+  constexpr int out_rows() const { return (rows - kernel) / stride + 1; }        ///< of its output
+  constexpr int out_columns() const { return (columns - kernel) / stride + 1; }  ///< likewise
   /// Numbers of one kernel row, which lie side by side in the picture as in the weights.
   constexpr int segment() const { return kernel * channels; }
-  constexpr int weights() const { return kernel * segment() * out_channels; }
-  constexpr int inputs() const { return rows * columns * channels; }
-  constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }
+  constexpr int weights() const { return kernel * segment() * out_channels; }          ///< without the bias
+  constexpr int inputs() const { return rows * columns * channels; }                   ///< of one picture
+  constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
 /// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 128, 12 actions to 16.
 constexpr int text_features = 100, padded_text_features = 128, padded_action = 16;
 
+/// Every layer that a network may have, in the order of `layers`.
 enum LayerKind { mask_convolution, rgb_convolution, convolution2, convolution3, text_linear, tower_head, text_head };
 
 constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},

@@ -4,6 +4,7 @@
 
 namespace lgabench {
 
+/// Numbers of an action, as a network gives them.
 constexpr int action_size = static_cast<int>(ActionVector().size());
 
 /// norm: the un-squared L2 norm over the 12 raw outputs (the default). squared: its square (the paper's text).

@@ -20,10 +20,12 @@ struct NetworkShape {
   bool batch_norm = false;  // before each ReLU, as the appendix has it
 };
 
+/// Numbers of a sentence embedding.
 constexpr int text_size = 384;
 
 /// Rows of input and label, each array row-major.
 struct Samples {
+  /// All zeros.
   explicit Samples(const NetworkShape& shape, int count);
 
   int rows;
@@ -44,6 +46,7 @@ class Network {
   /// All trainable numbers, in the order and the layout that PyTorch gives them: for each tower and convolution weight
   /// (out, in, row, column), bias and, with batch normalisation, scale and shift; then the text's and the last layer.
   std::vector<float> parameters() const;
+  /// Likewise. @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);
   /// Of the last backward(), likewise.
   std::vector<float> gradients() const;

@@ -8,6 +8,7 @@
 
 namespace lgabench {
 
+/// The defaults are those of the comparison (PROTOCOL, section 5).
 struct TrainingOptions {
   int epochs = 750;
   int batch_size = 10;
