@@ -42,7 +42,7 @@ class BadInput(Case):
             (["q1", "--set", "lga.epocs=3"], r"unknown member \"epocs\", expected one of: .*epochs"),
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
             (["q1", "--set", "lga.epochs=-3"], r"/epochs: expected a whole number of 1 or more, got -3"),
-            (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, gcbc_dart"),
+            (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, lga_hill, human"),
             (["q1", "--methods", "lga,lga+loss=norm"], r'"lga" and "lga\+loss=norm" are the same row, lga'),
             (["q1", "--methods", "lga+loss"], r'method "lga\+loss": expected ID\+OPTION=VALUE'),
             (["q1", "--jobs", "0"], r"--jobs"),

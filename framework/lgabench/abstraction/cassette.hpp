@@ -35,6 +35,7 @@ class Cassette {
   /// @throws InputError if the file cannot be written.
   void add(const std::string& key, const Json& request, const ChatReply& reply);
 
+  /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
   /// Of all replies, sorted.
   std::set<std::string> models() const;

@@ -25,8 +25,9 @@ struct Participant {
 
   /// nullptr where the participant was not asked.
   const Answer* find(const Scenario& scenario, const std::string& utterance) const;
-  /// Every command of the scenario was answered so: from scratch, or by editing.
+  /// Every command of the scenario was answered from scratch.
   bool specified_all(const Scenario& scenario) const;
+  /// Every command of the scenario was answered by editing a proposal.
   bool edited_all(const Scenario& scenario) const;
 };
 
@@ -36,6 +37,7 @@ Participant read_participant(const std::filesystem::path& file);
 /// One person's answers in place of the truth.
 class ParticipantAsHuman : public HumanAnswers {
  public:
+  /// Of one scenario's commands.
   ParticipantAsHuman(Participant participant, Scenario scenario);
 
   /// @throws InputError where the participant was not asked.
