@@ -315,6 +315,31 @@ class Page(Case):
         self.assertEqual(data["pictures"], {})
 
 
+class Engines(Case):
+    @unittest.skipUnless((BUILD / "lib/lgabench/plugins/mujoco.so").exists(), "MuJoCo is not built")
+    def test_one_policy_on_two_and_where_they_part(self):
+        # Pushes that are no oracle's: a block that turns under the blade is where the two differ.
+        self.call("run", "q1", "--engines", "mujoco,kinematic", "--scenarios", "sweep_block_without_touching_pan",
+                  "--layout", "continuous", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "60",
+                  "--no-reference", "--out", "run")
+        training = {cell["engine"]: (self.dir / "run/cells" / key / "training.jsonl").read_bytes()
+                    for key, (cell, _) in self.cells("run").items()}
+        self.assertEqual(training["mujoco"], training["kinematic"])
+        (agreement,) = json.loads((self.dir / "run/summary.json").read_text())["engine_agreement"]
+        row = agreement["rows"][0]
+        self.assertEqual((row["method"], row["episodes"], row["other_actions"]), ("lga", 60, 0))
+        self.assertEqual(row["episodes"] - row["agreed"], len(agreement["disagreements"]))
+        self.assertGreater(row["agreed"], 48)
+        self.assertGreater(len(agreement["disagreements"]), 0)
+        page = (self.dir / "run/report.html").read_text()
+        figures = re.findall(r"<figure class=engines>.*?</figure>", page, re.S)
+        self.assertEqual(len(figures), len(agreement["disagreements"]))
+        for figure in figures:
+            before, *ends = re.findall(r'src="data:image/png;base64,([^"]*)"', figure)
+            self.assertEqual(len(set(ends)), 2, "both ends are shown, and differ")
+            self.assertNotIn(before, ends)
+
+
 class Gallery(Case):
     def test_the_legends_in_the_documentation_are_the_sheets_own(self):
         page = (pathlib.Path(__file__).parents[2] / "docs" / "gallery.md").read_text()
