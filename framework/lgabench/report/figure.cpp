@@ -82,7 +82,7 @@ std::string title(const std::string& suite, const Table& table, const std::strin
 std::string settings(const std::string& title, const std::string& axis, double left, double right, double bottom,
                      const std::string& ticks) {
   return fmt::format(
-      "set terminal svg size 900,520 font 'Helvetica,14' background '#ffffff' noenhanced\n"
+      "set terminal svg size 900,620 font 'Helvetica,14' background '#ffffff' noenhanced\n"
       "set title {} font ',15'\n"
       "set xlabel {}\n"
       "set ylabel 'success'\n"
@@ -93,7 +93,7 @@ std::string settings(const std::string& title, const std::string& axis, double l
       "set xtics nomirror\n"
       "set border 3 lc rgb '#444444'\n"
       "set grid ytics lc rgb '#dddddd' lt 1 lw 1\n"
-      "set key outside right top Left reverse samplen 2.5 spacing 1.3\n",
+      "set key below center horizontal Left reverse maxcols 3 samplen 2.5 spacing 1.2\n",
       quoted(title), quoted(axis), left, right, ticks, bottom);
 }
 
