@@ -34,11 +34,11 @@ void list(benchmark::State& state) {
   for (auto _ : state) execute(state, "list");
 }
 
-// Sixteen cells of about the same length, demonstrations at hand.
+// Eight cells of about the same length, demonstrations at hand.
 void workers(benchmark::State& state, int count) {
   static const Scratch scratch;
   for (auto _ : state)
-    execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 30 --seeds 0:8 --no-reference "
+    execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 20 --seeds 0:4 --no-reference "
                                "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",
                                count, scratch.path, scratch.path));
 }
