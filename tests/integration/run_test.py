@@ -339,6 +339,21 @@ class Engines(Case):
             self.assertEqual(len(set(ends)), 2, "both ends are shown, and differ")
             self.assertNotIn(before, ends)
 
+    @unittest.skipUnless((BUILD / "lib/lgabench/plugins/mujoco.so").exists(), "MuJoCo is not built")
+    def test_an_engine_that_the_report_does_not_find_leaves_no_picture(self):
+        plugins = self.dir / "plugins"
+        plugins.mkdir()
+        shipped = (BUILD / "lib/lgabench/plugins/kinematic.so").read_bytes()
+        (plugins / "elsewhere.so").write_bytes(shipped.replace(b"kinematic\0", b"elsewhere\0"))
+        self.call("run", "q1", "--engines", "mujoco,elsewhere", "--plugin-path", "plugins", "--scenarios",
+                  "sweep_block_without_touching_pan", "--layout", "continuous", "--methods", "lga", "--demos", "10",
+                  "--seeds", "0", "--episodes", "60", "--no-reference", "--out", "run")
+        page = (self.dir / "run/report.html").read_text()
+        figures = re.findall(r"<figure class=engines>.*?</figure>", page, re.S)
+        self.assertGreater(len(figures), 0)
+        for figure in figures:
+            self.assertEqual(re.findall(r"<small>(\w+)", figure), ["before", "mujoco"])
+
 
 class Gallery(Case):
     def test_the_legends_in_the_documentation_are_the_sheets_own(self):

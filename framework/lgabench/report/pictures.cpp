@@ -20,7 +20,7 @@ namespace {
 struct Request {
   Json json;                        // as lgabench-worker reads it
   std::vector<std::string> masks;   // mask_key of each of its selections
-  std::vector<std::string> ends{};  // end_key of each engine that is asked for
+  std::vector<std::string> ends{};  // end_key of the scene itself, then of each engine that is asked for
 };
 
 Json distribution(const Json& selection) {
@@ -74,7 +74,7 @@ void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreement
                            {"engines", {agreement.first, agreement.second}},
                            {"action", d.episode().action}},
                           {},
-                          {end_key(d, agreement.first), end_key(d, agreement.second)}});
+                          {end_key(d, ""), end_key(d, agreement.first), end_key(d, agreement.second)}});
     }
 }
 
@@ -140,8 +140,9 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
       continue;
     }
     if (!request.ends.empty()) {
-      for (std::size_t i = 0; i < request.ends.size(); ++i) pictures.ends[request.ends[i]] = drawn.at("ends").at(i);
-      pictures.ends[request.ends.front().substr(0, request.ends.front().rfind('/') + 1)] = drawn.at("picture");
+      pictures.ends[request.ends[0]] = drawn.at("picture");
+      for (std::size_t i = 1; i < request.ends.size(); ++i)
+        if (const Json& png = drawn.at("ends").at(i - 1); png.is_string()) pictures.ends[request.ends[i]] = png;
       continue;
     }
     const std::string scene = request.json.at("scene");
