@@ -11,42 +11,30 @@
 #include <tabletop/tabletop.hpp>
 
 #include "engine_under_test.hpp"
+#include "forwarding_world.hpp"
 
 namespace lgabench::tabletop {
 
 /// The engine, with an eye kept on the bodies that the environment does not show.
-class WatchedWorld : public PhysicsWorld {
+class WatchedWorld : public ForwardingWorld {
  public:
-  explicit WatchedWorld(std::unique_ptr<PhysicsWorld> world) : world_(std::move(world)) {}
-  void load(const std::vector<BodyModel>& models, int copies) override { world_->load(models, copies); }
+  using ForwardingWorld::ForwardingWorld;
   void reset(const std::vector<BodyPlacement>& placements) override {
-    world_->reset(placements);
+    ForwardingWorld::reset(placements);
     steps = 0;
   }
-  double time_step_s() const override { return world_->time_step_s(); }
   void step() override {
-    world_->step();
+    ForwardingWorld::step();
     ++steps;
   }
   Pose pose(int body) const override {
-    Pose pose = world_->pose(body);
-    if (creeps) pose.position_m.x += 2e-3 * world_->time_step_s() * steps;
+    Pose pose = ForwardingWorld::pose(body);
+    if (creeps) pose.position_m.x += 2e-3 * time_step_s() * steps;
     return pose;
   }
-  std::vector<Contact> contacts() const override { return world_->contacts(); }
-  int cast_down(Vec2 point, double& height_m) const override { return world_->cast_down(point, height_m); }
-  void grip(int body, const Pose& gripper) override { world_->grip(body, gripper); }
-  void move_gripper(const Pose& gripper) override { world_->move_gripper(gripper); }
-  void release() override { world_->release(); }
-  void place_spatula(Vec3 size_m, const Pose& pose) override { world_->place_spatula(size_m, pose); }
-  void move_spatula(const Pose& pose) override { world_->move_spatula(pose); }
-  void remove_spatula() override { world_->remove_spatula(); }
 
   bool creeps = false;  // all bodies, at 2 mm/s
   int steps = 0;        // since reset
-
- private:
-  std::unique_ptr<PhysicsWorld> world_;
 };
 
 struct Bench {

@@ -11,6 +11,7 @@
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>
 
+#include "../forwarding_world.hpp"
 #include "bare_mujoco.hpp"
 #include "benchmarks.hpp"
 
@@ -20,41 +21,36 @@ namespace {
 constexpr int scenes = 10;
 
 // The engine, which remembers what it was asked for.
-class Recorder final : public PhysicsWorld {
+class Recorder final : public ForwardingWorld {
  public:
-  void load(const std::vector<BodyModel>& models, int copies) override { world_.load(known = models, copies); }
+  Recorder() : ForwardingWorld(std::make_unique<MujocoWorld>()) {}
+  void load(const std::vector<BodyModel>& models, int copies) override {
+    ForwardingWorld::load(known = models, copies);
+  }
   void reset(const std::vector<BodyPlacement>& placements) override {
-    world_.reset(placed = placements);
+    ForwardingWorld::reset(placed = placements);
     frames.clear();
     now_ = {};
   }
-  double time_step_s() const override { return world_.time_step_s(); }
   void step() override {
-    world_.step();
+    ForwardingWorld::step();
     frames.push_back(now_);
   }
-  Pose pose(int body) const override { return world_.pose(body); }
-  std::vector<Contact> contacts() const override { return world_.contacts(); }
-  int cast_down(Vec2 point, double& height_m) const override { return world_.cast_down(point, height_m); }
   void grip(int body, const Pose& gripper) override {
-    now_ = {body, gripper, world_.pose(body), gripper};
-    world_.grip(body, gripper);
+    now_ = {body, gripper, pose(body), gripper};
+    ForwardingWorld::grip(body, gripper);
   }
-  void move_gripper(const Pose& gripper) override { world_.move_gripper(now_.gripper = gripper); }
+  void move_gripper(const Pose& gripper) override { ForwardingWorld::move_gripper(now_.gripper = gripper); }
   void release() override {
     now_.held = no_body;
-    world_.release();
+    ForwardingWorld::release();
   }
-  void place_spatula(Vec3 size_m, const Pose& pose) override { world_.place_spatula(size_m, pose); }
-  void move_spatula(const Pose& pose) override { world_.move_spatula(pose); }
-  void remove_spatula() override { world_.remove_spatula(); }
 
   std::vector<BodyModel> known;
   std::vector<BodyPlacement> placed;
   std::vector<GripperFrame> frames;
 
  private:
-  MujocoWorld world_;
   GripperFrame now_;
 };
 

@@ -1,29 +1,15 @@
 // Whole programs: how long a list takes, and what a second worker brings.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <stdexcept>
+
+#include <lgabench/cli/scratch.hpp>
 
 #include "benchmarks.hpp"
 
 namespace lgabench {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Scratch {
-  Scratch() {
-    if (!mkdtemp(path.data())) throw std::runtime_error("no temporary directory");
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  std::string path = (fs::temp_directory_path() / "lgabench-benchmark-XXXXXX").string();
-};
 
 void execute(benchmark::State& state, const std::string& arguments) {
   if (std::system(fmt::format("'{}' {} >/dev/null 2>&1", LGABENCH_PROGRAM, arguments).c_str()) != 0)
@@ -36,11 +22,11 @@ void list(benchmark::State& state) {
 
 // Eight cells of about the same length, demonstrations at hand.
 void workers(benchmark::State& state, int count) {
-  static const Scratch scratch;
+  static const cli::Scratch scratch("benchmark");
   for (auto _ : state)
     execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 20 --seeds 0:4 --no-reference "
                                "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",
-                               count, scratch.path, scratch.path));
+                               count, scratch.path.string(), scratch.path.string()));
 }
 
 }  // namespace

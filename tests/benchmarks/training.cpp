@@ -18,12 +18,6 @@ namespace {
 
 constexpr int rows = 10;
 
-struct Shape {
-  const char* name;
-  NetworkShape shape;
-  double flops;  // of a step: twice the multiplications of every product
-};
-
 // Forward and weight gradient of every layer; input gradient of all but the first of each tower.
 double flops_of(const NetworkShape& shape) {
   double flops = 0;

@@ -57,10 +57,11 @@ TEST_F(ParticipantFile, IsReadAsTheSchemaHasIt) {
   EXPECT_EQ(p.sha256, sha256_file(file()));
   const Scenario red_heart = load_scenario("red_heart"), heart = load_scenario("heart"),
                  sweep = load_scenario("sweep_block_without_touching_line");
-  EXPECT_TRUE(p.specified_all(red_heart) && p.edited_all(red_heart));
-  EXPECT_TRUE(p.specified_all(sweep));
-  EXPECT_FALSE(p.edited_all(sweep));
-  EXPECT_FALSE(p.specified_all(heart) || p.edited_all(heart));
+  const auto specified = &Participant::Answer::specified, edited = &Participant::Answer::edited;
+  EXPECT_TRUE(p.answered_all(red_heart, specified) && p.answered_all(red_heart, edited));
+  EXPECT_TRUE(p.answered_all(sweep, specified));
+  EXPECT_FALSE(p.answered_all(sweep, edited));
+  EXPECT_FALSE(p.answered_all(heart, specified) || p.answered_all(heart, edited));
   const Participant::Answer* answer = p.find(red_heart, "Bring me the red heart.");
   ASSERT_NE(answer, nullptr);
   EXPECT_EQ(answer->specified->target, (FeatureSet{{"heart"}, {"red", "dark red"}})) << "in the space's order";

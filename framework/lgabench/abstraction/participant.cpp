@@ -66,17 +66,10 @@ const Answer* Participant::find(const Scenario& scenario, const std::string& utt
   return found == answers.end() ? nullptr : &found->second;
 }
 
-bool Participant::specified_all(const Scenario& scenario) const {
+bool Participant::answered_all(const Scenario& scenario, std::optional<Selection> Answer::*how) const {
   return std::all_of(scenario.commands.begin(), scenario.commands.end(), [&](const ScenarioCommand& command) {
     const Answer* answer = find(scenario, command.utterance);
-    return answer && answer->specified;
-  });
-}
-
-bool Participant::edited_all(const Scenario& scenario) const {
-  return std::all_of(scenario.commands.begin(), scenario.commands.end(), [&](const ScenarioCommand& command) {
-    const Answer* answer = find(scenario, command.utterance);
-    return answer && answer->edited;
+    return answer && answer->*how;
   });
 }
 

@@ -25,10 +25,8 @@ struct Participant {
 
   /// nullptr where the participant was not asked.
   const Answer* find(const Scenario& scenario, const std::string& utterance) const;
-  /// Every command of the scenario was answered from scratch.
-  bool specified_all(const Scenario& scenario) const;
-  /// Every command of the scenario was answered by editing a proposal.
-  bool edited_all(const Scenario& scenario) const;
+  /// Every command of the scenario was answered so: &Answer::specified, from scratch, or &Answer::edited.
+  bool answered_all(const Scenario& scenario, std::optional<Selection> Answer::*how) const;
 };
 
 /// @throws InputError with file and place: also for a command that no scenario has, and where consent was not given.

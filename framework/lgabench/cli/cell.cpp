@@ -1,8 +1,4 @@
 // lgabench-worker cell: one cell, described on stdin. `lgabench run` starts it; by hand: lgabench-worker cell <job.json
-#include <unistd.h>
-
-#include <cstdio>
-
 #include <lgabench/cli/job.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_cell.hpp>
@@ -10,9 +6,7 @@
 namespace lgabench::cli {
 namespace {
 
-void run(const Messages& messages) {
-  const Json json = read_job();
-  const JsonReader reader(json, "job");
+void run(const JsonReader& reader, const Messages& messages) {
   CellJob job{read_cell(reader.at("cell").json(), "job: /cell"),
               job_plugin(reader.at("engine")),
               std::nullopt,
@@ -32,13 +26,7 @@ void run(const Messages& messages) {
 
 void add_cell(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("cell", "Compute the cell described as JSON on stdin; progress on descriptor 3");
-  verb->callback([] {
-    const Messages messages;
-    complaining(messages, [&] { run(messages); });
-    // All is on the disk. What plugins do at exit can neither help nor harm any more.
-    std::fflush(nullptr);
-    ::_exit(ok);
-  });
+  verb->callback([] { do_job(run); });
 }
 
 }  // namespace lgabench::cli

@@ -1,9 +1,6 @@
 // lgabench-worker check-job: uses a plugin as cells do, and looks at what that leaves. `lgabench check-plugin` starts
 // it.
 #include <malloc.h>
-#include <unistd.h>
-
-#include <cstdio>
 
 #include <lgabench/cli/job.hpp>
 #include <lgabench/cli/verbs.hpp>
@@ -13,9 +10,7 @@
 namespace lgabench::cli {
 namespace {
 
-void check(const Messages& messages) {
-  const Json json = read_job();
-  const JsonReader job(json, "job");
+void check(const JsonReader& job, const Messages& messages) {
   // What the heap gives out is filled with another byte in the second process, so that reading it uninitialised shows.
   ::mallopt(M_PERTURB, static_cast<int>(job.at("perturb").integer(0, 255)));
   const CheckPhase phase = [&messages](const std::string& name) { messages.send({{"phase", name}, {"count", 0}}); };
@@ -31,12 +26,7 @@ void check(const Messages& messages) {
 void add_check_job(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("check-job", "Check the plugin described as JSON on stdin");
   verb->group("");
-  verb->callback([] {
-    const Messages messages;
-    complaining(messages, [&] { check(messages); });
-    std::fflush(nullptr);
-    ::_exit(ok);
-  });
+  verb->callback([] { do_job(check); });
 }
 
 }  // namespace lgabench::cli

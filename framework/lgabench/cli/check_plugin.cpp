@@ -43,9 +43,6 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, 0};
-  const auto plugin_json = [](const PluginInfo& p) {
-    return Json{{"file", fs::absolute(p.file).string()}, {"sha256", p.sha256}};
-  };
   const bool is_method = plugin.kind == "method";
   const Json options = options_of(plugin, a.settings);
   std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};

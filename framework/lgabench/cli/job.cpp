@@ -5,9 +5,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <new>
+
+#include <lgabench/cli/verbs.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -17,16 +20,7 @@ void limit(int resource, long long value) {
   ::setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-}  // namespace
-
-Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
-
-void Messages::send(const Json& message) const {
-  if (!open_) return;
-  const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-  [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
-}
-
+// And sets the limits that it names.
 Json read_job() {
   const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
   Json job = Json::parse(text, nullptr, false);
@@ -40,6 +34,16 @@ Json read_job() {
   return job;
 }
 
+}  // namespace
+
+Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
+
+void Messages::send(const Json& message) const {
+  if (!open_) return;
+  const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+  [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
+}
+
 PluginInfo job_plugin(const JsonReader& reader) {
   PluginInfo info = read_plugin(reader.at("file").string());
   if (info.sha256 != reader.at("sha256").string())
@@ -47,12 +51,14 @@ PluginInfo job_plugin(const JsonReader& reader) {
   return info;
 }
 
-void complaining(const Messages& messages, const std::function<void()>& work) {
+void do_job(const std::function<void(const JsonReader& job, const Messages& messages)>& work) {
+  const Messages messages;
   const auto complain = [&messages](const std::exception& e, const char* fault) {
     messages.send({{"reason", e.what()}, {"fault", fault}});
   };
   try {
-    work();
+    const Json job = read_job();
+    work(JsonReader(job, "job"), messages);
   } catch (const MethodError& e) {
     complain(e, "plugin");
     throw;
@@ -67,6 +73,9 @@ void complaining(const Messages& messages, const std::function<void()>& work) {
     complain(e, "host");
     throw;
   }
+  // All is on the disk. What plugins do at exit can neither help nor harm any more.
+  std::fflush(nullptr);
+  ::_exit(ok);
 }
 
 }  // namespace lgabench::cli

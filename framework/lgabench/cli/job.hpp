@@ -20,14 +20,12 @@ class Messages {
   bool open_;
 };
 
-/// Reads the job on stdin and sets its limits: a crash leaves no core; a loop, a leak or a log without end ends with
-/// this process. Before any plugin is loaded. @throws InputError
-Json read_job();
-
 /// The plugin {"file", "sha256"}. @throws PluginError where it is refused, or another one by now.
 PluginInfo job_plugin(const JsonReader& reader);
 
-/// Does it; tells of what it throws, and who is at fault, and throws on.
-void complaining(const Messages& messages, const std::function<void()>& work);
+/// A verb's whole run: reads the job on stdin, sets its limits (a crash leaves no core; a loop, a leak or a log without
+/// end ends with this process), does the work and ends the process. Tells of what the work throws, and who is at fault,
+/// and throws on. Before any plugin is loaded. @throws InputError
+void do_job(const std::function<void(const JsonReader& job, const Messages& messages)>& work);
 
 }  // namespace lgabench::cli

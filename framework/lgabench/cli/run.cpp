@@ -114,11 +114,10 @@ int run(const Arguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
-  if (const std::string prefix = "cassette:"; a.answers.rfind(prefix, 0) == 0) {
-    const fs::path cassette = a.answers.substr(prefix.size());
-    const CassetteAnswers checked = check_cassette(cassette, grid.scenarios);
-    variation.answers = checked.answers;
-    plan.answers.push_back(cassette_file(cassette, checked.model));
+  if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
+    CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
+    variation.answers = cassette.answers;
+    plan.answers.push_back(std::move(cassette.file));
   }
   if (!a.humans.empty())
     for (AnswerFile& file : read_participants(a.humans, variation.participants))
@@ -202,7 +201,8 @@ void add_run(CLI::App& app, int& exit) {
                    "Which language model answered; recorded: GPT-4 where it was asked, else Claude; gpt4, claude: that "
                    "one alone; cassette:FILE: the replies of a server's model, as lgabench select --suite keeps them")
       ->check([](const std::string& word) {
-        const bool known = word == "recorded" || word == "gpt4" || word == "claude" || word.rfind("cassette:", 0) == 0;
+        const bool known =
+            word == "recorded" || word == "gpt4" || word == "claude" || word.rfind(cassette_prefix, 0) == 0;
         return known ? "" : "expected recorded, gpt4, claude or cassette:FILE, got " + word;
       })
       ->capture_default_str();

@@ -118,8 +118,9 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
 }
 
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
-  RecordedLanguageModel recorded(asked.space, asked.answers_of, model ? "recorded" : arguments.answers);
-  const Selection selection = select_features(asked.command, asked.space, model ? *model : recorded);
+  std::optional<RecordedLanguageModel> recorded;
+  if (!model) model = &recorded.emplace(asked.space, asked.answers_of, arguments.answers);
+  const Selection selection = select_features(asked.command, asked.space, *model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {

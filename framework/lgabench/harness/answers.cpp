@@ -14,8 +14,6 @@
 namespace lgabench {
 namespace {
 
-const std::string cassette_prefix = "cassette:";
-
 // The file of that hash, if it still has it.
 fs::path kept_file(const fs::path& kept, const std::string& hash, const char* ending) {
   const fs::path file = kept / (hash + ending);
@@ -32,14 +30,6 @@ std::string only_model(const Cassette& cassette, const fs::path& file) {
 }
 
 }  // namespace
-
-AnswerFile cassette_file(const fs::path& cassette, const std::string& model) {
-  return {sha256_file(cassette) + ".jsonl", cassette, {{"model", model}}};
-}
-
-AnswerFile participant_file(const fs::path& file, const Participant& participant) {
-  return {participant.sha256 + ".json", file, {{"participant", participant.id}}};
-}
 
 std::vector<AnswerFile> kept_answers(const fs::path& run) {
   std::vector<AnswerFile> files;
@@ -70,7 +60,8 @@ CassetteAnswers check_cassette(const fs::path& file, const std::vector<std::stri
     for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c)
       select_features(scenario.command(c), scenario.space, lm);
   }
-  return {cassette_prefix + sha256_file(file), model};
+  const std::string hash = sha256_file(file);
+  return {cassette_prefix + hash, {hash + ".jsonl", file, {{"model", model}}}};
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector<Participant>& all) {
@@ -87,7 +78,7 @@ std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector
       if (other.id == participant.id)
         throw InputError(
             fmt::format("{}: /participant: \"{}\" has another file there, expected one each", file.string(), other.id));
-    files.push_back(participant_file(file, participant));
+    files.push_back({participant.sha256 + ".json", file, {{"participant", participant.id}}});
     all.push_back(std::move(participant));
   }
   return files;
@@ -95,8 +86,8 @@ std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector
 
 Answers answers_for(const Cell& cell, const Scenario& scenario, const fs::path& kept) {
   Answers answers;
-  if (cell.answers.rfind(cassette_prefix, 0) == 0) {
-    const fs::path file = kept_file(kept, cell.answers.substr(cassette_prefix.size()), ".jsonl");
+  if (const std::string prefix = cassette_prefix; cell.answers.rfind(prefix, 0) == 0) {
+    const fs::path file = kept_file(kept, cell.answers.substr(prefix.size()), ".jsonl");
     answers.cassette = std::make_unique<Cassette>(file);
     answers.lm = std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr,
                                                      ChatOptions{only_model(*answers.cassette, file)});

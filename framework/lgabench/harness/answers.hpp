@@ -18,16 +18,17 @@ struct AnswerFile {
   Json about;                  // {"model"} or {"participant"}: who answered
 };
 
-AnswerFile cassette_file(const std::filesystem::path& cassette, const std::string& model);
-AnswerFile participant_file(const std::filesystem::path& file, const Participant& participant);
 /// Those that a run keeps.
 std::vector<AnswerFile> kept_answers(const std::filesystem::path& run);
 /// Writes what is not there yet. @throws InputError for a file that is not what its name says.
 void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::path& run);
 
-/// Cell::answers for a cassette, and the model whose replies it holds.
+/// What Cell::answers begins with where they are a cassette's; its SHA-256 follows.
+constexpr const char* cassette_prefix = "cassette:";
+/// Such a cell's answers, and the file that they are in.
 struct CassetteAnswers {
-  std::string answers, model;
+  std::string answers;
+  AnswerFile file;
 };
 /// @throws InputError where the cassette does not hold the replies of exactly one model to every command of the
 /// scenarios: names the first that is missing, and the command line that asks it.

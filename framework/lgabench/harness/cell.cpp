@@ -79,10 +79,10 @@ std::vector<Competitor> competitors(const Grid& grid, const Json& settings, cons
 using Answering = std::vector<std::optional<CellParticipant>>;
 Answering participants(const std::string& method, const Scenario& scenario, const std::vector<Participant>& all) {
   if (all.empty() || (method != "human" && method != "lga_hill")) return {std::nullopt};
+  const auto how = method == "human" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
-    if (method == "human" ? one.specified_all(scenario) : one.edited_all(scenario))
-      some.push_back(CellParticipant{one.id, one.sha256});
+    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
   return some;
 }
 

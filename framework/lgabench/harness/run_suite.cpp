@@ -3,7 +3,6 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -28,19 +27,11 @@ Json build_of(const Cell& cell, const Catalogue& catalogue) {
   return build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue));
 }
 
-Json plugin_json(const PluginInfo& info) {
-  return {{"file", fs::absolute(info.file).string()}, {"sha256", info.sha256}};
-}
-
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
     if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
   return "unknown";
-}
-
-double memory_gib() {
-  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE)) / (1 << 30);
 }
 
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
@@ -80,7 +71,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"machine",
            {{"processor", processor()},
             {"cores", std::thread::hardware_concurrency()},
-            {"memory_gib", std::round(memory_gib() * 10) / 10},
+            {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
             {"system", fmt::format("{} {}", system.sysname, system.release)}}}};
 }
 

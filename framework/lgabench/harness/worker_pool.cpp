@@ -256,11 +256,19 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   return true;
 }
 
+Json plugin_json(const PluginInfo& plugin) {
+  return {{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
+}
+
+double machine_bytes() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+}
+
 // A worker that leaks meets its own limit before the machine's.
 Json worker_limits(const PoolOptions& options) {
-  const double all = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
   constexpr double gib = 1 << 30, least = 4 * gib;
-  const double memory = options.memory_gib > 0 ? options.memory_gib * gib : std::max(least, all / options.jobs);
+  const double memory =
+      options.memory_gib > 0 ? options.memory_gib * gib : std::max(least, machine_bytes() / options.jobs);
   return {{"cpu_s", static_cast<long long>(options.timeout_s) + 60}, {"data_bytes", static_cast<long long>(memory)}};
 }
 

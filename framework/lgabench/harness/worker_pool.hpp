@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
 
@@ -46,6 +47,12 @@ struct PoolEvents {
 /// @throws InputError if no process can be started. Uses the process's signal mask and children; one call at a time.
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
+
+/// {"file", "sha256"}: a plugin, as a job names it to the worker.
+Json plugin_json(const PluginInfo& plugin);
+
+/// Of this machine's memory.
+double machine_bytes();
 
 /// {"cpu_s", "data_bytes"}: the limits that a job's "limits" holds, which the worker sets before it loads a plugin.
 Json worker_limits(const PoolOptions& options);
