@@ -7,6 +7,8 @@ function(lgabench_target target)
                                            $<$<BOOL:${LGABENCH_NATIVE}>:-march=native>)
   # A fused multiply-add on one machine and not on another would make two results of one computation.
   target_compile_options(${target} PRIVATE -ffp-contract=off)
+  # What is built does not tell where (GoogleTest's macros hold the names of files).
+  target_compile_options(${target} PRIVATE -fmacro-prefix-map=${CMAKE_SOURCE_DIR}/=)
 endfunction()
 
 # One plugin from its sources: lgabench_add_plugin(my_method my_method.cpp [DIRECTORY D]). NAME.so is put into DIRECTORY,

@@ -27,7 +27,7 @@ class Unsound : public Policy {
     }
     if (how_ == "remembers") return at_place(.01 * (++calls_ % 100));
     if (how_ == "address")
-      return at_place(static_cast<double>(reinterpret_cast<std::uintptr_t>(this) >> 12 & 1023) / 1024);
+      return at_place(static_cast<double>(reinterpret_cast<std::uintptr_t>(this) % 1000003) / 1000003);
     if (how_ == "leak") kept_.push_back(observation);
     return at_place(.5);
   }
