@@ -11,7 +11,7 @@ namespace lgabench {
 class ForwardingWorld : public PhysicsWorld {
  public:
   explicit ForwardingWorld(std::unique_ptr<PhysicsWorld> world) : world_(std::move(world)) {}
-  void load(const std::vector<BodyModel>& models, int copies) override { world_->load(models, copies); }
+  void load(const std::vector<BodyModel>& models, int bodies) override { world_->load(models, bodies); }
   void reset(const std::vector<BodyPlacement>& placements) override { world_->reset(placements); }
   double time_step_s() const override { return world_->time_step_s(); }
   void step() override { world_->step(); }

@@ -51,13 +51,13 @@ btVector3 at_most(double limit, const btVector3& v) {
 
 }  // namespace
 
-void BulletWorld::load(const std::vector<BodyModel>& models, int copies) {
-  if (copies_ > 0) throw EngineError("Bullet: load() is called once");
+void BulletWorld::load(const std::vector<BodyModel>& models, int bodies) {
+  if (most_bodies_ > 0) throw EngineError("Bullet: load() is called once");
   // Of the process, unfortunately. By default 2 s, most of an episode, and .02 m, which keeps neighbours awake.
   gDeactivationTime = asleep_after_s;
   gContactBreakingThreshold = contact_m;
   for (const BodyModel& model : models) models_.push_back(make_bullet_model(model));
-  copies_ = copies;
+  most_bodies_ = static_cast<std::size_t>(bodies);
 }
 
 BulletWorld::Simulation BulletWorld::make_simulation(std::size_t bodies) const {
@@ -97,15 +97,16 @@ BulletWorld::Simulation BulletWorld::make_simulation(std::size_t bodies) const {
 }
 
 void BulletWorld::reset(const std::vector<BodyPlacement>& placements) {
-  if (copies_ == 0) throw EngineError("Bullet: reset() before load()");
+  if (most_bodies_ == 0) throw EngineError("Bullet: reset() before load()");
+  if (placements.size() > most_bodies_)
+    throw EngineError(fmt::format("Bullet: {} bodies, of at most {}", placements.size(), most_bodies_));
   grip_.reset();
   now_.reset();
   auto made = std::make_unique<Simulation>(make_simulation(placements.size()));
-  std::vector<int> used(models_.size(), 0);
   for (const BodyPlacement& p : placements) {
     const auto index = static_cast<std::size_t>(p.model);
-    if (p.model < 0 || index >= models_.size() || used[index]++ >= copies_)
-      throw EngineError(fmt::format("Bullet: no free body of model {}", p.model));
+    if (p.model < 0 || index >= models_.size())
+      throw EngineError(fmt::format("Bullet: no model {} among the {} loaded", p.model, models_.size()));
     const BulletModel& model = models_[index];
     const btTransform start = finite(p.pose) * model.mass_frame;
     auto rigid = make_body(model.mass_kg, model.shape(), model.inertia, start, static_cast<int>(made->bodies.size()));

@@ -17,7 +17,7 @@ namespace lgabench {
 /// be, and contacts have the last word. The spatula is a kinematic body.
 class BulletWorld final : public PhysicsWorld {
  public:
-  void load(const std::vector<BodyModel>& models, int copies) override;
+  void load(const std::vector<BodyModel>& models, int bodies) override;
   void reset(const std::vector<BodyPlacement>& placements) override;
   double time_step_s() const override;
   void step() override;
@@ -61,7 +61,7 @@ class BulletWorld final : public PhysicsWorld {
   void pull_held();
 
   std::vector<BulletModel> models_;
-  int copies_ = 0;
+  std::size_t most_bodies_ = 0;
   std::unique_ptr<Simulation> now_;
   std::optional<Grip> grip_;
 };

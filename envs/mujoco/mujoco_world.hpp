@@ -1,4 +1,4 @@
-// Rigid bodies on MuJoCo: one compiled pool of every model, most of it parked and asleep.
+// Rigid bodies on MuJoCo.
 #pragma once
 #include <mujoco/mujoco.h>
 #include <memory>
@@ -7,17 +7,18 @@
 
 #include <lgabench/core/physics_world.hpp>
 
+#include "mujoco/mujoco_pool.hpp"
+
 namespace lgabench {
 
-/// The pool holds `copies` bodies of each model. Parked ones lie beside the table without contacts and asleep, so they
-/// cost a step next to nothing; reset() always starts from the same pristine state, so no scene sees an earlier one.
-/// Suction is a weld to a mocap body. The spatula is a very heavy free body, set on its way before each step: contacts
-/// take a mocap body to stand still, and let what it pushes sink into it.
+/// reset() always starts from the same pristine state of the pool, so no scene sees an earlier one. Suction is a weld
+/// to a mocap body. The spatula is a very heavy free body, set on its way before each step: contacts take a mocap body
+/// to stand still, and let what it pushes sink into it.
 class MujocoWorld final : public PhysicsWorld {
  public:
   MujocoWorld();
 
-  void load(const std::vector<BodyModel>& models, int copies) override;
+  void load(const std::vector<BodyModel>& models, int bodies) override;
   void reset(const std::vector<BodyPlacement>& placements) override;
   double time_step_s() const override;
   void step() override;
@@ -32,16 +33,7 @@ class MujocoWorld final : public PhysicsWorld {
   void remove_spatula() override;
 
  private:
-  /// A body of the pool: its addresses in the compiled model.
-  struct Slot {
-    int body = 0, first_geom = 0, geoms = 0;
-    int mocap = -1;                      // fixed bodies
-    int qpos = -1, dof = -1, tree = -1;  // free bodies
-  };
-
-  const Slot& slot(int body) const;
-  void compile(const std::vector<BodyModel>& models, int copies);
-  void set_collidable(int body, bool collidable);
+  const MujocoBody& placed(int body) const;
   void set_mocap(int mocap, const Pose& pose);
   void park_spatula();
   void drive_spatula();
@@ -50,13 +42,10 @@ class MujocoWorld final : public PhysicsWorld {
   void refresh() const;
   void check() const;
 
-  std::unique_ptr<mjModel, void (*)(mjModel*)> model_;
+  std::optional<MujocoPool> pool_;
+  mjModel* model_ = nullptr;                                    // the pool's
   std::unique_ptr<mjData, void (*)(mjData*)> data_, pristine_;  // pristine: everything parked and asleep
-  std::vector<std::vector<Slot>> pool_;                         // by model, then copy
-  std::vector<Slot> placed_;                                    // by placement
-  std::vector<int> owner_;  // by geom: placement, table_body, spatula_body or no_body
-  int gripper_ = -1;        // mocap id
-  Slot spatula_;
+  std::vector<int> owner_;            // by geom: placement, table_body, spatula_body or no_body
   std::optional<Pose> spatula_pose_;  // where it shall be after the next step; none: parked
   int held_ = no_body;
   mutable bool stale_ = false;  // positions of geoms are one step behind the state

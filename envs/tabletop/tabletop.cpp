@@ -14,7 +14,7 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr int copies = 3;  // of a type in one scene
+constexpr int most_bodies = 6;  // in one scene: the most that a scenario can ask for
 
 class Tabletop final : public Environment {
  public:
@@ -27,7 +27,7 @@ class Tabletop final : public Environment {
     };
     for (const std::string& type : space.object_types) add(type, false);
     add(goal_type, true);
-    world_->load(models, copies);
+    world_->load(models, most_bodies);
   }
 
   Observation reset(const Scene& scene) override {

@@ -125,8 +125,8 @@ const Pose& finite(const Pose& pose) {
 
 class KinematicWorld final : public PhysicsWorld {
  public:
-  void load(const std::vector<BodyModel>& models, int copies) override {
-    if (copies_ > 0) throw EngineError("kinematic: load() is called once");
+  void load(const std::vector<BodyModel>& models, int bodies) override {
+    if (most_bodies_ > 0) throw EngineError("kinematic: load() is called once");
     for (const BodyModel& m : models) {
       Model model{{}, m.fixed};
       for (const ConvexPiece& piece : m.pieces) {
@@ -140,17 +140,16 @@ class KinematicWorld final : public PhysicsWorld {
       }
       models_.push_back(std::move(model));
     }
-    copies_ = copies;
+    most_bodies_ = static_cast<std::size_t>(bodies);
   }
 
   void reset(const std::vector<BodyPlacement>& placements) override {
-    if (copies_ == 0) throw EngineError("kinematic: reset() before load()");
+    if (most_bodies_ == 0) throw EngineError("kinematic: reset() before load()");
+    if (placements.size() > most_bodies_) throw EngineError("kinematic: more bodies than load() was told");
     std::vector<Body> bodies;
-    std::vector<int> used(models_.size(), 0);
     for (const BodyPlacement& p : placements) {
       const auto index = static_cast<std::size_t>(p.model);
-      if (p.model < 0 || index >= models_.size() || used[index]++ >= copies_)
-        throw EngineError("kinematic: no free body of model " + std::to_string(p.model));
+      if (p.model < 0 || index >= models_.size()) throw EngineError("kinematic: no model " + std::to_string(p.model));
       bodies.push_back({&models_[index], finite(p.pose), {}});
       move(bodies.back(), p.pose);
       bodies.back().moved = false;
@@ -307,7 +306,7 @@ class KinematicWorld final : public PhysicsWorld {
   }
 
   std::vector<Model> models_;
-  int copies_ = 0;
+  std::size_t most_bodies_ = 0;
   std::vector<Body> bodies_;
   std::optional<Grip> grip_;
   std::optional<Spatula> spatula_;

@@ -24,8 +24,8 @@ constexpr int scenes = 10;
 class Recorder final : public ForwardingWorld {
  public:
   Recorder() : ForwardingWorld(std::make_unique<MujocoWorld>()) {}
-  void load(const std::vector<BodyModel>& models, int copies) override {
-    ForwardingWorld::load(known = models, copies);
+  void load(const std::vector<BodyModel>& models, int bodies) override {
+    ForwardingWorld::load(known = models, bodies);
   }
   void reset(const std::vector<BodyPlacement>& placements) override {
     ForwardingWorld::reset(placed = placements);
@@ -87,7 +87,7 @@ Played& played(const std::string& name) {
                                std::make_unique<BareMujoco>(recorder.known, recorder.placed)});
   }
   played.world = std::make_unique<MujocoWorld>();
-  played.world->load(recorder.known, 3);
+  played.world->load(recorder.known, 6);
   return played;
 }
 

@@ -26,11 +26,11 @@ std::vector<BodyModel> all_models() {
 }
 BodyPlacement pallet(double x, double y) { return {static_cast<int>(object_types().size()), {{x, y, 0}, {}}}; }
 
-constexpr int copies = 3;
+constexpr int most_bodies = 6;
 
 std::unique_ptr<PhysicsWorld> fresh_world() {
   auto made = make_engine();
-  made->load(all_models(), copies);
+  made->load(all_models(), most_bodies);
   return made;
 }
 
@@ -187,6 +187,23 @@ TEST(World, OtherBodiesFarAwayChangeNothing) {
   for (std::size_t i = 0; i < alone.size(); ++i) ASSERT_LT(distance(alone[i], accompanied[i]), 1e-4);
 }
 
+TEST(World, WhatElseCouldBePlacedChangesNothing) {
+  std::vector<BodyModel> models = all_models();
+  std::reverse(models.begin(), models.end());
+  const auto other = make_engine();
+  other->load(models, most_bodies + 3);
+  const int last = static_cast<int>(models.size()) - 1;
+  for (const std::string& type : object_types()) {
+    std::vector<BodyPlacement> placed{at(type, .5, .1), pallet(.55, .38)};
+    world().reset(placed);
+    const std::vector<Pose> seen = carry_and_drop(world());
+    for (BodyPlacement& p : placed) p.model = last - p.model;
+    other->reset(placed);
+    const std::vector<Pose> again = carry_and_drop(*other);
+    EXPECT_TRUE(std::equal(seen.begin(), seen.end(), again.begin(), same)) << type;
+  }
+}
+
 TEST(World, SuctionLiftsOnlyWhatItHolds) {
   const double height = object_model("block").height_m;
   world().reset({at("block", .5, 0), at("block", .5, .071), at("block", .5, -.071)});  // 1 mm apart
@@ -316,7 +333,7 @@ TEST(World, RaysFollowABodyThatMovesAndDoNotSeeTheSpatula) {
 TEST(World, RefusesWhatItCannotDo) {
   EXPECT_THROW(world().reset({{99, {}}}), EngineError);
   EXPECT_THROW(world().reset({{-1, {}}}), EngineError);
-  EXPECT_THROW(world().reset(std::vector<BodyPlacement>(copies + 1, at("block", .5, 0))), EngineError);
+  EXPECT_THROW(world().reset(std::vector<BodyPlacement>(most_bodies + 1, at("block", .5, 0))), EngineError);
   world().reset({at("block", .5, 0)});
   EXPECT_THROW(world().pose(1), EngineError);
   EXPECT_THROW(world().pose(-1), EngineError);

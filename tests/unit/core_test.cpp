@@ -168,6 +168,8 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/label_noise: expected a probability");
   json["tests"][1] = {{"arm", "second"}, {"choice", {"heart", "hart"}}};
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice/1: expected an object type");
+  json["tests"][1]["choice"] = std::vector<std::string>(6, "heart");
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice: expected at most 5 object types");
   json["tests"][1] = {{"arm", "train"}};
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected another name");
   json = heart();

@@ -40,9 +40,9 @@ class PhysicsWorld {
  public:
   virtual ~PhysicsWorld() = default;
 
-  /// Compiles what may be placed: at most `copies` of each model at once. Called once, before reset.
+  /// Compiles what may be placed: at most `bodies` at once, of any of the models. Called once, before reset.
   /// @pre reset's outcome depends on this pool only through the models it places.
-  virtual void load(const std::vector<BodyModel>& models, int copies) = 0;
+  virtual void load(const std::vector<BodyModel>& models, int bodies) = 0;
 
   /// Places the bodies at rest, drops all else (grip, spatula, velocities, solver state). Pure: same placements, same
   /// future.

@@ -31,7 +31,8 @@ const std::vector<std::string> content_members{"target", "avoid", "distractors",
 
 // Members of the content that the reader gives, over those of `content`.
 SceneContent read_content(const JsonReader& reader, SceneContent content, const FeatureSpace& space) {
-  constexpr int most = 2;  // more than that do not fit beside the widest target
+  constexpr int most = 2;                  // more than that do not fit beside the widest target
+  constexpr std::size_t most_choices = 5;  // with the goal's or the target's, the bodies that an engine holds ready
   if (reader.has("target")) content.target = read_feature_set(reader.at("target"), space);
   if (reader.has("avoid")) content.avoid = read_feature_set(reader.at("avoid"), space);
   if (reader.has("distractors")) {
@@ -44,6 +45,8 @@ SceneContent read_content(const JsonReader& reader, SceneContent content, const 
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
   if (reader.has("choice")) {
     content.choice = reader.at("choice").strings();
+    if (content.choice.size() > most_choices)
+      reader.at("choice").fail(fmt::format("at most {} object types", most_choices));
     for (const JsonReader& type : reader.at("choice").elements())
       if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
         type.fail("an object type of the feature space");
