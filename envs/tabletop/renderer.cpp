@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -53,15 +54,19 @@ Area area_of(Vec2 low, Vec2 high) {
   return {up(low.x, rows), down(high.x, rows), up(low.y, columns), down(high.y, columns)};
 }
 
-// Calls visit(pixel, share of b, share of c) for each pixel whose centre lies in the triangle, if a, b, c run
-// counter-clockwise: the side of a surface that faces the eye (or the light) does.
+// Twice the triangle's area; positive if a, b, c run counter-clockwise, as the side of a surface does that faces the eye
+// (or the light).
+double doubled_area(Vec2 a, Vec2 b, Vec2 c) { return cross(b - a, c - a); }
+
+// Calls visit(row, first column, last column) for each row in which pixels' centres lie in the triangle, if its area is
+// positive.
 template <typename Visit>
 void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
-  const double area = cross(b - a, c - a);
-  if (area < 1e-9) return;        // turned away, or seen edge-on
-  constexpr double slack = 1e-9;  // no gap between neighbours through rounding
+  if (doubled_area(a, b, c) < 1e-9) return;  // turned away, or seen edge-on
+  constexpr double slack = 1e-9;             // no gap between neighbours through rounding
   const Area box = area_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
                            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})});
+  if (box.first_row > box.last_row || box.first_column > box.last_column) return;
   const std::array<std::array<Vec2, 2>, 3> edges{{{a, b}, {b, c}, {c, a}}};
   std::array<double, 3> slopes;
   for (std::size_t i = 0; i < 3; ++i) slopes[i] = (edges[i][1].y - edges[i][0].y) / (edges[i][1].x - edges[i][0].x);
@@ -73,10 +78,7 @@ void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
       if (to.x > from.x) first = std::max(first, crossing - slack);
       if (to.x < from.x) last = std::min(last, crossing + slack);
     }
-    for (int column = static_cast<int>(std::ceil(first)); column <= last; ++column) {
-      const Vec2 p{row + 0.0, column + 0.0};
-      visit(static_cast<std::size_t>(row * columns + column), cross(a - c, p - c) / area, cross(b - a, p - a) / area);
-    }
+    if (first <= last) visit(row, static_cast<int>(std::ceil(first)), static_cast<int>(last));
   }
 }
 
@@ -105,33 +107,43 @@ struct Placed {
   }
 };
 
-// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
-// object; on top, u is local y (right at yaw 0) and v local x (down).
-Rgb colour_at(const Texture& texture, Vec3 point, Vec3 normal) {
-  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
-  if (z >= x && z >= y) return texture.at(point.y, point.x);
-  return x >= y ? texture.at(point.y, -point.z) : texture.at(point.x, -point.z);
-}
+// Texture coordinates on a surface: the plane that it faces most, in the body's frame, so that a picture turns with its
+// object; on top, u is local y (right at yaw 0) and v local x (down), on the sides v is -z.
+struct Plane {
+  Vec3 u, v;  // in the world
+
+  Plane(Vec3 normal, const std::array<Vec3, 3>& axes) {
+    const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+    const bool level = z >= x && z >= y;
+    u = level || x >= y ? axes[1] : axes[0];
+    v = level ? axes[0] : -1 * axes[2];
+  }
+};
 
 // Brightness in 1/256 (256: the colour as it is), so that a picture takes integers only.
-Rgb lit(Rgb colour, int brightness) {
-  for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(std::min((c * brightness + 128) >> 8, 255));
-  return colour;
+void paint_pixel(std::uint8_t* rgb, const Rgb& colour, int brightness) {
+  for (std::size_t i = 0; i < 3; ++i)
+    rgb[i] = static_cast<std::uint8_t>(std::min((colour[i] * brightness + 128) >> 8, 255));
 }
 
-// The pixel's centre is painted.
-bool is_zone(Ground ground, std::size_t pixel) {
-  const double y = Workspace::y_min + (static_cast<double>(pixel % columns) + 0.5) * column_m;
-  return ground == Ground::goal_zones && GoalZones::contains({0, y});
-}
-
-std::vector<std::uint8_t> empty_table(Ground ground) {
-  std::vector<std::uint8_t> rgb;
+// The table without objects, at that brightness everywhere.
+std::vector<std::uint8_t> empty_table(Ground ground, int brightness) {
+  std::vector<std::uint8_t> rgb(3 * pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
-    const Rgb& colour = is_zone(ground, i) ? zone_colour : table_colour;
-    rgb.insert(rgb.end(), colour.begin(), colour.end());
+    const double y = Workspace::y_min + (static_cast<double>(i % columns) + 0.5) * column_m;
+    const bool zone = ground == Ground::goal_zones && GoalZones::contains({0, y});
+    paint_pixel(&rgb[3 * i], zone ? zone_colour : table_colour, brightness);
   }
   return rgb;
+}
+
+struct Table {
+  std::vector<std::uint8_t> in_light, in_shadow;
+};
+const Table& table(Ground ground) {
+  const auto make = [](Ground g) { return Table{empty_table(g, 256), empty_table(g, ambient)}; };
+  static const Table plain = make(Ground::plain), with_zones = make(Ground::goal_zones);
+  return ground == Ground::plain ? plain : with_zones;
 }
 
 }  // namespace
@@ -149,11 +161,12 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
 struct Renderer::Impl {
   RTCDevice device;
   std::map<std::string, Shape> shapes;  // by object type, made at first use
-  // Of the picture in work, valid where its id is not 0: what is highest there.
+  // Of the picture in work: what is highest at a pixel. Heights are those of the areas of objects.
   std::vector<double> heights_m;
   std::vector<std::uint32_t> triangles;
+  std::vector<std::uint8_t> shadow;  // pixels to which an object keeps the light from the table; all 0 between pictures
 
-  Impl() : heights_m(pixels), triangles(pixels) {
+  Impl() : heights_m(pixels), triangles(pixels), shadow(pixels) {
     // One fixed instruction set, so that no machine takes another path through Embree; every x86-64 since 2008 has it.
     device = rtcNewDevice("threads=1,isa=sse4.2");
     if (!device) throw EngineError(fmt::format("Embree: not started, error {}", rtcGetDeviceError(nullptr)));
@@ -204,7 +217,11 @@ struct Renderer::Impl {
     placed.position = p;
     placed.axes = {rotated({1, 0, 0}, q), rotated({0, 1, 0}, q), rotated({0, 0, 1}, q)};
     placed.light = placed.to_body(light);
-    for (const Vec3& local : placed.shape->mesh->vertices_m) {
+    const std::vector<Vec3>& locals = placed.shape->mesh->vertices_m;
+    placed.vertices.reserve(locals.size());
+    placed.seen_at.reserve(locals.size());
+    placed.shadow_at.reserve(locals.size());
+    for (const Vec3& local : locals) {
       const Vec3 v = p + local.x * placed.axes[0] + local.y * placed.axes[1] + local.z * placed.axes[2];
       placed.vertices.push_back(v);
       placed.seen_at.push_back(in_picture(v.x, v.y));
@@ -216,37 +233,65 @@ struct Renderer::Impl {
     return placed;
   }
 
+  void clear(const Area& area) {
+    for (int row = area.first_row; row <= area.last_row; ++row)
+      for (int column = area.first_column; column <= area.last_column; ++column) heights_m[row * columns + column] = 0;
+  }
+
   // Ids of the pixels where this object is the highest so far, and what of it is seen there.
   void draw(const Placed& object, Observation& seen) {
     for (std::uint32_t i = 0; i < object.shape->normals.size(); ++i) {
       const auto [ia, ib, ic] = object.shape->mesh->triangles[i];
+      const Vec2 at_a = object.seen_at[ia], at_b = object.seen_at[ib], at_c = object.seen_at[ic];
       const double a = object.vertices[ia].z, b = object.vertices[ib].z, c = object.vertices[ic].z;
-      const auto keep_highest = [&](std::size_t pixel, double of_b, double of_c) {
-        const double height = a + of_b * (b - a) + of_c * (c - a);
-        if (height <= (seen.ids[pixel] ? heights_m[pixel] : 0)) return;
+      const auto keep_highest = [&](int pixel, double height) {
+        if (height <= heights_m[pixel]) return;
         heights_m[pixel] = height;
         triangles[pixel] = i;
         seen.ids[pixel] = object.id;
       };
-      fill(object.seen_at[ia], object.seen_at[ib], object.seen_at[ic], keep_highest);
+      if (a == b && a == c) {  // most are: tops of prisms
+        fill(at_a, at_b, at_c, [&](int row, int first, int last) {
+          for (int column = first; column <= last; ++column) keep_highest(row * columns + column, a);
+        });
+        continue;
+      }
+      const double area = doubled_area(at_a, at_b, at_c);
+      fill(at_a, at_b, at_c, [&](int row, int first, int last) {
+        for (int column = first; column <= last; ++column) {
+          const Vec2 p{row + 0.0, column + 0.0};
+          const double of_b = cross(at_a - at_c, p - at_c) / area, of_c = cross(at_b - at_a, p - at_a) / area;
+          keep_highest(row * columns + column, a + of_b * (b - a) + of_c * (c - a));
+        }
+      });
     }
   }
 
   // Darkens the table where the object keeps the light from it.
-  static void shade_table(const Placed& object, Ground ground, Observation& seen) {
-    const Rgb shaded = lit(table_colour, ambient), shaded_zone = lit(zone_colour, ambient);
-    const auto darken = [&](std::size_t pixel, double, double) {
-      if (seen.ids[pixel] != 0) return;
-      const Rgb& colour = is_zone(ground, pixel) ? shaded_zone : shaded;
-      std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
-    };
+  void shade_table(const Placed& object, const Table& table, Observation& seen) {
+    std::uint8_t* const dark = shadow.data();
+    Area all{rows, -1, columns, -1};
     for (const auto& [a, b, c] : object.shape->mesh->triangles)
-      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], darken);
+      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], [&](int row, int first, int last) {
+        all = {std::min(all.first_row, row), std::max(all.last_row, row), std::min(all.first_column, first),
+               std::max(all.last_column, last)};
+        if (first <= last) std::memset(dark + row * columns + first, 1, static_cast<std::size_t>(last - first + 1));
+      });
+    if (all.first_column > all.last_column) return;
+    const std::uint8_t *const ids = seen.ids.data(), *const shaded = table.in_shadow.data();
+    std::uint8_t* const rgb = seen.rgb.data();
+    for (int row = all.first_row; row <= all.last_row; ++row) {
+      const int first = row * columns + all.first_column, last = row * columns + all.last_column;
+      for (int pixel = first; pixel <= last; ++pixel)
+        if (dark[pixel] && !ids[pixel]) std::copy_n(shaded + 3 * pixel, 3, rgb + 3 * pixel);
+      std::memset(dark + first, 0, static_cast<std::size_t>(last - first + 1));
+    }
   }
 
   // An object stands between the point on a surface and the light.
-  bool is_shaded(Vec3 point, const std::vector<Placed>& objects) const {
-    for (const Placed& object : objects) {
+  static bool is_shaded(Vec3 point, const std::vector<const Placed*>& casters) {
+    for (const Placed* caster : casters) {
+      const Placed& object = *caster;
       const double below_top = object.high.z - point.z;
       if (below_top < clearance_m) continue;
       // The way to the light, as far as it is no higher than the object, against the object's box.
@@ -271,21 +316,63 @@ struct Renderer::Impl {
     return false;
   }
 
-  // Colours of the pixels that show this object.
-  void paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
+  // Objects that may keep light from this one: all whose box, drawn out to the end of its shadow, meets its box.
+  static std::vector<const Placed*> casters_on(const Placed& object, const std::vector<Placed>& objects) {
+    constexpr double slack = 1e-6;  // more than rounding
+    std::vector<const Placed*> casters;
+    for (const Placed& other : objects) {
+      const double reach = (other.high.z - object.low.z) * climb;
+      if (reach >= 0 && object.low.x <= other.high.x - reach * light.x + slack && object.high.x >= other.low.x - slack &&
+          object.low.y <= other.high.y - reach * light.y + slack && object.high.y >= other.low.y - slack)
+        casters.push_back(&other);
+    }
+    return casters;
+  }
+
+  // Colours of the pixels that show this object; how many there are.
+  int paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
+    const std::vector<const Placed*> casters = casters_on(object, objects);
+    int visible = 0;
     for (int row = object.area.first_row; row <= object.area.last_row; ++row)
-      for (int column = object.area.first_column; column <= object.area.last_column; ++column) {
-        const auto pixel = static_cast<std::size_t>(row * columns + column);
-        if (seen.ids[pixel] != object.id) continue;
-        const Vec3 point{Workspace::x_min + (row + 0.5) * row_m, Workspace::y_min + (column + 0.5) * column_m,
-                         heights_m[pixel]};
-        const Vec3 normal = object.shape->normals[triangles[pixel]];
-        const double cosine = dot(normal, object.light);
-        const bool in_light = cosine > 0 && !is_shaded(point, objects);
-        const int brightness = ambient + (in_light ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0);
-        const Rgb colour = lit(colour_at(*object.texture, object.to_body(point - object.position), normal), brightness);
-        std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
+      for (int column = object.area.first_column; column <= object.area.last_column;) {
+        const int pixel = row * columns + column;
+        if (seen.ids[pixel] != object.id) {
+          ++column;
+          continue;
+        }
+        int end = column + 1;  // of the pixels that show the same triangle
+        while (end <= object.area.last_column && seen.ids[row * columns + end] == object.id &&
+               triangles[row * columns + end] == triangles[pixel])
+          ++end;
+        paint_run(object, row, column, end, casters, &seen.rgb[3 * pixel]);
+        visible += end - column;
+        column = end;
       }
+    return visible;
+  }
+
+  // Colours of pixels of one row, columns `first` to before `end`, that show one triangle of the object.
+  void paint_run(const Placed& object, int row, int first, int end, const std::vector<const Placed*>& casters,
+                 std::uint8_t* rgb) const {
+    const double* const heights = &heights_m[row * columns];
+    const double x = Workspace::x_min + (row + 0.5) * row_m;
+    const auto point = [&](int column) {
+      return Vec3{x, Workspace::y_min + (column + 0.5) * column_m, heights[column]};
+    };
+    const Vec3 normal = object.shape->normals[triangles[row * columns + first]], origin = object.position;
+    const Plane plane(normal, object.axes);
+    const Texture& texture = *object.texture;
+    std::array<int, columns> texels;  // in a loop of its own, which takes several pixels at once
+    for (int column = first; column < end; ++column) {
+      const Vec3 local = point(column) - origin;
+      texels[column] = texture.texel(dot(plane.v, local)) * Texture::size + texture.texel(dot(plane.u, local));
+    }
+    const double cosine = dot(normal, object.light);
+    const int lit = ambient + (cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0);
+    for (int column = first; column < end; ++column, rgb += 3) {
+      const bool shaded = cosine > 0 && is_shaded(point(column), casters);
+      paint_pixel(rgb, texture.pixels[texels[column]], shaded ? ambient : lit);
+    }
   }
 };
 
@@ -302,16 +389,14 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
     placed.push_back(impl_->place(object));
   }
 
-  static const auto plain = empty_table(Ground::plain), with_zones = empty_table(Ground::goal_zones);
-  Observation seen{ground == Ground::plain ? plain : with_zones, std::vector<std::uint8_t>(pixels), {}};
+  const Table& empty = table(ground);
+  Observation seen{empty.in_light, std::vector<std::uint8_t>(pixels), {}};
+  for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);
-  for (const Placed& object : placed) Impl::shade_table(object, ground, seen);
-  for (const Placed& object : placed) impl_->paint(object, placed, seen);
-
-  std::array<int, 256> visible{};
-  for (const std::uint8_t id : seen.ids) ++visible[id];
-  for (const VisibleObject& o : objects)
-    seen.instances.push_back({o.instance_id, o.object_type, o.texture, visible[o.instance_id]});
+  for (const Placed& object : placed) impl_->shade_table(object, empty, seen);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    seen.instances.push_back({objects[i].instance_id, objects[i].object_type, objects[i].texture,
+                              impl_->paint(placed[i], placed, seen)});
   return seen;
 }
 
