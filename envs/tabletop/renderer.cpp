@@ -54,16 +54,17 @@ Area area_of(Vec2 low, Vec2 high) {
   return {up(low.x, rows), down(high.x, rows), up(low.y, columns), down(high.y, columns)};
 }
 
-// Twice the triangle's area; positive if a, b, c run counter-clockwise, as the side of a surface does that faces the eye
-// (or the light).
+// Twice the triangle's area; positive if a, b, c run counter-clockwise, as the side of a surface does that faces the
+// eye (or the light).
 double doubled_area(Vec2 a, Vec2 b, Vec2 c) { return cross(b - a, c - a); }
+constexpr double least_area = 1e-9;  // below it, turned away or seen edge-on
 
-// Calls visit(row, first column, last column) for each row in which pixels' centres lie in the triangle, if its area is
-// positive.
+// Calls visit(row, first column, last column) for each row in which pixels' centres lie in the triangle, if it is
+// not turned away.
 template <typename Visit>
 void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
-  if (doubled_area(a, b, c) < 1e-9) return;  // turned away, or seen edge-on
-  constexpr double slack = 1e-9;             // no gap between neighbours through rounding
+  if (doubled_area(a, b, c) < least_area) return;
+  constexpr double slack = 1e-9;  // no gap between neighbours through rounding
   const Area box = area_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
                            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})});
   if (box.first_row > box.last_row || box.first_column > box.last_column) return;
@@ -81,6 +82,24 @@ void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
     if (first <= last) visit(row, static_cast<int>(std::ceil(first)), static_cast<int>(last));
   }
 }
+
+// The plane of texture coordinates that a surface faces most, in the body's frame, so that a picture turns with its
+// object. u, v are on top local y (right at yaw 0) and x (down), on a side y or x and -z.
+enum class Plane : std::uint16_t { top, side_yz, side_xz };
+
+Plane plane_of(Vec3 normal) {
+  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+  if (z >= x && z >= y) return Plane::top;
+  return x >= y ? Plane::side_yz : Plane::side_xz;
+}
+
+// What pixels of one colour scheme share: in the light, in 1/256 (256: the colour as it is, so that a picture takes
+// integers only), and which plane they lie in.
+struct Look {
+  std::uint16_t brightness;
+  Plane plane;
+  bool operator==(const Look& other) const { return brightness == other.brightness && plane == other.plane; }
+};
 
 // An object type, ready to be drawn.
 struct Shape {
@@ -107,20 +126,6 @@ struct Placed {
   }
 };
 
-// Texture coordinates on a surface: the plane that it faces most, in the body's frame, so that a picture turns with its
-// object; on top, u is local y (right at yaw 0) and v local x (down), on the sides v is -z.
-struct Plane {
-  Vec3 u, v;  // in the world
-
-  Plane(Vec3 normal, const std::array<Vec3, 3>& axes) {
-    const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
-    const bool level = z >= x && z >= y;
-    u = level || x >= y ? axes[1] : axes[0];
-    v = level ? axes[0] : -1 * axes[2];
-  }
-};
-
-// Brightness in 1/256 (256: the colour as it is), so that a picture takes integers only.
 void paint_pixel(std::uint8_t* rgb, const Rgb& colour, int brightness) {
   for (std::size_t i = 0; i < 3; ++i)
     rgb[i] = static_cast<std::uint8_t>(std::min((colour[i] * brightness + 128) >> 8, 255));
@@ -161,12 +166,12 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
 struct Renderer::Impl {
   RTCDevice device;
   std::map<std::string, Shape> shapes;  // by object type, made at first use
-  // Of the picture in work: what is highest at a pixel. Heights are those of the areas of objects.
+  // Of the picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
   std::vector<double> heights_m;
-  std::vector<std::uint32_t> triangles;
+  std::vector<Look> looks;
   std::vector<std::uint8_t> shadow;  // pixels to which an object keeps the light from the table; all 0 between pictures
 
-  Impl() : heights_m(pixels), triangles(pixels), shadow(pixels) {
+  Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {
     // One fixed instruction set, so that no machine takes another path through Embree; every x86-64 since 2008 has it.
     device = rtcNewDevice("threads=1,isa=sse4.2");
     if (!device) throw EngineError(fmt::format("Embree: not started, error {}", rtcGetDeviceError(nullptr)));
@@ -243,11 +248,16 @@ struct Renderer::Impl {
     for (std::uint32_t i = 0; i < object.shape->normals.size(); ++i) {
       const auto [ia, ib, ic] = object.shape->mesh->triangles[i];
       const Vec2 at_a = object.seen_at[ia], at_b = object.seen_at[ib], at_c = object.seen_at[ic];
+      if (doubled_area(at_a, at_b, at_c) < least_area) continue;
+      const Vec3 normal = object.shape->normals[i];
+      const double cosine = dot(normal, object.light);
+      const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;
+      const Look look{static_cast<std::uint16_t>(ambient + light_here), plane_of(normal)};
       const double a = object.vertices[ia].z, b = object.vertices[ib].z, c = object.vertices[ic].z;
       const auto keep_highest = [&](int pixel, double height) {
         if (height <= heights_m[pixel]) return;
         heights_m[pixel] = height;
-        triangles[pixel] = i;
+        looks[pixel] = look;
         seen.ids[pixel] = object.id;
       };
       if (a == b && a == c) {  // most are: tops of prisms
@@ -288,32 +298,29 @@ struct Renderer::Impl {
     }
   }
 
-  // An object stands between the point on a surface and the light.
-  static bool is_shaded(Vec3 point, const std::vector<const Placed*>& casters) {
-    for (const Placed* caster : casters) {
-      const Placed& object = *caster;
-      const double below_top = object.high.z - point.z;
-      if (below_top < clearance_m) continue;
-      // The way to the light, as far as it is no higher than the object, against the object's box.
-      const Vec3 end = point + below_top * climb * light;
-      if (end.x > object.high.x || point.x < object.low.x || end.y > object.high.y || point.y < object.low.y) continue;
-      const Vec3 origin = object.to_body(point - object.position);
-      RTCRay ray{};
-      ray.org_x = static_cast<float>(origin.x);
-      ray.org_y = static_cast<float>(origin.y);
-      ray.org_z = static_cast<float>(origin.z);
-      ray.dir_x = static_cast<float>(object.light.x);
-      ray.dir_y = static_cast<float>(object.light.y);
-      ray.dir_z = static_cast<float>(object.light.z);
-      ray.tnear = static_cast<float>(clearance_m);
-      ray.tfar = std::numeric_limits<float>::infinity();
-      ray.mask = ~0u;
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      rtcOccluded1(object.shape->scene, &context, &ray);
-      if (ray.tfar < 0) return true;  // Embree's mark of a hit
-    }
-    return false;
+  // The object stands between the point (x, y, z) on a surface and the light.
+  static bool shades(const Placed& object, double x, double y, double z) {
+    const double below_top = object.high.z - z;
+    if (below_top < clearance_m) return false;
+    // The way to the light, as far as it is no higher than the object, against the object's box.
+    const double way = below_top * climb;
+    if (x + way * light.x > object.high.x || x < object.low.x || y + way * light.y > object.high.y || y < object.low.y)
+      return false;
+    const Vec3 origin = object.to_body(Vec3{x, y, z} - object.position);
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(origin.x);
+    ray.org_y = static_cast<float>(origin.y);
+    ray.org_z = static_cast<float>(origin.z);
+    ray.dir_x = static_cast<float>(object.light.x);
+    ray.dir_y = static_cast<float>(object.light.y);
+    ray.dir_z = static_cast<float>(object.light.z);
+    ray.tnear = static_cast<float>(clearance_m);
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = ~0u;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(object.shape->scene, &context, &ray);
+    return ray.tfar < 0;  // Embree's mark of a hit
   }
 
   // Objects that may keep light from this one: all whose box, drawn out to the end of its shadow, meets its box.
@@ -322,8 +329,9 @@ struct Renderer::Impl {
     std::vector<const Placed*> casters;
     for (const Placed& other : objects) {
       const double reach = (other.high.z - object.low.z) * climb;
-      if (reach >= 0 && object.low.x <= other.high.x - reach * light.x + slack && object.high.x >= other.low.x - slack &&
-          object.low.y <= other.high.y - reach * light.y + slack && object.high.y >= other.low.y - slack)
+      if (reach >= 0 && object.low.x <= other.high.x - reach * light.x + slack &&
+          object.high.x >= other.low.x - slack && object.low.y <= other.high.y - reach * light.y + slack &&
+          object.high.y >= other.low.y - slack)
         casters.push_back(&other);
     }
     return casters;
@@ -340,9 +348,9 @@ struct Renderer::Impl {
           ++column;
           continue;
         }
-        int end = column + 1;  // of the pixels that show the same triangle
+        int end = column + 1;  // of the pixels that look alike
         while (end <= object.area.last_column && seen.ids[row * columns + end] == object.id &&
-               triangles[row * columns + end] == triangles[pixel])
+               looks[row * columns + end] == looks[pixel])
           ++end;
         paint_run(object, row, column, end, casters, &seen.rgb[3 * pixel]);
         visible += end - column;
@@ -351,28 +359,29 @@ struct Renderer::Impl {
     return visible;
   }
 
-  // Colours of pixels of one row, columns `first` to before `end`, that show one triangle of the object.
+  // Colours of pixels of one row, columns `first` to before `end`, which show the object and look alike.
   void paint_run(const Placed& object, int row, int first, int end, const std::vector<const Placed*>& casters,
                  std::uint8_t* rgb) const {
     const double* const heights = &heights_m[row * columns];
     const double x = Workspace::x_min + (row + 0.5) * row_m;
-    const auto point = [&](int column) {
-      return Vec3{x, Workspace::y_min + (column + 0.5) * column_m, heights[column]};
-    };
-    const Vec3 normal = object.shape->normals[triangles[row * columns + first]], origin = object.position;
-    const Plane plane(normal, object.axes);
+    const auto y = [](int column) { return Workspace::y_min + (column + 0.5) * column_m; };
+    const auto [lit, plane] = looks[row * columns + first];
+    const Vec3 u = object.axes[plane == Plane::side_xz ? 0 : 1],
+               v = plane == Plane::top ? object.axes[0] : -1 * object.axes[2], origin = object.position;
     const Texture& texture = *object.texture;
-    std::array<int, columns> texels;  // in a loop of its own, which takes several pixels at once
+    std::array<int, columns> texels,
+        brightness;  // each in a loop of its own, which overlaps the work of several pixels
     for (int column = first; column < end; ++column) {
-      const Vec3 local = point(column) - origin;
-      texels[column] = texture.texel(dot(plane.v, local)) * Texture::size + texture.texel(dot(plane.u, local));
+      const Vec3 local = Vec3{x, y(column), heights[column]} - origin;
+      texels[column] = texture.texel(dot(v, local)) * Texture::size + texture.texel(dot(u, local));
     }
-    const double cosine = dot(normal, object.light);
-    const int lit = ambient + (cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0);
-    for (int column = first; column < end; ++column, rgb += 3) {
-      const bool shaded = cosine > 0 && is_shaded(point(column), casters);
-      paint_pixel(rgb, texture.pixels[texels[column]], shaded ? ambient : lit);
-    }
+    std::fill(&brightness[first], &brightness[end - 1] + 1, lit);
+    if (lit > ambient)
+      for (const Placed* caster : casters)
+        for (int column = first; column < end; ++column)
+          if (brightness[column] == lit && shades(*caster, x, y(column), heights[column])) brightness[column] = ambient;
+    for (int column = first; column < end; ++column, rgb += 3)
+      paint_pixel(rgb, texture.pixels[texels[column]], brightness[column]);
   }
 };
 
@@ -395,8 +404,8 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
   for (const Placed& object : placed) impl_->draw(object, seen);
   for (const Placed& object : placed) impl_->shade_table(object, empty, seen);
   for (std::size_t i = 0; i < objects.size(); ++i)
-    seen.instances.push_back({objects[i].instance_id, objects[i].object_type, objects[i].texture,
-                              impl_->paint(placed[i], placed, seen)});
+    seen.instances.push_back(
+        {objects[i].instance_id, objects[i].object_type, objects[i].texture, impl_->paint(placed[i], placed, seen)});
   return seen;
 }
 

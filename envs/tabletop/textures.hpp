@@ -24,8 +24,8 @@ struct Texture {
   int texel(double metres) const {
     static_assert((size & (size - 1)) == 0, "the mask below wraps by a power of two");
     const double texels = metres / scale_m * size;
-    const int towards_zero = static_cast<int>(texels);  // std::floor() is a call that keeps a loop from being vectorised
-    return (towards_zero - (towards_zero > texels) + size / 2) & (size - 1);
+    const double towards_zero = static_cast<int>(texels);  // std::floor() is a call, where a loop takes several at once
+    return (static_cast<int>(towards_zero - (towards_zero > texels ? 1. : 0.)) + size / 2) & (size - 1);
   }
 };
 

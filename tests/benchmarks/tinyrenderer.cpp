@@ -56,8 +56,6 @@ void draw(benchmark::State& state) {
 
 }  // namespace
 
-void register_tinyrenderer() {
-  benchmark::RegisterBenchmark("picture/tinyrenderer", draw)->UseManualTime();
-}
+void register_tinyrenderer() { benchmark::RegisterBenchmark("picture/tinyrenderer", draw)->UseManualTime(); }
 
 }  // namespace lgabench
