@@ -1,5 +1,7 @@
 #include <lgabench/report/report.hpp>
 
+#include <future>
+
 #include <lgabench/core/error.hpp>
 #include <lgabench/report/html.hpp>
 #include <lgabench/report/tables.hpp>
@@ -30,12 +32,14 @@ Report write_report(const fs::path& run) {
   write_file(run / "summary.csv", to_csv(summary));
   write_file(run / "claims.json", canonical(to_json(summary.suite, report.claims)) + "\n");
 
+  // Two programs draw at the same time: gnuplot the figures, lgabench-worker the scenes.
+  std::future<Pictures> pictures =
+      std::async(std::launch::async, [&] { return draw_pictures(run, results, report.agreements); });
   const PaperValues paper = paper_values(summary.suite);
   std::vector<std::vector<Figure>> figures;
   for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
   write_file(run / "report.md", markdown(results, summary, report.claims, report.agreements, paper, figures));
-  write_file(run / "report.html", html(results, summary, report.claims, report.agreements, paper,
-                                       draw_pictures(run, results, report.agreements)));
+  write_file(run / "report.html", html(results, summary, report.claims, report.agreements, paper, pictures.get()));
   return report;
 }
 
