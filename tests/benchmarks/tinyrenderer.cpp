@@ -1,4 +1,4 @@
-// PyBullet's software renderer, in a Python of its own: the meshes of a scene, with shadows and ids, without textures.
+// PyBullet's software renderer, in a Python of its own: the meshes of a scene and ids, without shadows and textures.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <sys/wait.h>

@@ -3,7 +3,11 @@
     python3 tinyrenderer.py SCENE.json PICTURES [--out PICTURE.ppm]
 
 SCENE.json, written by tinyrenderer.cpp: a list of {"position", "rotation" (x, y, z, w), "colour" (0 to 1), "vertices",
-"triangles"}; lengths in metres. Needs PyBullet (PyPI: pybullet) and NumPy (Debian: python3-numpy). Exit 77 where they cannot be imported, 1 where the picture does not show every object.
+"triangles"}; lengths in metres. Needs NumPy (Debian: python3-numpy) and PyBullet:
+
+    python3 -m pip install --no-deps --target DIRECTORY pybullet==3.2.7    # then with PYTHONPATH=DIRECTORY
+
+Exit 77 where they cannot be imported, 1 where the picture does not show every object.
 """
 import argparse
 import json
@@ -43,8 +47,8 @@ def main():
     view = pybullet.computeViewMatrix([.5, 0, 4], [.5, 0, 0], [-1, 0, 0])
     projection = pybullet.computeProjectionMatrix(-.25, .25, -.125, .125, 2, 5)
 
-    def render():
-        return pybullet.getCameraImage(COLUMNS, ROWS, view, projection, shadow=1, lightDirection=[-.36, -.48, .8],
+    def render():  # without shadows: those of things so small do not show in it, and would cost it half as much again
+        return pybullet.getCameraImage(COLUMNS, ROWS, view, projection, shadow=0, lightDirection=[-.36, -.48, .8],
                                        renderer=pybullet.ER_TINY_RENDERER)
 
     _, _, rgba, _, ids = render()
