@@ -59,8 +59,8 @@ Area area_of(Vec2 low, Vec2 high) {
 double doubled_area(Vec2 a, Vec2 b, Vec2 c) { return cross(b - a, c - a); }
 constexpr double least_area = 1e-9;  // below it, turned away or seen edge-on
 
-// Calls visit(row, first column, last column) for each row in which pixels' centres lie in the triangle, if it is
-// not turned away.
+// Calls visit(row, begin, end) for each row in which pixels' centres lie in the triangle, in columns from `begin` to
+// before `end`; not if the triangle is turned away.
 template <typename Visit>
 void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
   if (doubled_area(a, b, c) < least_area) return;
@@ -79,12 +79,14 @@ void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
       if (to.x > from.x) first = std::max(first, crossing - slack);
       if (to.x < from.x) last = std::min(last, crossing + slack);
     }
-    if (first <= last) visit(row, static_cast<int>(std::ceil(first)), static_cast<int>(last));
+    if (first > last) continue;
+    const int begin = static_cast<int>(std::ceil(first)), end = static_cast<int>(last) + 1;
+    if (begin < end) visit(row, begin, end);
   }
 }
 
-// The plane of texture coordinates that a surface faces most, in the body's frame, so that a picture turns with its
-// object. u, v are on top local y (right at yaw 0) and x (down), on a side y or x and -z.
+// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
+// object; on top, u is local y (right at yaw 0) and v local x (down), on a side u is y or x and v is -z.
 enum class Plane : std::uint16_t { top, side_yz, side_xz };
 
 Plane plane_of(Vec3 normal) {
@@ -93,8 +95,8 @@ Plane plane_of(Vec3 normal) {
   return x >= y ? Plane::side_yz : Plane::side_xz;
 }
 
-// What pixels of one colour scheme share: in the light, in 1/256 (256: the colour as it is, so that a picture takes
-// integers only), and which plane they lie in.
+// What decides a triangle's colours: its brightness in the light, in 1/256 (256: the colour as it is, so that a picture
+// takes integers only), and its texture coordinates. Pixels in a row that look alike are painted at once.
 struct Look {
   std::uint16_t brightness;
   Plane plane;
@@ -118,8 +120,8 @@ struct Placed {
   std::vector<Vec3> vertices;            // in the world
   std::vector<Vec2> seen_at, shadow_at;  // where the camera sees each vertex, where its shadow falls
   Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
-  Vec3 light;  // in the body's frame
-  Area area;
+  Vec3 light;              // in the body's frame
+  Area area, shadow_area;  // hold all that is seen of it, and its shadow on the table
 
   Vec3 to_body(Vec3 direction) const {
     return {dot(axes[0], direction), dot(axes[1], direction), dot(axes[2], direction)};
@@ -226,18 +228,23 @@ struct Renderer::Impl {
     placed.vertices.reserve(locals.size());
     placed.seen_at.reserve(locals.size());
     placed.shadow_at.reserve(locals.size());
+    Vec2 shadow_low{1e9, 1e9}, shadow_high{-1e9, -1e9};
     for (const Vec3& local : locals) {
       const Vec3 v = p + local.x * placed.axes[0] + local.y * placed.axes[1] + local.z * placed.axes[2];
       placed.vertices.push_back(v);
       placed.seen_at.push_back(in_picture(v.x, v.y));
-      placed.shadow_at.push_back(shadow_of(v));
+      const Vec2& shadow_at = placed.shadow_at.emplace_back(shadow_of(v));
+      shadow_low = {std::min(shadow_low.x, shadow_at.x), std::min(shadow_low.y, shadow_at.y)};
+      shadow_high = {std::max(shadow_high.x, shadow_at.x), std::max(shadow_high.y, shadow_at.y)};
       placed.low = {std::min(placed.low.x, v.x), std::min(placed.low.y, v.y), std::min(placed.low.z, v.z)};
       placed.high = {std::max(placed.high.x, v.x), std::max(placed.high.y, v.y), std::max(placed.high.z, v.z)};
     }
+    placed.shadow_area = area_of(shadow_low, shadow_high);
     placed.area = area_of(in_picture(placed.low.x, placed.low.y), in_picture(placed.high.x, placed.high.y));
     return placed;
   }
 
+  // The table is what is highest in the area.
   void clear(const Area& area) {
     for (int row = area.first_row; row <= area.last_row; ++row)
       for (int column = area.first_column; column <= area.last_column; ++column) heights_m[row * columns + column] = 0;
@@ -260,15 +267,15 @@ struct Renderer::Impl {
         looks[pixel] = look;
         seen.ids[pixel] = object.id;
       };
-      if (a == b && a == c) {  // most are: tops of prisms
-        fill(at_a, at_b, at_c, [&](int row, int first, int last) {
-          for (int column = first; column <= last; ++column) keep_highest(row * columns + column, a);
+      if (a == b && a == c) {  // as tops of prisms are, which most pixels show
+        fill(at_a, at_b, at_c, [&](int row, int begin, int end) {
+          for (int column = begin; column < end; ++column) keep_highest(row * columns + column, a);
         });
         continue;
       }
       const double area = doubled_area(at_a, at_b, at_c);
-      fill(at_a, at_b, at_c, [&](int row, int first, int last) {
-        for (int column = first; column <= last; ++column) {
+      fill(at_a, at_b, at_c, [&](int row, int begin, int end) {
+        for (int column = begin; column < end; ++column) {
           const Vec2 p{row + 0.0, column + 0.0};
           const double of_b = cross(at_a - at_c, p - at_c) / area, of_c = cross(at_b - at_a, p - at_a) / area;
           keep_highest(row * columns + column, a + of_b * (b - a) + of_c * (c - a));
@@ -280,22 +287,18 @@ struct Renderer::Impl {
   // Darkens the table where the object keeps the light from it.
   void shade_table(const Placed& object, const Table& table, Observation& seen) {
     std::uint8_t* const dark = shadow.data();
-    Area all{rows, -1, columns, -1};
     for (const auto& [a, b, c] : object.shape->mesh->triangles)
-      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], [&](int row, int first, int last) {
-        all = {std::min(all.first_row, row), std::max(all.last_row, row), std::min(all.first_column, first),
-               std::max(all.last_column, last)};
-        if (first <= last) std::memset(dark + row * columns + first, 1, static_cast<std::size_t>(last - first + 1));
+      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], [dark](int row, int begin, int end) {
+        std::memset(dark + row * columns + begin, 1, static_cast<std::size_t>(end - begin));
       });
-    if (all.first_column > all.last_column) return;
     const std::uint8_t *const ids = seen.ids.data(), *const shaded = table.in_shadow.data();
     std::uint8_t* const rgb = seen.rgb.data();
-    for (int row = all.first_row; row <= all.last_row; ++row) {
-      const int first = row * columns + all.first_column, last = row * columns + all.last_column;
-      for (int pixel = first; pixel <= last; ++pixel)
+    const auto [first_row, last_row, first_column, last_column] = object.shadow_area;
+    for (int row = first_row; row <= last_row; ++row)
+      for (int pixel = row * columns + first_column; pixel <= row * columns + last_column; ++pixel) {
         if (dark[pixel] && !ids[pixel]) std::copy_n(shaded + 3 * pixel, 3, rgb + 3 * pixel);
-      std::memset(dark + first, 0, static_cast<std::size_t>(last - first + 1));
-    }
+        dark[pixel] = 0;
+      }
   }
 
   // The object stands between the point (x, y, z) on a surface and the light.
@@ -369,8 +372,7 @@ struct Renderer::Impl {
     const Vec3 u = object.axes[plane == Plane::side_xz ? 0 : 1],
                v = plane == Plane::top ? object.axes[0] : -1 * object.axes[2], origin = object.position;
     const Texture& texture = *object.texture;
-    std::array<int, columns> texels,
-        brightness;  // each in a loop of its own, which overlaps the work of several pixels
+    std::array<int, columns> texels, brightness;  // loops of their own, so that the work of several pixels overlaps
     for (int column = first; column < end; ++column) {
       const Vec3 local = Vec3{x, y(column), heights[column]} - origin;
       texels[column] = texture.texel(dot(v, local)) * Texture::size + texture.texel(dot(u, local));
