@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <map>
 
@@ -53,15 +54,20 @@ Area area_of(Vec2 low, Vec2 high) {
   return {up(low.x, rows), down(high.x, rows), up(low.y, columns), down(high.y, columns)};
 }
 
-// Calls visit(pixel, share of b, share of c) for each pixel whose centre lies in the triangle, if a, b, c run
-// counter-clockwise: the side of a surface that faces the eye (or the light) does.
+// Twice the triangle's area; positive if a, b, c run counter-clockwise, as the side of a surface does that faces the
+// eye (or the light).
+double doubled_area(Vec2 a, Vec2 b, Vec2 c) { return cross(b - a, c - a); }
+constexpr double least_area = 1e-9;  // below it, turned away or seen edge-on
+
+// Calls visit(row, begin, end) for each row in which pixels' centres lie in the triangle, in columns from `begin` to
+// before `end`; not if the triangle is turned away.
 template <typename Visit>
 void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
-  const double area = cross(b - a, c - a);
-  if (area < 1e-9) return;        // turned away, or seen edge-on
+  if (doubled_area(a, b, c) < least_area) return;
   constexpr double slack = 1e-9;  // no gap between neighbours through rounding
   const Area box = area_of({std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y})},
                            {std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})});
+  if (box.first_row > box.last_row || box.first_column > box.last_column) return;
   const std::array<std::array<Vec2, 2>, 3> edges{{{a, b}, {b, c}, {c, a}}};
   std::array<double, 3> slopes;
   for (std::size_t i = 0; i < 3; ++i) slopes[i] = (edges[i][1].y - edges[i][0].y) / (edges[i][1].x - edges[i][0].x);
@@ -73,12 +79,29 @@ void fill(Vec2 a, Vec2 b, Vec2 c, const Visit& visit) {
       if (to.x > from.x) first = std::max(first, crossing - slack);
       if (to.x < from.x) last = std::min(last, crossing + slack);
     }
-    for (int column = static_cast<int>(std::ceil(first)); column <= last; ++column) {
-      const Vec2 p{row + 0.0, column + 0.0};
-      visit(static_cast<std::size_t>(row * columns + column), cross(a - c, p - c) / area, cross(b - a, p - a) / area);
-    }
+    if (first > last) continue;
+    const int begin = static_cast<int>(std::ceil(first)), end = static_cast<int>(last) + 1;
+    if (begin < end) visit(row, begin, end);
   }
 }
+
+// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
+// object; on top, u is local y (right at yaw 0) and v local x (down), on a side u is y or x and v is -z.
+enum class Plane : std::uint16_t { top, side_yz, side_xz };
+
+Plane plane_of(Vec3 normal) {
+  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
+  if (z >= x && z >= y) return Plane::top;
+  return x >= y ? Plane::side_yz : Plane::side_xz;
+}
+
+// What decides a triangle's colours: its brightness in the light, in 1/256 (256: the colour as it is, so that a picture
+// takes integers only), and its texture coordinates. Pixels in a row that look alike are painted at once.
+struct Look {
+  std::uint16_t brightness;
+  Plane plane;
+  bool operator==(const Look& other) const { return brightness == other.brightness && plane == other.plane; }
+};
 
 // An object type, ready to be drawn.
 struct Shape {
@@ -97,41 +120,37 @@ struct Placed {
   std::vector<Vec3> vertices;            // in the world
   std::vector<Vec2> seen_at, shadow_at;  // where the camera sees each vertex, where its shadow falls
   Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
-  Vec3 light;  // in the body's frame
-  Area area;
+  Vec3 light;              // in the body's frame
+  Area area, shadow_area;  // hold all that is seen of it, and its shadow on the table
 
   Vec3 to_body(Vec3 direction) const {
     return {dot(axes[0], direction), dot(axes[1], direction), dot(axes[2], direction)};
   }
 };
 
-// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
-// object; on top, u is local y (right at yaw 0) and v local x (down).
-Rgb colour_at(const Texture& texture, Vec3 point, Vec3 normal) {
-  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
-  if (z >= x && z >= y) return texture.at(point.y, point.x);
-  return x >= y ? texture.at(point.y, -point.z) : texture.at(point.x, -point.z);
+void paint_pixel(std::uint8_t* rgb, const Rgb& colour, int brightness) {
+  for (std::size_t i = 0; i < 3; ++i)
+    rgb[i] = static_cast<std::uint8_t>(std::min((colour[i] * brightness + 128) >> 8, 255));
 }
 
-// Brightness in 1/256 (256: the colour as it is), so that a picture takes integers only.
-Rgb lit(Rgb colour, int brightness) {
-  for (std::uint8_t& c : colour) c = static_cast<std::uint8_t>(std::min((c * brightness + 128) >> 8, 255));
-  return colour;
-}
-
-// The pixel's centre is painted.
-bool is_zone(Ground ground, std::size_t pixel) {
-  const double y = Workspace::y_min + (static_cast<double>(pixel % columns) + 0.5) * column_m;
-  return ground == Ground::goal_zones && GoalZones::contains({0, y});
-}
-
-std::vector<std::uint8_t> empty_table(Ground ground) {
-  std::vector<std::uint8_t> rgb;
+// The table without objects, at that brightness everywhere.
+std::vector<std::uint8_t> empty_table(Ground ground, int brightness) {
+  std::vector<std::uint8_t> rgb(3 * pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
-    const Rgb& colour = is_zone(ground, i) ? zone_colour : table_colour;
-    rgb.insert(rgb.end(), colour.begin(), colour.end());
+    const double y = Workspace::y_min + (static_cast<double>(i % columns) + 0.5) * column_m;
+    const bool zone = ground == Ground::goal_zones && GoalZones::contains({0, y});
+    paint_pixel(&rgb[3 * i], zone ? zone_colour : table_colour, brightness);
   }
   return rgb;
+}
+
+struct Table {
+  std::vector<std::uint8_t> in_light, in_shadow;
+};
+const Table& table(Ground ground) {
+  const auto make = [](Ground g) { return Table{empty_table(g, 256), empty_table(g, ambient)}; };
+  static const Table plain = make(Ground::plain), with_zones = make(Ground::goal_zones);
+  return ground == Ground::plain ? plain : with_zones;
 }
 
 }  // namespace
@@ -149,11 +168,12 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
 struct Renderer::Impl {
   RTCDevice device;
   std::map<std::string, Shape> shapes;  // by object type, made at first use
-  // Of the picture in work, valid where its id is not 0: what is highest there.
+  // Of the picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
   std::vector<double> heights_m;
-  std::vector<std::uint32_t> triangles;
+  std::vector<Look> looks;
+  std::vector<std::uint8_t> shadow;  // pixels to which an object keeps the light from the table; all 0 between pictures
 
-  Impl() : heights_m(pixels), triangles(pixels) {
+  Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {
     // One fixed instruction set, so that no machine takes another path through Embree; every x86-64 since 2008 has it.
     device = rtcNewDevice("threads=1,isa=sse4.2");
     if (!device) throw EngineError(fmt::format("Embree: not started, error {}", rtcGetDeviceError(nullptr)));
@@ -204,88 +224,166 @@ struct Renderer::Impl {
     placed.position = p;
     placed.axes = {rotated({1, 0, 0}, q), rotated({0, 1, 0}, q), rotated({0, 0, 1}, q)};
     placed.light = placed.to_body(light);
-    for (const Vec3& local : placed.shape->mesh->vertices_m) {
+    const std::vector<Vec3>& locals = placed.shape->mesh->vertices_m;
+    placed.vertices.reserve(locals.size());
+    placed.seen_at.reserve(locals.size());
+    placed.shadow_at.reserve(locals.size());
+    Vec2 shadow_low{1e9, 1e9}, shadow_high{-1e9, -1e9};
+    for (const Vec3& local : locals) {
       const Vec3 v = p + local.x * placed.axes[0] + local.y * placed.axes[1] + local.z * placed.axes[2];
       placed.vertices.push_back(v);
       placed.seen_at.push_back(in_picture(v.x, v.y));
-      placed.shadow_at.push_back(shadow_of(v));
+      const Vec2& shadow_at = placed.shadow_at.emplace_back(shadow_of(v));
+      shadow_low = {std::min(shadow_low.x, shadow_at.x), std::min(shadow_low.y, shadow_at.y)};
+      shadow_high = {std::max(shadow_high.x, shadow_at.x), std::max(shadow_high.y, shadow_at.y)};
       placed.low = {std::min(placed.low.x, v.x), std::min(placed.low.y, v.y), std::min(placed.low.z, v.z)};
       placed.high = {std::max(placed.high.x, v.x), std::max(placed.high.y, v.y), std::max(placed.high.z, v.z)};
     }
+    placed.shadow_area = area_of(shadow_low, shadow_high);
     placed.area = area_of(in_picture(placed.low.x, placed.low.y), in_picture(placed.high.x, placed.high.y));
     return placed;
+  }
+
+  // The table is what is highest in the area.
+  void clear(const Area& area) {
+    for (int row = area.first_row; row <= area.last_row; ++row)
+      for (int column = area.first_column; column <= area.last_column; ++column) heights_m[row * columns + column] = 0;
   }
 
   // Ids of the pixels where this object is the highest so far, and what of it is seen there.
   void draw(const Placed& object, Observation& seen) {
     for (std::uint32_t i = 0; i < object.shape->normals.size(); ++i) {
       const auto [ia, ib, ic] = object.shape->mesh->triangles[i];
+      const Vec2 at_a = object.seen_at[ia], at_b = object.seen_at[ib], at_c = object.seen_at[ic];
+      if (doubled_area(at_a, at_b, at_c) < least_area) continue;
+      const Vec3 normal = object.shape->normals[i];
+      const double cosine = dot(normal, object.light);
+      const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;
+      const Look look{static_cast<std::uint16_t>(ambient + light_here), plane_of(normal)};
       const double a = object.vertices[ia].z, b = object.vertices[ib].z, c = object.vertices[ic].z;
-      const auto keep_highest = [&](std::size_t pixel, double of_b, double of_c) {
-        const double height = a + of_b * (b - a) + of_c * (c - a);
-        if (height <= (seen.ids[pixel] ? heights_m[pixel] : 0)) return;
+      const auto keep_highest = [&](int pixel, double height) {
+        if (height <= heights_m[pixel]) return;
         heights_m[pixel] = height;
-        triangles[pixel] = i;
+        looks[pixel] = look;
         seen.ids[pixel] = object.id;
       };
-      fill(object.seen_at[ia], object.seen_at[ib], object.seen_at[ic], keep_highest);
+      if (a == b && a == c) {  // as tops of prisms are, which most pixels show
+        fill(at_a, at_b, at_c, [&](int row, int begin, int end) {
+          for (int column = begin; column < end; ++column) keep_highest(row * columns + column, a);
+        });
+        continue;
+      }
+      const double area = doubled_area(at_a, at_b, at_c);
+      fill(at_a, at_b, at_c, [&](int row, int begin, int end) {
+        for (int column = begin; column < end; ++column) {
+          const Vec2 p{row + 0.0, column + 0.0};
+          const double of_b = cross(at_a - at_c, p - at_c) / area, of_c = cross(at_b - at_a, p - at_a) / area;
+          keep_highest(row * columns + column, a + of_b * (b - a) + of_c * (c - a));
+        }
+      });
     }
   }
 
   // Darkens the table where the object keeps the light from it.
-  static void shade_table(const Placed& object, Ground ground, Observation& seen) {
-    const Rgb shaded = lit(table_colour, ambient), shaded_zone = lit(zone_colour, ambient);
-    const auto darken = [&](std::size_t pixel, double, double) {
-      if (seen.ids[pixel] != 0) return;
-      const Rgb& colour = is_zone(ground, pixel) ? shaded_zone : shaded;
-      std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
-    };
+  void shade_table(const Placed& object, const Table& table, Observation& seen) {
+    std::uint8_t* const dark = shadow.data();
     for (const auto& [a, b, c] : object.shape->mesh->triangles)
-      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], darken);
-  }
-
-  // An object stands between the point on a surface and the light.
-  bool is_shaded(Vec3 point, const std::vector<Placed>& objects) const {
-    for (const Placed& object : objects) {
-      const double below_top = object.high.z - point.z;
-      if (below_top < clearance_m) continue;
-      // The way to the light, as far as it is no higher than the object, against the object's box.
-      const Vec3 end = point + below_top * climb * light;
-      if (end.x > object.high.x || point.x < object.low.x || end.y > object.high.y || point.y < object.low.y) continue;
-      const Vec3 origin = object.to_body(point - object.position);
-      RTCRay ray{};
-      ray.org_x = static_cast<float>(origin.x);
-      ray.org_y = static_cast<float>(origin.y);
-      ray.org_z = static_cast<float>(origin.z);
-      ray.dir_x = static_cast<float>(object.light.x);
-      ray.dir_y = static_cast<float>(object.light.y);
-      ray.dir_z = static_cast<float>(object.light.z);
-      ray.tnear = static_cast<float>(clearance_m);
-      ray.tfar = std::numeric_limits<float>::infinity();
-      ray.mask = ~0u;
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      rtcOccluded1(object.shape->scene, &context, &ray);
-      if (ray.tfar < 0) return true;  // Embree's mark of a hit
-    }
-    return false;
-  }
-
-  // Colours of the pixels that show this object.
-  void paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
-    for (int row = object.area.first_row; row <= object.area.last_row; ++row)
-      for (int column = object.area.first_column; column <= object.area.last_column; ++column) {
-        const auto pixel = static_cast<std::size_t>(row * columns + column);
-        if (seen.ids[pixel] != object.id) continue;
-        const Vec3 point{Workspace::x_min + (row + 0.5) * row_m, Workspace::y_min + (column + 0.5) * column_m,
-                         heights_m[pixel]};
-        const Vec3 normal = object.shape->normals[triangles[pixel]];
-        const double cosine = dot(normal, object.light);
-        const bool in_light = cosine > 0 && !is_shaded(point, objects);
-        const int brightness = ambient + (in_light ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0);
-        const Rgb colour = lit(colour_at(*object.texture, object.to_body(point - object.position), normal), brightness);
-        std::copy(colour.begin(), colour.end(), seen.rgb.begin() + 3 * pixel);
+      fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], [dark](int row, int begin, int end) {
+        std::memset(dark + row * columns + begin, 1, static_cast<std::size_t>(end - begin));
+      });
+    const std::uint8_t *const ids = seen.ids.data(), *const shaded = table.in_shadow.data();
+    std::uint8_t* const rgb = seen.rgb.data();
+    const auto [first_row, last_row, first_column, last_column] = object.shadow_area;
+    for (int row = first_row; row <= last_row; ++row)
+      for (int pixel = row * columns + first_column; pixel <= row * columns + last_column; ++pixel) {
+        if (dark[pixel] && !ids[pixel]) std::copy_n(shaded + 3 * pixel, 3, rgb + 3 * pixel);
+        dark[pixel] = 0;
       }
+  }
+
+  // The object stands between the point (x, y, z) on a surface and the light.
+  static bool shades(const Placed& object, double x, double y, double z) {
+    const double below_top = object.high.z - z;
+    if (below_top < clearance_m) return false;
+    // The way to the light, as far as it is no higher than the object, against the object's box.
+    const double way = below_top * climb;
+    if (x + way * light.x > object.high.x || x < object.low.x || y + way * light.y > object.high.y || y < object.low.y)
+      return false;
+    const Vec3 origin = object.to_body(Vec3{x, y, z} - object.position);
+    RTCRay ray{};
+    ray.org_x = static_cast<float>(origin.x);
+    ray.org_y = static_cast<float>(origin.y);
+    ray.org_z = static_cast<float>(origin.z);
+    ray.dir_x = static_cast<float>(object.light.x);
+    ray.dir_y = static_cast<float>(object.light.y);
+    ray.dir_z = static_cast<float>(object.light.z);
+    ray.tnear = static_cast<float>(clearance_m);
+    ray.tfar = std::numeric_limits<float>::infinity();
+    ray.mask = ~0u;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(object.shape->scene, &context, &ray);
+    return ray.tfar < 0;  // Embree's mark of a hit
+  }
+
+  // Objects that may keep light from this one: all whose box, drawn out to the end of its shadow, meets its box.
+  static std::vector<const Placed*> casters_on(const Placed& object, const std::vector<Placed>& objects) {
+    constexpr double slack = 1e-6;  // more than rounding
+    std::vector<const Placed*> casters;
+    for (const Placed& other : objects) {
+      const double reach = (other.high.z - object.low.z) * climb;
+      if (reach >= 0 && object.low.x <= other.high.x - reach * light.x + slack &&
+          object.high.x >= other.low.x - slack && object.low.y <= other.high.y - reach * light.y + slack &&
+          object.high.y >= other.low.y - slack)
+        casters.push_back(&other);
+    }
+    return casters;
+  }
+
+  // Colours of the pixels that show this object; how many there are.
+  int paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
+    const std::vector<const Placed*> casters = casters_on(object, objects);
+    int visible = 0;
+    for (int row = object.area.first_row; row <= object.area.last_row; ++row)
+      for (int column = object.area.first_column; column <= object.area.last_column;) {
+        const int pixel = row * columns + column;
+        if (seen.ids[pixel] != object.id) {
+          ++column;
+          continue;
+        }
+        int end = column + 1;  // of the pixels that look alike
+        while (end <= object.area.last_column && seen.ids[row * columns + end] == object.id &&
+               looks[row * columns + end] == looks[pixel])
+          ++end;
+        paint_run(object, row, column, end, casters, &seen.rgb[3 * pixel]);
+        visible += end - column;
+        column = end;
+      }
+    return visible;
+  }
+
+  // Colours of pixels of one row, columns `first` to before `end`, which show the object and look alike.
+  void paint_run(const Placed& object, int row, int first, int end, const std::vector<const Placed*>& casters,
+                 std::uint8_t* rgb) const {
+    const double* const heights = &heights_m[row * columns];
+    const double x = Workspace::x_min + (row + 0.5) * row_m;
+    const auto y = [](int column) { return Workspace::y_min + (column + 0.5) * column_m; };
+    const auto [lit, plane] = looks[row * columns + first];
+    const Vec3 u = object.axes[plane == Plane::side_xz ? 0 : 1],
+               v = plane == Plane::top ? object.axes[0] : -1 * object.axes[2], origin = object.position;
+    const Texture& texture = *object.texture;
+    std::array<int, columns> texels, brightness;  // loops of their own, so that the work of several pixels overlaps
+    for (int column = first; column < end; ++column) {
+      const Vec3 local = Vec3{x, y(column), heights[column]} - origin;
+      texels[column] = texture.texel(dot(v, local)) * Texture::size + texture.texel(dot(u, local));
+    }
+    std::fill(&brightness[first], &brightness[end - 1] + 1, lit);
+    if (lit > ambient)
+      for (const Placed* caster : casters)
+        for (int column = first; column < end; ++column)
+          if (brightness[column] == lit && shades(*caster, x, y(column), heights[column])) brightness[column] = ambient;
+    for (int column = first; column < end; ++column, rgb += 3)
+      paint_pixel(rgb, texture.pixels[texels[column]], brightness[column]);
   }
 };
 
@@ -302,16 +400,14 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
     placed.push_back(impl_->place(object));
   }
 
-  static const auto plain = empty_table(Ground::plain), with_zones = empty_table(Ground::goal_zones);
-  Observation seen{ground == Ground::plain ? plain : with_zones, std::vector<std::uint8_t>(pixels), {}};
+  const Table& empty = table(ground);
+  Observation seen{empty.in_light, std::vector<std::uint8_t>(pixels), {}};
+  for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);
-  for (const Placed& object : placed) Impl::shade_table(object, ground, seen);
-  for (const Placed& object : placed) impl_->paint(object, placed, seen);
-
-  std::array<int, 256> visible{};
-  for (const std::uint8_t id : seen.ids) ++visible[id];
-  for (const VisibleObject& o : objects)
-    seen.instances.push_back({o.instance_id, o.object_type, o.texture, visible[o.instance_id]});
+  for (const Placed& object : placed) impl_->shade_table(object, empty, seen);
+  for (std::size_t i = 0; i < objects.size(); ++i)
+    seen.instances.push_back(
+        {objects[i].instance_id, objects[i].object_type, objects[i].texture, impl_->paint(placed[i], placed, seen)});
   return seen;
 }
 

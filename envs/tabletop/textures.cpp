@@ -83,14 +83,6 @@ Texture painted(const std::string& name, const Pattern& pattern) {
 
 }  // namespace
 
-Rgb Texture::at(double u_m, double v_m) const {
-  static_assert((size & (size - 1)) == 0, "the mask below wraps by a power of two");
-  const auto pixel = [this](double metres) {
-    return (static_cast<long long>(std::floor(metres / scale_m * size)) + size / 2) & (size - 1);
-  };
-  return pixels[static_cast<std::size_t>(pixel(v_m) * size + pixel(u_m))];
-}
-
 const Texture& texture(const std::string& name) {
   static std::mutex guard;
   static std::map<std::string, Texture> made;  // a map's elements stay where they are

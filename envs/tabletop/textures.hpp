@@ -17,8 +17,16 @@ struct Texture {
   std::vector<Rgb> pixels;  // size x size, row-major
 
   /// Colour at a point of the object's surface, given in metres on the plane that faces the surface: u to the right,
-  /// v down, the picture's centre at (0, 0), repeated without end (nearest pixel). Any finite u, v.
-  Rgb at(double u_m, double v_m) const;
+  /// v down, the picture's centre at (0, 0), repeated without end (nearest pixel). u and v below a kilometre.
+  Rgb at(double u_m, double v_m) const { return pixels[static_cast<std::size_t>(texel(v_m) * size + texel(u_m))]; }
+
+  /// The column of at()'s pixel for u_m, its row for v_m.
+  int texel(double metres) const {
+    static_assert((size & (size - 1)) == 0, "the mask below wraps by a power of two");
+    const double texels = metres / scale_m * size;
+    const double towards_zero = static_cast<int>(texels);  // std::floor() is a call, where a loop takes several at once
+    return (static_cast<int>(towards_zero - (towards_zero > texels ? 1. : 0.)) + size / 2) & (size - 1);
+  }
 };
 
 /// The texture of that name; made at the first call, lives as long as the program. Any thread.

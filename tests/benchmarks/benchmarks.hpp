@@ -8,6 +8,7 @@ namespace lgabench {
 void register_training();
 void register_environment();
 void register_llvmpipe();  // where EGL's headers are
+void register_tinyrenderer();
 void register_plugin();
 void register_harness();
 

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
 #if defined(LGABENCH_HAS_EGL)
   lgabench::register_llvmpipe();
 #endif
+  lgabench::register_tinyrenderer();
   lgabench::register_plugin();
   lgabench::register_harness();
   benchmark::Initialize(&count, arguments.data());

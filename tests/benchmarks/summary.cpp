@@ -26,6 +26,8 @@ const std::vector<Promise>& promises() {
        4},
       {"picture and ids, MuJoCo on llvmpipe with shadow", "picture", "picture/llvmpipe_shadow", Unit::times_as_fast, 3,
        8},
+      {"picture and ids, PyBullet's TinyRenderer without shadow", "picture", "picture/tinyrenderer",
+       Unit::times_as_fast, 15, 50},
       {"act() through a plugin, the same object linked", "act/plugin", "act/linked", Unit::times_as_long, 1.05, 1.05},
       {"two workers, one", "workers/2", "workers/1", Unit::times_as_fast, 1.9, 1.98},
       {"lgabench list, 100 ms", "list", "", Unit::times_as_fast, 1, 100. / 30, .1},

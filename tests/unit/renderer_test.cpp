@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -156,6 +157,16 @@ TEST(Renderer, ShadowsFallOnObjectsToo) {
   EXPECT_EQ(both.ids[beside], 1);
   EXPECT_LT(colour(both, beside)[0], 0.7 * colour(alone, beside)[0]);
   EXPECT_EQ(colour(both, before), colour(alone, before));
+  // Also on one that stands beside, below or to the right.
+  for (const auto& [pallet_at, block_at, shaded] :
+       {std::array{Vec2{0.545, 0.0}, Vec2{0.42, 0.0}, Vec2{0.463, 0.02}},
+        std::array{Vec2{0.5, -0.0555}, Vec2{0.5, -0.2}, Vec2{0.52, -0.155}}}) {
+    const VisibleObject low = object("pallet", "red", pallet_at, 0, 1);
+    const Observation beside_it = renderer.render({low, object("block", "blue", block_at, 0, 2)});
+    ASSERT_EQ(beside_it.ids[pixel_at(shaded.x, shaded.y)], 1);
+    EXPECT_LT(colour(beside_it, pixel_at(shaded.x, shaded.y))[0],
+              0.7 * colour(renderer.render({low}), pixel_at(shaded.x, shaded.y))[0]);
+  }
   // Its own rim shades the hollow of a bowl on the side of the light, and not the other.
   const Observation bowl = renderer.render({object("bowl", "red", {0.5, 0.0})});
   EXPECT_LT(colour(bowl, pixel_at(0.47, -0.04))[0], 0.7 * colour(bowl, pixel_at(0.53, 0.04))[0]);
