@@ -31,6 +31,6 @@ constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {1, 0, 384, 1, 1, padded_text_features},
                             {1, 0, 160, 1, 1, padded_action},
                             {1, 0, padded_text_features, 1, 1, padded_action}};
-constexpr int layer_kinds = sizeof(layers) / sizeof(layers[0]);
+constexpr int most_channels = 64;  // of a convolution's output
 
 }  // namespace lgabench

@@ -1,0 +1,37 @@
+// What a training step leaves out because it is multiplied by zero: adding x + 0 w changes no bit of x. Private to
+// learning/.
+#pragma once
+#include <vector>
+
+#include <lgabench/learning/layers.hpp>
+
+namespace lgabench {
+
+/// Channels of a convolution's output, ascending.
+using Channels = std::vector<int>;
+
+/// 0 .. count - 1.
+Channels all_channels(int count);
+/// Those whose sum is not 0, and as many others as bring their number to a multiple of `multiple`, at least 16.
+/// Allocates nothing where `channels` has the capacity.
+void live_channels(const float* sums, int count, int multiple, Channels& channels);
+/// Moves `channels` of each position together, in place; each had `count`.
+void pack(float* values, int positions, int count, const Channels& channels);
+
+/// Weights of `layer` between the channels `in` and `out` alone: kernel x kernel x in x out.
+void gather_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out, float* narrow);
+/// Likewise, kernel x out x kernel x in, as the input's gradient takes them.
+void transpose_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out,
+                       float* transposed);
+/// The inverse of gather_weights(): the gradient of the other weights is 0.
+void scatter_weights(const Layer& layer, const float* narrow, const Channels& in, const Channels& out, float* weights);
+
+/// Appends the patches of a picture of one channel that are not all 0, kernel x kernel numbers each, to `patches` from
+/// number places.size() on, and `first` plus the number of its position to `places`.
+void append_patches(const Layer& layer, const float* picture, int first, float* patches, std::vector<int>& places);
+/// Moves the first rows of `values` to `places` among `count`, in place, and writes `other` into every other row.
+void spread_rows(float* values, int count, int channels, const std::vector<int>& places, const float* other);
+/// Moves the rows at `places` together, in place.
+void gather_rows(float* values, int channels, const std::vector<int>& places);
+
+}  // namespace lgabench
