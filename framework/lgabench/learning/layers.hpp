@@ -18,8 +18,8 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
-/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 128, 12 actions to 16.
-constexpr int text_features = 100, padded_text_features = 128, padded_action = 16;
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 112, 12 actions to 16.
+constexpr int text_features = 100, padded_text_features = 112, padded_action = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
 enum LayerKind { mask_convolution, rgb_convolution, convolution2, convolution3, text_linear, tower_head, text_head };

@@ -117,6 +117,8 @@ struct Network::Impl {
   int capacity = 0;
   Numbers text_inputs, text_outputs, text_gradients, outputs, part, output_gradients;
   std::vector<const float*> pictures;
+  std::vector<int> every_row;  // of predict()
+  std::vector<float> predicted;
   Numbers narrow, transposed;  // one layer's weights or their gradient
 
   Impl(const NetworkShape& wanted, std::uint64_t seed, const Kernels& used) : kernels(used), shape(wanted) {
@@ -244,7 +246,7 @@ struct Network::Impl {
     const Layer l = tower.live_layer(i);
     const float *weights = parameters + c.weights, *bias = parameters + c.bias;
     if (l.channels < c.layer.channels) {
-      gather_weights(c.layer, weights, tower.inputs(i), c.out, narrow);
+      gather_weights(c.layer, weights, tower.inputs(i), narrow);
       weights = narrow;
     }
     if (i == 0 && tower.sees_mask())
@@ -385,16 +387,16 @@ void Network::set_parameters(const std::vector<float>& parameters) {
   for (std::size_t i = 0; i < places.size(); ++i) impl_->parameters[places[i]] = parameters[i];
 }
 
-std::vector<float> Network::predict(const Samples& samples) {
-  std::vector<int> batch(size(samples.rows));
-  for (std::size_t i = 0; i < batch.size(); ++i) batch[i] = static_cast<int>(i);
-  impl_->forward(samples, batch.data(), samples.rows, false);
-  std::vector<float> outputs;
+const std::vector<float>& Network::predict(const Samples& samples) {
+  impl_->every_row.resize(size(samples.rows));
+  std::iota(impl_->every_row.begin(), impl_->every_row.end(), 0);
+  impl_->forward(samples, impl_->every_row.data(), samples.rows, false);
+  impl_->predicted.clear();
   for (int row = 0; row < samples.rows; ++row) {
     const float* const begin = impl_->outputs + row * padded_action;
-    outputs.insert(outputs.end(), begin, begin + action_size);
+    impl_->predicted.insert(impl_->predicted.end(), begin, begin + action_size);
   }
-  return outputs;
+  return impl_->predicted;
 }
 
 double Network::backward(const Samples& samples, const std::vector<int>& batch, Loss loss) {

@@ -25,10 +25,9 @@ void pack(float* values, int positions, int count, const Channels& channels) {
     for (const int c : channels) *to++ = values[c];
 }
 
-void gather_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out, float* narrow) {
+void gather_weights(const Layer& layer, const float* weights, const Channels& in, float* narrow) {
   for (int k = 0; k < layer.kernel * layer.kernel; ++k, weights += layer.channels * layer.out_channels)
-    for (const int i : in)
-      for (const int o : out) *narrow++ = weights[i * layer.out_channels + o];
+    for (const int i : in) narrow = std::copy_n(weights + i * layer.out_channels, layer.out_channels, narrow);
 }
 
 void transpose_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out,
@@ -47,17 +46,27 @@ void scatter_weights(const Layer& layer, const float* narrow, const Channels& in
 }
 
 void append_patches(const Layer& layer, const float* picture, int first, float* patches, std::vector<int>& places) {
-  const int size = layer.kernel * layer.kernel;
+  const int size = layer.kernel * layer.kernel, stride = layer.stride;
   float* to = patches + places.size() * static_cast<std::size_t>(size);
-  for (int y = 0; y < layer.out_rows(); ++y)
-    for (int x = 0; x < layer.out_columns(); ++x) {
+  for (int y = 0; y < layer.out_rows(); ++y) {
+    // A patch is two strips wide, which it shares with its neighbours.
+    const auto any = [&](int column) {
+      bool found = false;
       for (int k = 0; k < layer.kernel; ++k)
-        std::copy_n(picture + (y * layer.stride + k) * layer.columns + x * layer.stride, layer.kernel,
-                    to + k * layer.kernel);
-      if (std::all_of(to, to + size, [](float value) { return value == 0; })) continue;
-      places.push_back(first + y * layer.out_columns() + x);
-      to += size;
+        for (int j = 0; j < stride; ++j) found |= picture[(y * stride + k) * layer.columns + column * stride + j] != 0;
+      return found;
+    };
+    bool left = any(0);
+    for (int x = 0; x < layer.out_columns(); ++x) {
+      const bool right = any(x + 1);
+      if (left || right) {
+        places.push_back(first + y * layer.out_columns() + x);
+        for (int k = 0; k < layer.kernel; ++k)
+          to = std::copy_n(picture + (y * stride + k) * layer.columns + x * stride, layer.kernel, to);
+      }
+      left = right;
     }
+  }
 }
 
 void spread_rows(float* values, int count, int channels, const std::vector<int>& places, const float* other) {

@@ -18,16 +18,16 @@ void live_channels(const float* sums, int count, int multiple, Channels& channel
 /// Moves `channels` of each position together, in place; each had `count`.
 void pack(float* values, int positions, int count, const Channels& channels);
 
-/// Weights of `layer` between the channels `in` and `out` alone: kernel x kernel x in x out.
-void gather_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out, float* narrow);
-/// Likewise, kernel x out x kernel x in, as the input's gradient takes them.
+/// Weights of `layer` from the channels `in` alone: kernel x kernel x in x out_channels.
+void gather_weights(const Layer& layer, const float* weights, const Channels& in, float* narrow);
+/// Weights between the channels `in` and `out` alone, kernel x out x kernel x in, as the input's gradient takes them.
 void transpose_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out,
                        float* transposed);
-/// The inverse of gather_weights(): the gradient of the other weights is 0.
+/// From kernel x kernel x in x out to `layer`'s weights, all others 0: their gradient is.
 void scatter_weights(const Layer& layer, const float* narrow, const Channels& in, const Channels& out, float* weights);
 
 /// Appends the patches of a picture of one channel that are not all 0, kernel x kernel numbers each, to `patches` from
-/// number places.size() on, and `first` plus the number of its position to `places`.
+/// number places.size() on, and `first` plus the number of its position to `places`. A kernel is two strides wide.
 void append_patches(const Layer& layer, const float* picture, int first, float* patches, std::vector<int>& places);
 /// Moves the first rows of `values` to `places` among `count`, in place, and writes `other` into every other row.
 void spread_rows(float* values, int count, int channels, const std::vector<int>& places, const float* other);

@@ -1,0 +1,30 @@
+// Private to learning/.
+#pragma once
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+namespace lgabench {
+
+/// Numbers that begin at a cache line, all 0 at first.
+class Numbers {
+ public:
+  Numbers() = default;
+  explicit Numbers(std::size_t count)
+      : values_(static_cast<float*>(std::aligned_alloc(64, (count * sizeof(float) + 63) / 64 * 64))) {
+    if (!values_) throw std::bad_alloc();
+    std::memset(values_.get(), 0, count * sizeof(float));
+  }
+  operator float*() { return values_.get(); }
+  operator const float*() const { return values_.get(); }
+
+ private:
+  struct Free {
+    void operator()(float* values) const { std::free(values); }
+  };
+  std::unique_ptr<float[], Free> values_;
+};
+
+}  // namespace lgabench
