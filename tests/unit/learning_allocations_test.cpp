@@ -14,13 +14,14 @@ namespace {
 long long allocations = 0;  // of this program and its libraries
 }
 
-void* operator new(std::size_t size) {
+// Not inlined: compilers take pairs of malloc() and delete for mistakes.
+__attribute__((noinline)) void* operator new(std::size_t size) {
   ++allocations;
   if (void* const memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+__attribute__((noinline)) void operator delete(void* memory) noexcept { std::free(memory); }
+__attribute__((noinline)) void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace lgabench {
 namespace {

@@ -1,6 +1,8 @@
 #include <lgabench/learning/mask_front.hpp>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 
 namespace lgabench {
 namespace {
@@ -20,7 +22,7 @@ void MaskFront::make_room(int rows) {
   seen_ = Numbers(size((most + 1) * taps * second_.out_channels));
   in_gradients_ = Numbers(size((most + 1) * channels));
   places_.reserve(size(positions));
-  for (auto& members : members_) members.reserve(size(most));
+  for (std::vector<int>& members : members_) members.reserve(size(most));
 }
 
 Layer MaskFront::on_patches() const {
@@ -31,26 +33,55 @@ Layer MaskFront::of_group(int group, int channels) const {
   return {1, static_cast<int>(members_[group].size()) + 1, second_.channels, 1, 1, taps * channels};
 }
 
-void MaskFront::find_places(const std::vector<const float*>& pictures, int rows) {
+// Those of one picture that are not all 0.
+void MaskFront::append_patches(const float* picture, int first_place) {
+  constexpr int kernel = first_.kernel, stride = first_.stride, columns = first_.out_columns();
+  static_assert(kernel == 2 * stride && stride * sizeof(float) == 2 * sizeof(std::uint64_t));
+  float* to = patches_ + static_cast<int>(places_.size()) * kernel * kernel;
+  for (int y = 0; y < first_.out_rows(); ++y) {
+    const float* const top = picture + y * stride * first_.columns;
+    // A patch is two strips wide, which it shares with its neighbours.
+    const auto any = [&](int strip) {
+      std::uint64_t bits = 0;
+      for (int k = 0; k < kernel; ++k) {
+        std::uint64_t pair[2];
+        std::memcpy(pair, top + k * first_.columns + strip * stride, sizeof pair);
+        bits |= pair[0] | pair[1];
+      }
+      return bits != 0;
+    };
+    bool left = any(0);
+    for (int x = 0; x < columns; ++x) {
+      const bool right = any(x + 1);
+      if (left || right) {
+        places_.push_back(first_place + y * columns + x);
+        for (int k = 0; k < kernel; ++k) to = std::copy_n(top + k * first_.columns + x * stride, kernel, to);
+      }
+      left = right;
+    }
+  }
+}
+
+bool MaskFront::find(const std::vector<const float*>& pictures, int rows) {
   places_.clear();
-  const int columns = first_.out_columns(), positions = first_.out_rows() * columns;
-  for (int row = 0; row < rows; ++row)
-    append_patches(first_, pictures[size(row)], row * positions, patches_, places_);
-  const int numbers = first_.kernel * first_.kernel;
+  constexpr int columns = first_.out_columns(), positions = first_.out_rows() * columns;
+  for (int row = 0; row < rows; ++row) append_patches(pictures[size(row)], row * positions);
+  constexpr int numbers = first_.kernel * first_.kernel;
   std::fill_n(patches_ + static_cast<int>(places_.size()) * numbers, numbers, 0.f);
-  for (auto& members : members_) members.clear();
+  for (std::vector<int>& members : members_) members.clear();
   for (std::size_t n = 0; n < places_.size(); ++n) {
     const int y = places_[n] % positions / columns, x = places_[n] % columns;
     members_[y % 2 * 2 + x % 2].push_back(static_cast<int>(n));
   }
   for (int group = 1; group < groups; ++group)
     offsets_[group] = offsets_[group - 1] + static_cast<int>(members_[group - 1].size()) + 1;
+  return 2 * static_cast<int>(places_.size()) <= rows * positions;
 }
 
 template <class Use>
 void MaskFront::for_taps(int group, const Use& use) const {
-  const int columns = first_.out_columns(), positions = first_.out_rows() * columns;
-  const int out_rows = second_.out_rows(), out_columns = second_.out_columns();
+  constexpr int columns = first_.out_columns(), positions = first_.out_rows() * columns;
+  constexpr int out_rows = second_.out_rows(), out_columns = second_.out_columns();
   for (int i = 0; i < static_cast<int>(members_[group].size()); ++i) {
     const int place = places_[size(members_[group][size(i)])], row = place / positions;
     for (int tap = 0; tap < taps; ++tap) {
@@ -69,12 +100,11 @@ void MaskFront::for_weights(int group, const Use& use) const {
   }
 }
 
-void MaskFront::forward(const std::vector<const float*>& pictures, int rows, const float* weights1, const float* bias1,
-                        const float* weights2, const float* bias2, float* out) {
-  find_places(pictures, rows);
+void MaskFront::forward(int rows, const float* weights1, const float* bias1, const float* weights2, const float* bias2,
+                        float* out) {
   kernels_.forward(on_patches(), patches_, weights1, bias1, outputs_, true);
 
-  const int in_channels = second_.channels, channels = second_.out_channels, wide = taps * channels;
+  constexpr int in_channels = second_.channels, channels = second_.out_channels, wide = taps * channels;
   const int positions = rows * second_.out_rows() * second_.out_columns();
   const float* const background = outputs_ + static_cast<int>(places_.size()) * in_channels;
   std::fill_n(out, positions * channels, 0.f);
@@ -104,9 +134,10 @@ void MaskFront::forward(const std::vector<const float*>& pictures, int rows, con
     for (int c = 0; c < channels; ++c) out[o * channels + c] = std::max(out[o * channels + c] + everywhere[c], 0.f);
 }
 
-void MaskFront::backward(const float* weights2, const Channels& live, const float* gradient,
-                         const float* sums, float* weight_gradient1, float* bias_gradient1, float* weight_gradient2) {
-  const int in_channels = second_.channels, channels = static_cast<int>(live.size()), wide = taps * channels;
+void MaskFront::backward(const float* weights2, const Channels& live, const float* gradient, const float* sums,
+                         float* weight_gradient1, float* bias_gradient1, float* weight_gradient2) {
+  constexpr int in_channels = second_.channels;
+  const int channels = static_cast<int>(live.size()), wide = taps * channels;
   float* const background = gradients_ + static_cast<int>(places_.size()) * in_channels;
   std::fill_n(background, in_channels, 0.f);
   std::fill_n(weight_gradient2, second_.weights(), 0.f);
@@ -129,22 +160,24 @@ void MaskFront::backward(const float* weights2, const Channels& live, const floa
     for_weights(group, [&](int tap, int first) {
       for (int c = 0; c < in_channels; ++c)
         for (int k = 0; k < channels; ++k)
-          weight_gradient2[(first + c) * second_.out_channels + live[size(k)]] = weights_[c * wide + tap * channels + k];
+          weight_gradient2[(first + c) * second_.out_channels + live[size(k)]] =
+              weights_[c * wide + tap * channels + k];
     });
 
     for_weights(group, [&](int tap, int first) {
-      for (int c = 0; c < in_channels; ++c)
-        for (int k = 0; k < channels; ++k)
+      for (int k = 0; k < channels; ++k)
+        for (int c = 0; c < in_channels; ++c)
           weights_[(tap * channels + k) * in_channels + c] =
               weights2[(first + c) * second_.out_channels + live[size(k)]];
     });
-    std::fill_n(in_gradients_, (count + 1) * in_channels, 0.f);
-    kernels_.input_gradient(layer, seen_, weights_, in_gradients_);
+    float* const in_gradients = in_gradients_;
+    std::fill_n(in_gradients, (count + 1) * in_channels, 0.f);
+    kernels_.input_gradient(layer, seen_, weights_, in_gradients);
     // The background stands wherever no member does.
-    for (int c = 0; c < in_channels; ++c) background[c] += in_gradients_[count * in_channels + c];
+    for (int c = 0; c < in_channels; ++c) background[c] += in_gradients[count * in_channels + c];
     for (int i = 0; i < count; ++i)
       for (int c = 0; c < in_channels; ++c) {
-        const float value = in_gradients_[i * in_channels + c];
+        const float value = in_gradients[i * in_channels + c];
         background[c] -= value;
         gradients_[members[size(i)] * in_channels + c] = value;
       }

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <numeric>
 #include <optional>
 
@@ -13,31 +11,14 @@
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/batch_norm.hpp>
+#include <lgabench/learning/mask_front.hpp>
+#include <lgabench/learning/numbers.hpp>
 #include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
 namespace {
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-// Numbers that begin at a cache line, all 0 at first.
-class Numbers {
- public:
-  Numbers() = default;
-  explicit Numbers(std::size_t count)
-      : values_(static_cast<float*>(std::aligned_alloc(64, (count * sizeof(float) + 63) / 64 * 64))) {
-    if (!values_) throw std::bad_alloc();
-    std::memset(values_.get(), 0, count * sizeof(float));
-  }
-  operator float*() { return values_.get(); }
-  operator const float*() const { return values_.get(); }
-
- private:
-  struct Free {
-    void operator()(float* values) const { std::free(values); }
-  };
-  std::unique_ptr<float[], Free> values_;
-};
 
 // Of a parameter's first value.
 struct Range {
@@ -74,11 +55,11 @@ struct Convolution : Trained {
 struct Tower {
   std::vector<Convolution> convolutions;
   Trained head{tower_head};
-  // Of a mask: its patches that are not all 0, and their positions in the batch.
-  Numbers patches;
-  std::vector<int> places;
+  std::unique_ptr<MaskFront> front{};  // of a mask: makes the first two convolutions, if this batch is mostly empty
+  bool mostly_empty = false;
 
-  bool sees_mask() const { return convolutions[0].layer.channels == 1; }
+  std::size_t first() const { return mostly_empty ? 1 : 0; }  // the convolution that sees the pictures
+
   const Channels& inputs(std::size_t i) const { return i > 0 ? convolutions[i - 1].live : convolutions[0].in; }
   // Convolution number `i` between the channels that are left.
   Layer live_layer(std::size_t i) const {
@@ -86,11 +67,6 @@ struct Tower {
     l.channels = static_cast<int>(inputs(i).size());
     l.out_channels = static_cast<int>(convolutions[i].live.size());
     return l;
-  }
-  // The first convolution of a mask, as a linear layer on its patches.
-  Layer on_patches() const {
-    const Layer l = live_layer(0);
-    return {1, static_cast<int>(places.size()), l.kernel * l.kernel, 1, 1, l.out_channels};
   }
 };
 
@@ -130,6 +106,7 @@ struct Network::Impl {
         Convolution& c = tower.convolutions.emplace_back(kind);
         if (shape.batch_norm) c.norm.emplace(c.layer.out_channels);
       }
+      if (channels == 1 && !shape.batch_norm) tower.front = std::make_unique<MaskFront>(kernels);
     }
     const std::vector<Range> ranges = lay_out();
     for (Numbers* array : {&parameters, &gradients, &mean, &variance}) *array = Numbers(count);
@@ -214,10 +191,7 @@ struct Network::Impl {
         c.outputs = Numbers(size(rows * c.layer.outputs()));
         c.gradients = Numbers(size(rows * c.layer.outputs()));
       }
-      if (!tower.sees_mask()) continue;
-      const Convolution& first = tower.convolutions[0];
-      tower.patches = Numbers(size(first.positions(rows) * first.layer.kernel * first.layer.kernel));
-      tower.places.reserve(size(first.positions(rows)));
+      if (tower.front) tower.front->make_room(rows);
     }
     if (shape.text) {
       text_inputs = Numbers(size(rows * text_size));
@@ -233,10 +207,11 @@ struct Network::Impl {
 
   // Points `pictures` at the inputs of a tower's convolution number `i`.
   void point_at_inputs(std::size_t t, std::size_t i, const Samples& samples, const int* batch, int rows) {
-    const int inputs = towers[t].live_layer(i).inputs();
+    const bool sees_samples = i == towers[t].first();
+    const int inputs = towers[t].live_layer(sees_samples ? 0 : i).inputs();
     for (int row = 0; row < rows; ++row)
-      pictures[size(row)] = i == 0 ? samples.pictures[t].data() + size(batch[row]) * size(inputs)
-                                   : towers[t].convolutions[i - 1].outputs + row * inputs;
+      pictures[size(row)] = sees_samples ? samples.pictures[t].data() + size(batch[row]) * size(inputs)
+                                         : towers[t].convolutions[i - 1].outputs + row * inputs;
   }
 
   // Of the pictures that are pointed at.
@@ -249,11 +224,13 @@ struct Network::Impl {
       gather_weights(c.layer, weights, tower.inputs(i), narrow);
       weights = narrow;
     }
-    if (i == 0 && tower.sees_mask())
-      convolve_patches(tower, rows);
-    else
+    if (i == 1 && tower.mostly_empty) {
+      const Convolution& first = tower.convolutions[0];
+      tower.front->forward(rows, parameters + first.weights, parameters + first.bias, weights, bias, c.outputs);
+    } else {
       for (int row = 0; row < rows; ++row)
         kernels.forward(l, pictures[size(row)], weights, bias, c.outputs + row * l.outputs(), !c.norm);
+    }
     if (c.norm) {
       if (training)
         c.norm->train(c.outputs, c.positions(rows), parameters + c.scale, parameters + c.shift);
@@ -269,27 +246,22 @@ struct Network::Impl {
     }
   }
 
-  void convolve_patches(Tower& tower, int rows) {
-    Convolution& c = tower.convolutions[0];
-    const float* const bias = parameters + c.bias;
-    const Layer& l = c.layer;
-    tower.places.clear();
-    for (int row = 0; row < rows; ++row)
-      append_patches(l, pictures[size(row)], c.positions(row), tower.patches, tower.places);
-    kernels.forward(tower.on_patches(), tower.patches, parameters + c.weights, bias, c.outputs, !c.norm);
-    float elsewhere[most_channels];
-    for (int k = 0; k < l.out_channels; ++k) elsewhere[k] = c.norm ? bias[k] : std::max(bias[k], 0.f);
-    spread_rows(c.outputs, c.positions(rows), l.out_channels, tower.places, elsewhere);
-  }
-
   // Leaves the batch's outputs, rows x padded_action.
   void forward(const Samples& samples, const int* batch, int rows, bool training) {
     make_room(rows);
-    for (std::size_t t = 0; t < towers.size(); ++t)
-      for (std::size_t i = 0; i < towers[t].convolutions.size(); ++i) {
-        point_at_inputs(t, i, samples, batch, rows);
-        convolve(towers[t], i, rows, training);
+    for (std::size_t t = 0; t < towers.size(); ++t) {
+      Tower& tower = towers[t];
+      tower.mostly_empty = false;
+      if (tower.front) {
+        point_at_inputs(t, 0, samples, batch, rows);
+        tower.mostly_empty = tower.front->find(pictures, rows);
+        tower.convolutions[0].live = tower.convolutions[0].out;
       }
+      for (std::size_t i = tower.first(); i < tower.convolutions.size(); ++i) {
+        point_at_inputs(t, i, samples, batch, rows);
+        convolve(tower, i, rows, training);
+      }
+    }
     if (shape.text) {
       for (int row = 0; row < rows; ++row)
         std::copy_n(samples.text.data() + size(batch[row]) * text_size, text_size, text_inputs + row * text_size);
@@ -314,7 +286,7 @@ struct Network::Impl {
     for (std::size_t t = 0; t < towers.size(); ++t) {
       Convolution& last = towers[t].convolutions.back();
       backward_head(towers[t].head, last.outputs, last.gradients, rows);
-      for (std::size_t i = towers[t].convolutions.size(); i-- > 0;) {
+      for (std::size_t i = towers[t].convolutions.size(); i-- > towers[t].first();) {
         point_at_inputs(t, i, samples, batch, rows);
         backward_convolution(towers[t], i, rows);
       }
@@ -336,6 +308,11 @@ struct Network::Impl {
     kernels.sum_rows(c.gradients, sums, c.positions(rows), l.out_channels);
     std::fill_n(gradients + c.bias, c.layer.out_channels, 0.f);
     for (int k = 0; k < l.out_channels; ++k) gradients[c.bias + size(c.live[size(k)])] = sums[k];
+    if (i == 1 && tower.mostly_empty) {
+      const Convolution& first = tower.convolutions[0];
+      return tower.front->backward(parameters + c.weights, c.live, c.gradients, sums, gradients + first.weights,
+                                   gradients + first.bias, gradients + c.weights);
+    }
     if (i > 0) {
       transpose_weights(c.layer, parameters + c.weights, tower.inputs(i), c.live, transposed);
       float* const in = tower.convolutions[i - 1].gradients;
@@ -345,13 +322,7 @@ struct Network::Impl {
     }
     const bool whole = l.weights() == c.layer.weights();
     float* const weight_gradient = whole ? gradients + c.weights : narrow;
-    if (i == 0 && tower.sees_mask()) {
-      gather_rows(c.gradients, l.out_channels, tower.places);
-      const float* const patches = tower.patches;
-      kernels.weight_gradient(tower.on_patches(), &patches, c.gradients, weight_gradient, 1);
-    } else {
-      kernels.weight_gradient(l, pictures.data(), c.gradients, weight_gradient, rows);
-    }
+    kernels.weight_gradient(l, pictures.data(), c.gradients, weight_gradient, rows);
     if (!whole) scatter_weights(c.layer, narrow, tower.inputs(i), c.live, gradients + c.weights);
   }
 

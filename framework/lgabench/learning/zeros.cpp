@@ -45,42 +45,4 @@ void scatter_weights(const Layer& layer, const float* narrow, const Channels& in
       for (const int o : out) weights[i * layer.out_channels + o] = *narrow++;
 }
 
-void append_patches(const Layer& layer, const float* picture, int first, float* patches, std::vector<int>& places) {
-  const int size = layer.kernel * layer.kernel, stride = layer.stride;
-  float* to = patches + places.size() * static_cast<std::size_t>(size);
-  for (int y = 0; y < layer.out_rows(); ++y) {
-    // A patch is two strips wide, which it shares with its neighbours.
-    const auto any = [&](int column) {
-      bool found = false;
-      for (int k = 0; k < layer.kernel; ++k)
-        for (int j = 0; j < stride; ++j) found |= picture[(y * stride + k) * layer.columns + column * stride + j] != 0;
-      return found;
-    };
-    bool left = any(0);
-    for (int x = 0; x < layer.out_columns(); ++x) {
-      const bool right = any(x + 1);
-      if (left || right) {
-        places.push_back(first + y * layer.out_columns() + x);
-        for (int k = 0; k < layer.kernel; ++k)
-          to = std::copy_n(picture + (y * stride + k) * layer.columns + x * stride, layer.kernel, to);
-      }
-      left = right;
-    }
-  }
-}
-
-void spread_rows(float* values, int count, int channels, const std::vector<int>& places, const float* other) {
-  auto from = static_cast<int>(places.size());
-  for (int to = count; to-- > 0;) {
-    const bool moved = from > 0 && places[static_cast<std::size_t>(from - 1)] == to;
-    if (moved) --from;
-    std::copy_n(moved ? values + from * channels : other, channels, values + to * channels);
-  }
-}
-
-void gather_rows(float* values, int channels, const std::vector<int>& places) {
-  float* to = values;
-  for (const int place : places) to = std::copy_n(values + place * channels, channels, to);
-}
-
 }  // namespace lgabench

@@ -26,12 +26,4 @@ void transpose_weights(const Layer& layer, const float* weights, const Channels&
 /// From kernel x kernel x in x out to `layer`'s weights, all others 0: their gradient is.
 void scatter_weights(const Layer& layer, const float* narrow, const Channels& in, const Channels& out, float* weights);
 
-/// Appends the patches of a picture of one channel that are not all 0, kernel x kernel numbers each, to `patches` from
-/// number places.size() on, and `first` plus the number of its position to `places`. A kernel is two strides wide.
-void append_patches(const Layer& layer, const float* picture, int first, float* patches, std::vector<int>& places);
-/// Moves the first rows of `values` to `places` among `count`, in place, and writes `other` into every other row.
-void spread_rows(float* values, int count, int channels, const std::vector<int>& places, const float* other);
-/// Moves the rows at `places` together, in place.
-void gather_rows(float* values, int channels, const std::vector<int>& places);
-
 }  // namespace lgabench
