@@ -13,7 +13,7 @@ namespace {
 
 namespace bp = boost::process;
 
-// One network in one Python, which ends with its input.
+// One network in one Python, which child_'s destructor ends.
 class Steps {
  public:
   Steps(const std::string& python, const std::string& channels, bool text)
@@ -21,11 +21,6 @@ class Steps {
                bp::std_err > bp::null) {
     std::string line;
     ready_ = std::getline(out_, line) && line == "ready";
-  }
-  ~Steps() {
-    in_.pipe().close();
-    std::error_code ignored;
-    child_.wait(ignored);
   }
   bool ready() const { return ready_; }
 
