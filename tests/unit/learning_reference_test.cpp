@@ -168,6 +168,8 @@ TEST_P(Networks, TakeTheRowsThatABatchNames) {
   const double one = network.backward(samples, {4}, Loss::norm), other = network.backward(samples, {1}, Loss::norm);
   if (!tested.shape.batch_norm) {
     EXPECT_NEAR(network.backward(samples, {1, 4}, Loss::norm), (one + other) / 2, 1e-6);
+    const double empty = network.backward(samples, {3}, Loss::norm);  // where there are masks
+    EXPECT_NEAR(network.backward(samples, {1, 3}, Loss::norm), (other + empty) / 2, 1e-6);
   }
   EXPECT_NE(one, other);
 }
