@@ -3,6 +3,8 @@
 // linked once, and perhaps as the one that the processor cannot run.
 #include <lgabench/learning/kernels.hpp>
 
+#define LGABENCH_INLINE __attribute__((always_inline))
+
 namespace lgabench {
 namespace {
 
@@ -17,9 +19,9 @@ inline void store(float* to, Vector value) { *reinterpret_cast<Vector*>(to) = va
 
 // sum[r][v] += a[r * row_stride + k * step_stride] * b[k * b_stride + v * lanes ..], over k.
 template <int Rows, int Vectors>
-__attribute__((always_inline)) inline void multiply_add(Vector (&sum)[Rows][Vectors], const float* a,
-                                                        std::ptrdiff_t row_stride, std::ptrdiff_t step_stride,
-                                                        const float* b, std::ptrdiff_t b_stride, int steps) {
+LGABENCH_INLINE inline void multiply_add(Vector (&sum)[Rows][Vectors], const float* a, std::ptrdiff_t row_stride,
+                                         std::ptrdiff_t step_stride, const float* b, std::ptrdiff_t b_stride,
+                                         int steps) {
   for (int k = 0; k < steps; ++k, a += step_stride, b += b_stride) {
     Vector right[Vectors];
     for (int v = 0; v < Vectors; ++v) right[v] = load(b + v * lanes);
@@ -36,7 +38,7 @@ struct Constant {
 
 // Calls use(Constant<rows>, first) for tiles of nearly equal size, none above most_rows, that cover 0 .. count.
 template <int Rows = most_rows, class Use>
-__attribute__((always_inline)) inline void with_rows(int rows, int first, const Use& use) {
+LGABENCH_INLINE inline void with_rows(int rows, int first, const Use& use) {
   if constexpr (Rows > 0) {
     if (rows == Rows)
       use(Constant<Rows>(), first);
@@ -45,7 +47,7 @@ __attribute__((always_inline)) inline void with_rows(int rows, int first, const 
   }
 }
 template <class Use>
-__attribute__((always_inline)) inline void for_tiles(int count, const Use& use) {
+LGABENCH_INLINE inline void for_tiles(int count, const Use& use) {
   const int tiles = (count + most_rows - 1) / most_rows;
   for (int t = 0; t < tiles; ++t) {
     const int first = count * t / tiles;
@@ -56,7 +58,7 @@ __attribute__((always_inline)) inline void for_tiles(int count, const Use& use) 
 // Calls use(Constant<vectors>, first) for whole vectors that cover 0 .. count, which holds at least one; where they do
 // not fill it, the last overlaps the one before.
 template <class Use>
-__attribute__((always_inline)) inline void for_vectors(int count, const Use& use) {
+LGABENCH_INLINE inline void for_vectors(int count, const Use& use) {
   int first = 0;
   for (; count - first >= most_vectors * lanes; first += most_vectors * lanes) use(Constant<most_vectors>(), first);
   for (; first < count; first += lanes) use(Constant<1>(), first + lanes < count ? first : count - lanes);
@@ -68,8 +70,8 @@ int step_of(const Layer& l) { return l.stride * l.channels; }  // from a positio
 void forward(const Layer& l, const float* in, const float* weights, const float* bias, float* out, bool relu) {
   const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
   for (int y = 0; y < l.out_rows(); ++y)
-    for_vectors(l.out_channels, [&](auto vectors, int channel) {
-      for_tiles(width, [&](auto rows, int first) {
+    for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+      for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
         constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
         Vector sum[n][m];
         for (int r = 0; r < n; ++r)
@@ -92,8 +94,8 @@ void weight_gradient(const Layer& l, const float* const* in, const float* gradie
                      int pictures) {
   const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
   for (int k = 0; k < l.kernel; ++k)
-    for_vectors(l.out_channels, [&](auto vectors, int channel) {
-      for_tiles(segment, [&](auto rows, int first) {
+    for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+      for_tiles(segment, [&](auto rows, int first) LGABENCH_INLINE {
         constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
         Vector sum[n][m] = {};
         const float* right = gradient + channel;
@@ -113,8 +115,8 @@ void input_gradient(const Layer& l, const float* gradient, const float* transpos
   for (int y = 0; y < l.out_rows(); ++y)
     for (int k = 0; k < l.kernel; ++k) {
       float* const to = in_gradient + (y * l.stride + k) * l.columns * l.channels;
-      for_vectors(segment, [&](auto vectors, int part) {
-        for_tiles(width, [&](auto rows, int first) {
+      for_vectors(segment, [&](auto vectors, int part) LGABENCH_INLINE {
+        for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
           constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
           Vector sum[n][m] = {};
           multiply_add<n, m>(sum, gradient + (y * width + first) * l.out_channels, l.out_channels, 1,
@@ -134,7 +136,7 @@ void relu_gradient(const float* __restrict out, float* __restrict gradient, std:
 }
 
 void sum_rows(const float* values, float* sums, int rows, int channels) {
-  for_vectors(channels, [&](auto vectors, int channel) {
+  for_vectors(channels, [&](auto vectors, int channel) LGABENCH_INLINE {
     constexpr int m = decltype(vectors)::value;
     Vector sum[m] = {};
     for (int r = 0; r < rows; ++r)
