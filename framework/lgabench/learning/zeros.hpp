@@ -12,8 +12,8 @@ using Channels = std::vector<int>;
 
 /// 0 .. count - 1.
 Channels all_channels(int count);
-/// Those whose sum is not 0, and as many others as bring their number to a multiple of `multiple`, at least 16.
-/// Allocates nothing where `channels` has the capacity.
+/// Those whose sum, of numbers of which none is negative, is not 0, and as many others as bring their number to a
+/// multiple of `multiple`, at least 16. Allocates nothing where `channels` has the capacity.
 void live_channels(const float* sums, int count, int multiple, Channels& channels);
 /// Moves `channels` of each position together, in place; each had `count`.
 void pack(float* values, int positions, int count, const Channels& channels);
@@ -23,7 +23,7 @@ void gather_weights(const Layer& layer, const float* weights, const Channels& in
 /// Weights between the channels `in` and `out` alone, kernel x out x kernel x in, as the input's gradient takes them.
 void transpose_weights(const Layer& layer, const float* weights, const Channels& in, const Channels& out,
                        float* transposed);
-/// From kernel x kernel x in x out to `layer`'s weights, all others 0: their gradient is.
+/// A gradient from kernel x kernel x in x out to all of `layer`'s weights: that of the others is 0.
 void scatter_weights(const Layer& layer, const float* narrow, const Channels& in, const Channels& out, float* weights);
 
 }  // namespace lgabench
