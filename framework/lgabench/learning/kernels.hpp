@@ -16,8 +16,8 @@ struct AdamCoefficients {
   float root;          // 1 / sqrt(1 - beta2^t)
 };
 
-/// All arrays are the caller's; any alignment is right, 64 bytes is fast. A layer may be narrower than in `layers`, with
-/// 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.
+/// All arrays are the caller's; any alignment is right, 64 bytes is fast. A layer may be narrower than in `layers`,
+/// with 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.
 struct Kernels {
   const char* name;  // "avx512", "avx2" or "portable"
   /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
