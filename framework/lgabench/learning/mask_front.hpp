@@ -13,7 +13,9 @@ namespace lgabench {
 /// Without batch normalisation. One thread at a time; a call allocates nothing where make_room() was for as many rows.
 class MaskFront {
  public:
+  /// @pre `kernels` outlives this.
   explicit MaskFront(const Kernels& kernels);
+  /// For batches of up to `rows`.
   void make_room(int rows);
 
   /// Looks for the patches that are not all 0. False if they are more than half: then this is no gain, and differences
