@@ -1,11 +1,16 @@
-// One training step: forward, backward and Adam on a batch of ten.
+// One training step: forward, backward and Adam on a batch of ten, as a cell of fifty demonstrations has them. What a
+// step costs depends on how much in the pictures is empty, so they are of scenes and not random.
 #include <benchmark/benchmark.h>
 #include <torch/torch.h>
 
 #include <numeric>
 
-#include <lgabench/core/random.hpp>
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/core/scenario.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
+#include <tabletop/renderer.hpp>
+#include <tabletop/sampler.hpp>
 
 #include "benchmarks.hpp"
 
@@ -16,9 +21,10 @@
 namespace lgabench {
 namespace {
 
-constexpr int rows = 10;
+constexpr int rows = 10, batches = 5;
 
-// Forward and weight gradient of every layer; input gradient of all but the first of each tower.
+// Of the dense arithmetic: forward and weight gradient of every layer; input gradient of all but the first of each
+// tower.
 double flops_of(const NetworkShape& shape) {
   double flops = 0;
   for (const int channels : shape.channels) {
@@ -35,13 +41,30 @@ const std::vector<std::pair<const char*, NetworkShape>>& shapes() {
   return all;
 }
 
-Samples random_samples(const NetworkShape& shape) {
-  RandomStream random("benchmark");
-  Samples samples(shape, rows);
-  for (auto& picture : samples.pictures)
-    for (float& value : picture) value = static_cast<float>(random.uniform());
-  for (float& value : samples.text) value = static_cast<float>(random.gaussian() / 20);
-  for (float& value : samples.labels) value = static_cast<float>(random.uniform());
+// Training scenes of "Bring me the heart." with the place of the target as the label.
+Samples samples_of(const NetworkShape& shape) {
+  const Scenario scenario = load_scenario("heart");
+  const ScenarioCommand& command = scenario.commands.front();
+  tabletop::Renderer renderer;
+  Samples samples(shape, rows * batches);
+  for (int i = 0; i < samples.rows; ++i) {
+    const Scene scene = tabletop::sample_scene(scenario, {"cells", "train", "train", 0}, i);
+    const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+    for (std::size_t t = 0; t < shape.channels.size(); ++t) {
+      float* const picture = samples.pictures[t].data() + i * input_pixels * shape.channels[t];
+      if (shape.channels[t] == 1)
+        shrink_mask(goal_mask(seen, command.truth), picture);
+      else
+        shrink_rgb(seen.rgb, picture);
+    }
+    if (shape.text) {
+      static SentenceEmbeddings embeddings;
+      const std::vector<float>& text = embeddings.of(command.utterance);
+      std::copy(text.begin(), text.end(), samples.text.begin() + i * text_size);
+    }
+    const ActionVector label = to_vector({{scene.find(Role::target)->position_m, {}}, {{.5, .3}, {}}});
+    std::copy(label.begin(), label.end(), samples.labels.begin() + i * action_size);
+  }
   return samples;
 }
 
@@ -53,23 +76,32 @@ void report(benchmark::State& state, const NetworkShape& shape) {
 
 void ours(benchmark::State& state, const NetworkShape& shape, const Kernels& kernels) {
   Network network(shape, 1, kernels);
-  const Samples samples = random_samples(shape);
+  const Samples samples = samples_of(shape);
   std::vector<int> batch(rows);
-  std::iota(batch.begin(), batch.end(), 0);
+  int step = 0;
   for (auto _ : state) {
+    std::iota(batch.begin(), batch.end(), rows * (step++ % batches));
     benchmark::DoNotOptimize(network.backward(samples, batch, Loss::norm));
     network.update(1e-3);
   }
   report(state, shape);
 }
 
-// As one writes it in LibTorch or PyTorch: modules, autograd and optim::Adam. The same speed from Python.
+// As one writes it in LibTorch: modules, autograd and optim::Adam.
 void torchs(benchmark::State& state, const NetworkShape& shape) {
   namespace nn = torch::nn;
   at::set_num_threads(1);
-  const Samples samples = random_samples(shape);
+  const Samples samples = samples_of(shape);
+  // Batch number b of an array with so many numbers a row.
+  const auto batch_of = [](const std::vector<float>& values, int b, std::vector<std::int64_t> sizes) {
+    std::int64_t numbers = rows;
+    for (const std::int64_t s : sizes) numbers *= s;
+    sizes.insert(sizes.begin(), rows);
+    return torch::from_blob(const_cast<float*>(values.data()) + b * numbers, sizes);
+  };
   std::vector<nn::Sequential> towers;
-  std::vector<torch::Tensor> pictures, parameters;
+  std::vector<torch::Tensor> parameters;
+  std::vector<std::vector<torch::Tensor>> pictures(shape.channels.size());  // of each tower, each batch
   const auto add = [&parameters](const std::vector<torch::Tensor>& more) {
     parameters.insert(parameters.end(), more.begin(), more.end());
   };
@@ -79,20 +111,22 @@ void torchs(benchmark::State& state, const NetworkShape& shape) {
                                     nn::Conv2d(nn::Conv2dOptions(32, 64, 4).stride(2)), nn::ReLU(),
                                     nn::Conv2d(nn::Conv2dOptions(64, 32, 3)), nn::ReLU(), nn::Flatten()));
     add(towers.back()->parameters());
-    pictures.push_back(torch::from_blob(const_cast<float*>(samples.pictures[t].data()), {rows, 36, 72, channels})
-                           .permute({0, 3, 1, 2})
-                           .contiguous());
+    for (int b = 0; b < batches; ++b)
+      pictures[t].push_back(batch_of(samples.pictures[t], b, {36, 72, channels}).permute({0, 3, 1, 2}).contiguous());
   }
   nn::Linear text(384, 100), head(160 * static_cast<std::int64_t>(towers.size()) + (shape.text ? 100 : 0), 12);
   if (shape.text) add(text->parameters());
   add(head->parameters());
   torch::optim::Adam adam(parameters, torch::optim::AdamOptions(1e-3));
-  const torch::Tensor labels = torch::from_blob(const_cast<float*>(samples.labels.data()), {rows, 12});
+  int step = 0;
   for (auto _ : state) {
+    const int b = step++ % batches;
     std::vector<torch::Tensor> features;
-    for (std::size_t t = 0; t < towers.size(); ++t) features.push_back(towers[t]->forward(pictures[t]));
-    if (shape.text) features.push_back(text(torch::from_blob(const_cast<float*>(samples.text.data()), {rows, 384})));
-    const torch::Tensor loss = (head(torch::cat(features, 1)) - labels).norm(2, 1).mean();
+    for (std::size_t t = 0; t < towers.size(); ++t)
+      features.push_back(towers[t]->forward(pictures[t][static_cast<std::size_t>(b)]));
+    if (shape.text) features.push_back(text(batch_of(samples.text, b, {text_size})));
+    const torch::Tensor loss =
+        (head(torch::cat(features, 1)) - batch_of(samples.labels, b, {action_size})).norm(2, 1).mean();
     adam.zero_grad();
     loss.backward();
     adam.step();
@@ -126,7 +160,7 @@ __attribute__((target("avx2,fma"), noipa)) void multiply_add_256(float x, float 
   _mm256_storeu_ps(out, sum[0]);
 }
 
-// The most that one core can multiply and add in single precision; the time of one step's worth of it.
+// The most that one core can multiply and add in single precision; the time of one dense step's worth of it.
 void peak(benchmark::State& state) {
   const bool wide = __builtin_cpu_supports("avx512f");
   const double flops = 2. * (wide ? 16 : 8) * rounds * sums, step = flops_of({{1}});
@@ -153,6 +187,7 @@ void register_training() {
     }
     benchmark::RegisterBenchmark(("step/" + std::string(name) + "/libtorch").c_str(),
                                  [&s](benchmark::State& state) { torchs(state, s); });
+    register_pytorch("step/" + std::string(name) + "/pytorch", s.channels, s.text);
   }
 #if defined(__x86_64__)
   if (__builtin_cpu_supports("fma")) benchmark::RegisterBenchmark("step/mask/peak", peak);

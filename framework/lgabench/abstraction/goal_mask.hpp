@@ -13,7 +13,11 @@ namespace lgabench {
 /// @throws InputError if the ids are not rows x columns, or name an instance that the table lacks.
 std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection);
 
-/// Likewise, 1 on any object: what a segmentation without language gives.
+/// Likewise, into `mask`, which is resized: nothing is allocated where it has the capacity.
+void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask);
+
+/// 1 on any object: what a segmentation without language gives.
 std::vector<std::uint8_t> object_mask(const Observation& observation);
+void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask);
 
 }  // namespace lgabench

@@ -28,16 +28,19 @@ class Featurizer {
     return shape;
   }
 
-  void write(const Observation& observation, const Instruction& instruction, Samples& samples, int row) const {
+  void write(const Observation& observation, const Instruction& instruction, Samples& samples, int row) {
     for (std::size_t i = 0; i < inputs_.pictures.size(); ++i) {
       const Picture picture = inputs_.pictures[i];
       float* const out = samples.pictures[i].data() + row * (picture == Picture::rgb ? 3 : 1) * input_pixels;
-      if (picture == Picture::rgb)
+      if (picture == Picture::rgb) {
         shrink_rgb(observation.rgb, out);
+        continue;
+      }
+      if (picture == Picture::mask)
+        goal_mask(observation, mask_selection(instruction), mask_);
       else
-        shrink_mask(
-            picture == Picture::mask ? goal_mask(observation, mask_selection(instruction)) : object_mask(observation),
-            out);
+        object_mask(observation, mask_);
+      shrink_mask(mask_, out);
     }
     if (has_text()) {
       const std::vector<float>& embedding = embeddings_->of(inputs_.text == PolicyInputs::Text::utterance
@@ -59,6 +62,7 @@ class Featurizer {
 
   PolicyInputs inputs_;
   std::shared_ptr<SentenceEmbeddings> embeddings_;
+  std::vector<std::uint8_t> mask_;
 };
 
 class CloningPolicy : public Policy {
@@ -68,7 +72,7 @@ class CloningPolicy : public Policy {
 
   Action act(const Observation& observation, const Instruction& instruction) override {
     featurizer_.write(observation, instruction, input_, 0);
-    const std::vector<float> output = network.predict(input_);
+    const std::vector<float>& output = network.predict(input_);
     ActionVector action;
     std::copy_n(output.begin(), action.size(), action.begin());
     return from_vector(action);
@@ -91,7 +95,7 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   training.learning_rate = options.at("learning_rate").number();
   training.loss = options.at("loss").string() == "squared" ? Loss::squared : Loss::norm;
 
-  const Featurizer featurizer(inputs(services.options));
+  Featurizer featurizer(inputs(services.options));
   const NetworkShape shape = featurizer.shape(options.at("batch_norm").boolean());
   int rows = 0;
   for (const Demonstration& demonstration : demonstrations) rows += static_cast<int>(demonstration.steps.size());

@@ -16,25 +16,20 @@ struct AdamCoefficients {
   float root;          // 1 / sqrt(1 - beta2^t)
 };
 
-/// All arrays are the caller's; any alignment is right, 64 bytes is fast. `columns` is read for linear layers alone.
+/// All arrays are the caller's; any alignment is right, 64 bytes is fast. A layer may be narrower than in `layers`,
+/// with 16 out channels at least; for input_gradient(), one row of its kernel is a multiple of 16 numbers.
 struct Kernels {
-  /// Those of one kind of layer.
-  struct OfLayer {
-    /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
-    void (*forward)(const float* in, const float* weights, const float* bias, float* out, bool relu, int columns);
-    /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other.
-    void (*weight_gradient)(const float* const* in, const float* gradient, float* weight_gradient, int pictures,
-                            int columns);
-    /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels). Null
-    /// for the layers that see the picture.
-    void (*input_gradient)(const float* gradient, const float* transposed, float* in_gradient, int columns);
-  };
-
   const char* name;  // "avx512", "avx2" or "portable"
-  OfLayer of[layer_kinds];
+  /// out = in * weights + bias of one picture, its negative numbers replaced by 0 if `relu`.
+  void (*forward)(const Layer& layer, const float* in, const float* weights, const float* bias, float* out, bool relu);
+  /// d loss / d weights, summed over pictures, whose `gradient`s (d loss / d out) lie one after the other.
+  void (*weight_gradient)(const Layer& layer, const float* const* in, const float* gradient, float* weight_gradient,
+                          int pictures);
+  /// Adds d loss / d in of one picture; `transposed` weights are kernel x out_channels x (kernel x channels).
+  void (*input_gradient)(const Layer& layer, const float* gradient, const float* transposed, float* in_gradient);
   /// Zeroes the gradient where `out` was cut off at 0.
   void (*relu_gradient)(const float* out, float* gradient, std::size_t count);
-  /// Sums `rows` x `channels` numbers over rows; channels is a multiple of 16.
+  /// Sums `rows` x `channels` numbers over rows; channels is at least 16.
   void (*sum_rows)(const float* values, float* sums, int rows, int channels);
   /// Adam in place (Kingma and Ba 2015, algorithm 1).
   void (*adam)(const AdamCoefficients& c, const float* gradients, float* mean, float* variance, float* parameters,

@@ -3,6 +3,8 @@
 // linked once, and perhaps as the one that the processor cannot run.
 #include <lgabench/learning/kernels.hpp>
 
+#define LGABENCH_INLINE __attribute__((always_inline))
+
 namespace lgabench {
 namespace {
 
@@ -15,15 +17,16 @@ typedef float Vector __attribute__((vector_size(lanes * sizeof(float)), aligned(
 inline Vector load(const float* from) { return *reinterpret_cast<const Vector*>(from); }
 inline void store(float* to, Vector value) { *reinterpret_cast<Vector*>(to) = value; }
 
-// sum[r][v] += a[r * RowStride + k * StepStride] * b[k * BStride + v * lanes ..], over k.
-template <int Rows, int Vectors, int RowStride, int StepStride, int BStride>
-__attribute__((always_inline)) inline void multiply_add(Vector (&sum)[Rows][Vectors], const float* a, const float* b,
-                                                        int steps) {
-  for (int k = 0; k < steps; ++k, a += StepStride, b += BStride) {
+// sum[r][v] += a[r * row_stride + k * step_stride] * b[k * b_stride + v * lanes ..], over k.
+template <int Rows, int Vectors>
+LGABENCH_INLINE inline void multiply_add(Vector (&sum)[Rows][Vectors], const float* a, std::ptrdiff_t row_stride,
+                                         std::ptrdiff_t step_stride, const float* b, std::ptrdiff_t b_stride,
+                                         int steps) {
+  for (int k = 0; k < steps; ++k, a += step_stride, b += b_stride) {
     Vector right[Vectors];
     for (int v = 0; v < Vectors; ++v) right[v] = load(b + v * lanes);
     for (int r = 0; r < Rows; ++r)
-      for (int v = 0; v < Vectors; ++v) sum[r][v] += a[r * RowStride] * right[v];
+      for (int v = 0; v < Vectors; ++v) sum[r][v] += a[r * row_stride] * right[v];
   }
 }
 
@@ -35,7 +38,7 @@ struct Constant {
 
 // Calls use(Constant<rows>, first) for tiles of nearly equal size, none above most_rows, that cover 0 .. count.
 template <int Rows = most_rows, class Use>
-__attribute__((always_inline)) inline void with_rows(int rows, int first, const Use& use) {
+LGABENCH_INLINE inline void with_rows(int rows, int first, const Use& use) {
   if constexpr (Rows > 0) {
     if (rows == Rows)
       use(Constant<Rows>(), first);
@@ -44,7 +47,7 @@ __attribute__((always_inline)) inline void with_rows(int rows, int first, const 
   }
 }
 template <class Use>
-__attribute__((always_inline)) inline void for_tiles(int count, const Use& use) {
+LGABENCH_INLINE inline void for_tiles(int count, const Use& use) {
   const int tiles = (count + most_rows - 1) / most_rows;
   for (int t = 0; t < tiles; ++t) {
     const int first = count * t / tiles;
@@ -52,100 +55,94 @@ __attribute__((always_inline)) inline void for_tiles(int count, const Use& use) 
   }
 }
 
-constexpr int vectors_of(int width) { return width / lanes < most_vectors ? width / lanes : most_vectors; }
+// Calls use(Constant<vectors>, first) for whole vectors that cover 0 .. count, which holds at least one; where they do
+// not fill it, the last overlaps the one before.
+template <class Use>
+LGABENCH_INLINE inline void for_vectors(int count, const Use& use) {
+  int first = 0;
+  for (; count - first >= most_vectors * lanes; first += most_vectors * lanes) use(Constant<most_vectors>(), first);
+  for (; first < count; first += lanes) use(Constant<1>(), first + lanes < count ? first : count - lanes);
+}
 
-template <int Kind>
-struct LayerKernels {
-  static constexpr Layer layer = layers[Kind];
-  static constexpr int out_channels = layer.out_channels, segment = layer.segment();
-  static constexpr int step = layer.stride * layer.channels;  // from a position's numbers to the next one's
+const float* row(const Layer& l, const float* in, int y) { return in + y * l.columns * l.channels; }
+int step_of(const Layer& l) { return l.stride * l.channels; }  // from a position's numbers to the next one's
 
-  static int positions(int columns) { return layer.columns ? layer.out_columns() : columns; }
-  static const float* row(const float* in, int y) { return in + y * layer.columns * layer.channels; }
+void forward(const Layer& l, const float* in, const float* weights, const float* bias, float* out, bool relu) {
+  const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
+  for (int y = 0; y < l.out_rows(); ++y)
+    for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+      for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
+        constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
+        Vector sum[n][m];
+        for (int r = 0; r < n; ++r)
+          for (int v = 0; v < m; ++v) sum[r][v] = load(bias + channel + v * lanes);
+        for (int k = 0; k < l.kernel; ++k)
+          multiply_add<n, m>(sum, row(l, in, y * l.stride + k) + first * step, step, 1,
+                             weights + k * segment * l.out_channels + channel, l.out_channels, segment);
+        for (int r = 0; r < n; ++r)
+          for (int v = 0; v < m; ++v) {
+            const Vector zero = {};
+            const Vector value = sum[r][v];
+            store(out + (y * width + first + r) * l.out_channels + channel + v * lanes,
+                  relu ? (value > zero ? value : zero) : value);
+          }
+      });
+    });
+}
 
-  static void forward(const float* in, const float* weights, const float* bias, float* out, bool relu, int columns) {
-    constexpr int vectors = vectors_of(out_channels);
-    const int width = positions(columns);
-    for (int y = 0; y < layer.out_rows(); ++y)
-      for (int channel = 0; channel < out_channels; channel += vectors * lanes)
-        for_tiles(width, [&](auto rows, int first) {
-          constexpr int n = decltype(rows)::value;
-          Vector sum[n][vectors];
+void weight_gradient(const Layer& l, const float* const* in, const float* gradient, float* weight_gradient,
+                     int pictures) {
+  const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
+  for (int k = 0; k < l.kernel; ++k)
+    for_vectors(l.out_channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+      for_tiles(segment, [&](auto rows, int first) LGABENCH_INLINE {
+        constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
+        Vector sum[n][m] = {};
+        const float* right = gradient + channel;
+        for (int picture = 0; picture < pictures; ++picture)
+          for (int y = 0; y < l.out_rows(); ++y, right += width * l.out_channels)
+            multiply_add<n, m>(sum, row(l, in[picture], y * l.stride + k) + first, 1, step, right, l.out_channels,
+                               width);
+        for (int r = 0; r < n; ++r)
+          for (int v = 0; v < m; ++v)
+            store(weight_gradient + (k * segment + first + r) * l.out_channels + channel + v * lanes, sum[r][v]);
+      });
+    });
+}
+
+void input_gradient(const Layer& l, const float* gradient, const float* transposed, float* in_gradient) {
+  const int width = l.out_columns(), segment = l.segment(), step = step_of(l);
+  for (int y = 0; y < l.out_rows(); ++y)
+    for (int k = 0; k < l.kernel; ++k) {
+      float* const to = in_gradient + (y * l.stride + k) * l.columns * l.channels;
+      for_vectors(segment, [&](auto vectors, int part) LGABENCH_INLINE {
+        for_tiles(width, [&](auto rows, int first) LGABENCH_INLINE {
+          constexpr int n = decltype(rows)::value, m = decltype(vectors)::value;
+          Vector sum[n][m] = {};
+          multiply_add<n, m>(sum, gradient + (y * width + first) * l.out_channels, l.out_channels, 1,
+                             transposed + k * l.out_channels * segment + part, segment, l.out_channels);
           for (int r = 0; r < n; ++r)
-            for (int v = 0; v < vectors; ++v) sum[r][v] = load(bias + channel + v * lanes);
-          for (int k = 0; k < layer.kernel; ++k)
-            multiply_add<n, vectors, step, 1, out_channels>(sum, row(in, y * layer.stride + k) + first * step,
-                                                            weights + k * segment * out_channels + channel, segment);
-          for (int r = 0; r < n; ++r)
-            for (int v = 0; v < vectors; ++v) {
-              const Vector zero = {};
-              const Vector value = sum[r][v];
-              store(out + (y * width + first + r) * out_channels + channel + v * lanes,
-                    relu ? (value > zero ? value : zero) : value);
+            for (int v = 0; v < m; ++v) {
+              float* const at = to + (first + r) * step + part + v * lanes;
+              store(at, load(at) + sum[r][v]);
             }
         });
-  }
-
-  static void weight_gradient(const float* const* in, const float* gradient, float* weight_gradient, int pictures,
-                              int columns) {
-    constexpr int vectors = vectors_of(out_channels);
-    const int width = positions(columns);
-    for (int k = 0; k < layer.kernel; ++k)
-      for (int channel = 0; channel < out_channels; channel += vectors * lanes)
-        for_tiles(segment, [&](auto rows, int first) {
-          constexpr int n = decltype(rows)::value;
-          Vector sum[n][vectors] = {};
-          const float* right = gradient + channel;
-          for (int picture = 0; picture < pictures; ++picture)
-            for (int y = 0; y < layer.out_rows(); ++y, right += width * out_channels)
-              multiply_add<n, vectors, 1, step, out_channels>(sum, row(in[picture], y * layer.stride + k) + first,
-                                                              right, width);
-          for (int r = 0; r < n; ++r)
-            for (int v = 0; v < vectors; ++v)
-              store(weight_gradient + (k * segment + first + r) * out_channels + channel + v * lanes, sum[r][v]);
-        });
-  }
-
-  static void input_gradient(const float* gradient, const float* transposed, float* in_gradient, int columns) {
-    constexpr int vectors = vectors_of(segment);
-    const int width = positions(columns);
-    for (int y = 0; y < layer.out_rows(); ++y)
-      for (int k = 0; k < layer.kernel; ++k) {
-        float* const to = in_gradient + (y * layer.stride + k) * layer.columns * layer.channels;
-        for (int part = 0; part < segment; part += vectors * lanes)
-          for_tiles(width, [&](auto rows, int first) {
-            constexpr int n = decltype(rows)::value;
-            Vector sum[n][vectors] = {};
-            multiply_add<n, vectors, out_channels, 1, segment>(sum, gradient + (y * width + first) * out_channels,
-                                                               transposed + k * out_channels * segment + part,
-                                                               out_channels);
-            for (int r = 0; r < n; ++r)
-              for (int v = 0; v < vectors; ++v) {
-                float* const at = to + (first + r) * step + part + v * lanes;
-                store(at, load(at) + sum[r][v]);
-              }
-          });
-      }
-  }
-
-  static constexpr Kernels::OfLayer all() {
-    if constexpr (layer.channels < 16)
-      return {forward, weight_gradient, nullptr};
-    else
-      return {forward, weight_gradient, input_gradient};
-  }
-};
+      });
+    }
+}
 
 void relu_gradient(const float* __restrict out, float* __restrict gradient, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) gradient[i] = out[i] > 0 ? gradient[i] : 0;
 }
 
 void sum_rows(const float* values, float* sums, int rows, int channels) {
-  for (int channel = 0; channel < channels; channel += lanes) {
-    Vector sum = {};
-    for (int r = 0; r < rows; ++r) sum += load(values + r * channels + channel);
-    store(sums + channel, sum);
-  }
+  for_vectors(channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+    constexpr int m = decltype(vectors)::value;
+    Vector sum[m] = {};
+    for (int r = 0; r < rows; ++r)
+      for (int v = 0; v < m; ++v) sum[v] += load(values + r * channels + channel + v * lanes);
+    for (int v = 0; v < m; ++v) store(sums + channel + v * lanes, sum[v]);
+  });
 }
 
 void adam(const AdamCoefficients& c, const float* __restrict gradients, float* __restrict mean,
@@ -160,13 +157,7 @@ void adam(const AdamCoefficients& c, const float* __restrict gradients, float* _
 }
 
 constexpr Kernels kernels_of(const char* name) {
-  return {name,
-          {LayerKernels<mask_convolution>::all(), LayerKernels<rgb_convolution>::all(),
-           LayerKernels<convolution2>::all(), LayerKernels<convolution3>::all(), LayerKernels<text_linear>::all(),
-           LayerKernels<tower_head>::all(), LayerKernels<text_head>::all()},
-          relu_gradient,
-          sum_rows,
-          adam};
+  return {name, forward, weight_gradient, input_gradient, relu_gradient, sum_rows, adam};
 }
 
 }  // namespace

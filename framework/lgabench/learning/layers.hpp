@@ -18,8 +18,8 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
-/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 128, 12 actions to 16.
-constexpr int text_features = 100, padded_text_features = 128, padded_action = 16;
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 112, 12 actions to 16.
+constexpr int text_features = 100, padded_text_features = 112, padded_action = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
 enum LayerKind { mask_convolution, rgb_convolution, convolution2, convolution3, text_linear, tower_head, text_head };
@@ -31,6 +31,6 @@ constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {1, 0, 384, 1, 1, padded_text_features},
                             {1, 0, 160, 1, 1, padded_action},
                             {1, 0, padded_text_features, 1, 1, padded_action}};
-constexpr int layer_kinds = sizeof(layers) / sizeof(layers[0]);
+constexpr int most_channels = 64;  // of a convolution's output
 
 }  // namespace lgabench

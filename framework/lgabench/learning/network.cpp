@@ -4,38 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
+#include <numeric>
 #include <optional>
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/batch_norm.hpp>
+#include <lgabench/learning/mask_front.hpp>
+#include <lgabench/learning/numbers.hpp>
+#include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
 namespace {
 
 std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-// Numbers that begin at a cache line, all 0 at first.
-class Numbers {
- public:
-  Numbers() = default;
-  explicit Numbers(std::size_t count)
-      : values_(static_cast<float*>(std::aligned_alloc(64, (count * sizeof(float) + 63) / 64 * 64))) {
-    if (!values_) throw std::bad_alloc();
-    std::memset(values_.get(), 0, count * sizeof(float));
-  }
-  operator float*() { return values_.get(); }
-  operator const float*() const { return values_.get(); }
-
- private:
-  struct Free {
-    void operator()(float* values) const { std::free(values); }
-  };
-  std::unique_ptr<float[], Free> values_;
-};
 
 // Of a parameter's first value.
 struct Range {
@@ -45,22 +28,46 @@ Range within(int fan_in) { return {-1 / std::sqrt(fan_in), 1 / std::sqrt(fan_in)
 
 // A layer's place in the flat arrays of parameters and gradients.
 struct Trained {
-  LayerKind kind;
-  std::size_t weights = 0, bias = 0, scale = 0, shift = 0;
-  Numbers transposed{};  // weights with the last two dimensions exchanged, for the input's gradient
+  explicit Trained(LayerKind k)
+      : layer(layers[k]), in(all_channels(layer.channels)), out(all_channels(layer.out_channels)) {}
 
-  const Layer& layer() const { return layers[kind]; }
+  Layer layer;
+  Channels in, out;  // all
+  std::size_t weights = 0, bias = 0, scale = 0, shift = 0;
+
+  // A linear layer with a batch of so many rows.
+  Layer on(int rows) const {
+    Layer l = layer;
+    l.columns = rows;
+    return l;
+  }
 };
 
 struct Convolution : Trained {
-  explicit Convolution(LayerKind k) : Trained{k} {}
-  Numbers outputs, gradients;  // batch x out rows x out columns x out channels
+  using Trained::Trained;
+  Channels live = out;         // what is kept of the outputs: the others are 0 in all of this batch
+  Numbers outputs, gradients;  // batch x out rows x out columns x live channels
   std::optional<BatchNorm> norm{};
+
+  int positions(int rows) const { return rows * layer.out_rows() * layer.out_columns(); }
 };
 
 struct Tower {
   std::vector<Convolution> convolutions;
   Trained head{tower_head};
+  std::unique_ptr<MaskFront> front{};  // of a mask: makes the first two convolutions, if this batch is mostly empty
+  bool mostly_empty = false;
+
+  std::size_t first() const { return mostly_empty ? 1 : 0; }  // the convolution that sees the pictures
+
+  const Channels& inputs(std::size_t i) const { return i > 0 ? convolutions[i - 1].live : convolutions[0].in; }
+  // Convolution number `i` between the channels that are left.
+  Layer live_layer(std::size_t i) const {
+    Layer l = convolutions[i].layer;
+    l.channels = static_cast<int>(inputs(i).size());
+    l.out_channels = static_cast<int>(convolutions[i].live.size());
+    return l;
+  }
 };
 
 }  // namespace
@@ -86,6 +93,9 @@ struct Network::Impl {
   int capacity = 0;
   Numbers text_inputs, text_outputs, text_gradients, outputs, part, output_gradients;
   std::vector<const float*> pictures;
+  std::vector<int> every_row;  // of predict()
+  std::vector<float> predicted;
+  Numbers narrow, transposed;  // one layer's weights or their gradient
 
   Impl(const NetworkShape& wanted, std::uint64_t seed, const Kernels& used) : kernels(used), shape(wanted) {
     for (const int channels : shape.channels) {
@@ -94,11 +104,15 @@ struct Network::Impl {
       Tower& tower = towers.emplace_back();
       for (const LayerKind kind : {channels == 1 ? mask_convolution : rgb_convolution, convolution2, convolution3}) {
         Convolution& c = tower.convolutions.emplace_back(kind);
-        if (shape.batch_norm) c.norm.emplace(c.layer().out_channels);
+        if (shape.batch_norm) c.norm.emplace(c.layer.out_channels);
       }
+      if (channels == 1 && !shape.batch_norm) tower.front = std::make_unique<MaskFront>(kernels);
     }
     const std::vector<Range> ranges = lay_out();
     for (Numbers* array : {&parameters, &gradients, &mean, &variance}) *array = Numbers(count);
+    int most_weights = 0;
+    for (const Layer& layer : layers) most_weights = std::max(most_weights, layer.weights());
+    for (Numbers* array : {&narrow, &transposed}) *array = Numbers(size(most_weights));
     RandomStream random(fmt::format("learning/weights/{}", seed));
     for (std::size_t i = 0; i < ranges.size(); ++i)
       parameters[from_pytorch[i]] = static_cast<float>(random.uniform(ranges[i].low, ranges[i].high));
@@ -118,7 +132,7 @@ struct Network::Impl {
     };
     for (Tower& tower : towers)
       for (Convolution& c : tower.convolutions) {
-        const Layer& l = c.layer();
+        const Layer& l = c.layer;
         const Range range = within(l.kernel * l.segment());
         c.weights = take(l.weights());
         c.bias = take(l.out_channels);
@@ -136,7 +150,7 @@ struct Network::Impl {
       }
     if (shape.text) {
       const Range range = within(text_size);
-      text.weights = take(text.layer().weights());
+      text.weights = take(text.layer.weights());
       text.bias = take(padded_text_features);
       for (int out = 0; out < text_features; ++out)
         for (int in = 0; in < text_size; ++in) name(text.weights + size(in * padded_text_features + out), range);
@@ -151,8 +165,8 @@ struct Network::Impl {
     const int features =
         static_cast<int>(towers.size()) * layers[tower_head].channels + (shape.text ? text_features : 0);
     const Range range = within(features);
-    for (Tower& tower : towers) tower.head.weights = take(tower.head.layer().weights());
-    if (shape.text) text_head_layer.weights = take(text_head_layer.layer().weights());
+    for (Tower& tower : towers) tower.head.weights = take(tower.head.layer.weights());
+    if (shape.text) text_head_layer.weights = take(text_head_layer.layer.weights());
     head_bias = take(padded_action);
     for (int out = 0; out < action_size; ++out) {
       for (const Tower& tower : towers) {
@@ -172,11 +186,13 @@ struct Network::Impl {
 
   void make_room(int rows) {
     if (rows <= capacity) return;
-    for (Tower& tower : towers)
+    for (Tower& tower : towers) {
       for (Convolution& c : tower.convolutions) {
-        c.outputs = Numbers(size(rows * c.layer().outputs()));
-        c.gradients = Numbers(size(rows * c.layer().outputs()));
+        c.outputs = Numbers(size(rows * c.layer.outputs()));
+        c.gradients = Numbers(size(rows * c.layer.outputs()));
       }
+      if (tower.front) tower.front->make_room(rows);
+    }
     if (shape.text) {
       text_inputs = Numbers(size(rows * text_size));
       text_outputs = Numbers(size(rows * padded_text_features));
@@ -191,37 +207,66 @@ struct Network::Impl {
 
   // Points `pictures` at the inputs of a tower's convolution number `i`.
   void point_at_inputs(std::size_t t, std::size_t i, const Samples& samples, const int* batch, int rows) {
-    const std::vector<Convolution>& convolutions = towers[t].convolutions;
-    const int inputs = convolutions[i].layer().inputs();
+    const bool sees_samples = i == towers[t].first();
+    const int inputs = towers[t].live_layer(sees_samples ? 0 : i).inputs();
     for (int row = 0; row < rows; ++row)
-      pictures[size(row)] = i == 0 ? samples.pictures[t].data() + size(batch[row]) * size(inputs)
-                                   : convolutions[i - 1].outputs + row * inputs;
+      pictures[size(row)] = sees_samples ? samples.pictures[t].data() + size(batch[row]) * size(inputs)
+                                         : towers[t].convolutions[i - 1].outputs + row * inputs;
   }
 
-  static int positions(const Convolution& c, int rows) { return rows * c.layer().out_rows() * c.layer().out_columns(); }
+  // Of the pictures that are pointed at.
+  void convolve(Tower& tower, std::size_t i, int rows, bool training) {
+    Convolution& c = tower.convolutions[i];
+    c.live = c.out;
+    const Layer l = tower.live_layer(i);
+    const float *weights = parameters + c.weights, *bias = parameters + c.bias;
+    if (l.channels < c.layer.channels) {
+      gather_weights(c.layer, weights, tower.inputs(i), narrow);
+      weights = narrow;
+    }
+    if (i == 1 && tower.mostly_empty) {
+      const Convolution& first = tower.convolutions[0];
+      tower.front->forward(rows, parameters + first.weights, parameters + first.bias, weights, bias, c.outputs);
+    } else {
+      for (int row = 0; row < rows; ++row)
+        kernels.forward(l, pictures[size(row)], weights, bias, c.outputs + row * l.outputs(), !c.norm);
+    }
+    if (c.norm) {
+      if (training)
+        c.norm->train(c.outputs, c.positions(rows), parameters + c.scale, parameters + c.shift);
+      else
+        c.norm->apply(c.outputs, c.positions(rows), parameters + c.scale, parameters + c.shift);
+      for (int k = 0; k < rows * l.outputs(); ++k) c.outputs[k] = std::max(c.outputs[k], 0.f);
+    } else if (training && i + 1 < tower.convolutions.size()) {
+      float sums[most_channels];
+      kernels.sum_rows(c.outputs, sums, c.positions(rows), l.out_channels);
+      // A row of the next kernel is whole vectors.
+      live_channels(sums, l.out_channels, 16 / std::gcd(16, tower.convolutions[i + 1].layer.kernel), c.live);
+      if (c.live.size() < c.out.size()) pack(c.outputs, c.positions(rows), l.out_channels, c.live);
+    }
+  }
 
   // Leaves the batch's outputs, rows x padded_action.
   void forward(const Samples& samples, const int* batch, int rows, bool training) {
     make_room(rows);
-    for (std::size_t t = 0; t < towers.size(); ++t)
-      for (std::size_t i = 0; i < towers[t].convolutions.size(); ++i) {
-        Convolution& c = towers[t].convolutions[i];
-        point_at_inputs(t, i, samples, batch, rows);
-        for (int row = 0; row < rows; ++row)
-          kernels.of[c.kind].forward(pictures[size(row)], parameters + c.weights, parameters + c.bias,
-                                     c.outputs + row * c.layer().outputs(), !c.norm, 0);
-        if (!c.norm) continue;
-        if (training)
-          c.norm->train(c.outputs, positions(c, rows), parameters + c.scale, parameters + c.shift);
-        else
-          c.norm->apply(c.outputs, positions(c, rows), parameters + c.scale, parameters + c.shift);
-        for (int k = 0; k < rows * c.layer().outputs(); ++k) c.outputs[k] = std::max(c.outputs[k], 0.f);
+    for (std::size_t t = 0; t < towers.size(); ++t) {
+      Tower& tower = towers[t];
+      tower.mostly_empty = false;
+      if (tower.front) {
+        point_at_inputs(t, 0, samples, batch, rows);
+        tower.mostly_empty = tower.front->find(pictures, rows);
+        tower.convolutions[0].live = tower.convolutions[0].out;
       }
+      for (std::size_t i = tower.first(); i < tower.convolutions.size(); ++i) {
+        point_at_inputs(t, i, samples, batch, rows);
+        convolve(tower, i, rows, training);
+      }
+    }
     if (shape.text) {
       for (int row = 0; row < rows; ++row)
         std::copy_n(samples.text.data() + size(batch[row]) * text_size, text_size, text_inputs + row * text_size);
-      kernels.of[text_linear].forward(text_inputs, parameters + text.weights, parameters + text.bias, text_outputs,
-                                      false, rows);
+      kernels.forward(text.on(rows), text_inputs, parameters + text.weights, parameters + text.bias, text_outputs,
+                      false);
     }
     for (int row = 0; row < rows; ++row)
       std::copy_n(parameters + head_bias, padded_action, outputs + row * padded_action);
@@ -231,59 +276,61 @@ struct Network::Impl {
 
   void add_head(const Trained& head, const float* features, int rows) {
     static const float no_bias[padded_action] = {};
-    kernels.of[head.kind].forward(features, parameters + head.weights, no_bias, part, false, rows);
+    kernels.forward(head.on(rows), features, parameters + head.weights, no_bias, part, false);
     for (int i = 0; i < rows * padded_action; ++i) outputs[i] += part[i];
-  }
-
-  void transpose(Trained& trained) {
-    const Layer& l = trained.layer();
-    const int columns = l.out_channels, rows = l.segment();
-    if (!trained.transposed) trained.transposed = Numbers(size(l.weights()));
-    for (int k = 0; k < l.kernel; ++k) {
-      const float* const from = parameters + trained.weights + k * rows * columns;
-      float* const to = trained.transposed + k * rows * columns;
-      for (int c = 0; c < columns; ++c)
-        for (int r = 0; r < rows; ++r) to[c * rows + r] = from[r * columns + c];
-    }
   }
 
   // Leaves every gradient, given that of the outputs.
   void backward(const Samples& samples, const int* batch, int rows) {
     kernels.sum_rows(output_gradients, gradients + head_bias, rows, padded_action);
     for (std::size_t t = 0; t < towers.size(); ++t) {
-      std::vector<Convolution>& convolutions = towers[t].convolutions;
-      Convolution& last = convolutions.back();
+      Convolution& last = towers[t].convolutions.back();
       backward_head(towers[t].head, last.outputs, last.gradients, rows);
-      for (std::size_t i = convolutions.size(); i-- > 0;) {
-        Convolution& c = convolutions[i];
-        const Layer& l = c.layer();
-        kernels.relu_gradient(c.outputs, c.gradients, size(rows * l.outputs()));
-        if (c.norm)
-          c.norm->backward(c.gradients, positions(c, rows), parameters + c.scale, gradients + c.scale,
-                           gradients + c.shift);
-        kernels.sum_rows(c.gradients, gradients + c.bias, positions(c, rows), l.out_channels);
+      for (std::size_t i = towers[t].convolutions.size(); i-- > towers[t].first();) {
         point_at_inputs(t, i, samples, batch, rows);
-        kernels.of[c.kind].weight_gradient(pictures.data(), c.gradients, gradients + c.weights, rows, 0);
-        if (i == 0) break;
-        transpose(c);
-        float* const in = convolutions[i - 1].gradients;
-        std::fill_n(in, rows * l.inputs(), 0.f);
-        for (int row = 0; row < rows; ++row)
-          kernels.of[c.kind].input_gradient(c.gradients + row * l.outputs(), c.transposed, in + row * l.inputs(), 0);
+        backward_convolution(towers[t], i, rows);
       }
     }
     if (!shape.text) return;
     backward_head(text_head_layer, text_outputs, text_gradients, rows);
     kernels.sum_rows(text_gradients, gradients + text.bias, rows, padded_text_features);
     const float* const in = text_inputs;
-    kernels.of[text_linear].weight_gradient(&in, text_gradients, gradients + text.weights, 1, rows);
+    kernels.weight_gradient(text.on(rows), &in, text_gradients, gradients + text.weights, 1);
+  }
+
+  void backward_convolution(Tower& tower, std::size_t i, int rows) {
+    Convolution& c = tower.convolutions[i];
+    const Layer l = tower.live_layer(i);
+    kernels.relu_gradient(c.outputs, c.gradients, size(rows * l.outputs()));
+    if (c.norm)
+      c.norm->backward(c.gradients, c.positions(rows), parameters + c.scale, gradients + c.scale, gradients + c.shift);
+    float sums[most_channels];
+    kernels.sum_rows(c.gradients, sums, c.positions(rows), l.out_channels);
+    std::fill_n(gradients + c.bias, c.layer.out_channels, 0.f);
+    for (int k = 0; k < l.out_channels; ++k) gradients[c.bias + size(c.live[size(k)])] = sums[k];
+    if (i == 1 && tower.mostly_empty) {
+      const Convolution& first = tower.convolutions[0];
+      return tower.front->backward(parameters + c.weights, c.live, c.gradients, sums, gradients + first.weights,
+                                   gradients + first.bias, gradients + c.weights);
+    }
+    if (i > 0) {
+      transpose_weights(c.layer, parameters + c.weights, tower.inputs(i), c.live, transposed);
+      float* const in = tower.convolutions[i - 1].gradients;
+      std::fill_n(in, rows * l.inputs(), 0.f);
+      for (int row = 0; row < rows; ++row)
+        kernels.input_gradient(l, c.gradients + row * l.outputs(), transposed, in + row * l.inputs());
+    }
+    const bool whole = l.weights() == c.layer.weights();
+    float* const weight_gradient = whole ? gradients + c.weights : narrow;
+    kernels.weight_gradient(l, pictures.data(), c.gradients, weight_gradient, rows);
+    if (!whole) scatter_weights(c.layer, narrow, tower.inputs(i), c.live, gradients + c.weights);
   }
 
   void backward_head(Trained& head, const float* features, float* feature_gradients, int rows) {
-    kernels.of[head.kind].weight_gradient(&features, output_gradients, gradients + head.weights, 1, rows);
-    transpose(head);
-    std::fill_n(feature_gradients, rows * head.layer().channels, 0.f);
-    kernels.of[head.kind].input_gradient(output_gradients, head.transposed, feature_gradients, rows);
+    kernels.weight_gradient(head.on(rows), &features, output_gradients, gradients + head.weights, 1);
+    transpose_weights(head.layer, parameters + head.weights, head.in, head.out, transposed);
+    std::fill_n(feature_gradients, rows * head.layer.channels, 0.f);
+    kernels.input_gradient(head.on(rows), output_gradients, transposed, feature_gradients);
   }
 
   std::vector<float> in_pytorchs_order(const float* values) const {
@@ -311,16 +358,16 @@ void Network::set_parameters(const std::vector<float>& parameters) {
   for (std::size_t i = 0; i < places.size(); ++i) impl_->parameters[places[i]] = parameters[i];
 }
 
-std::vector<float> Network::predict(const Samples& samples) {
-  std::vector<int> batch(size(samples.rows));
-  for (std::size_t i = 0; i < batch.size(); ++i) batch[i] = static_cast<int>(i);
-  impl_->forward(samples, batch.data(), samples.rows, false);
-  std::vector<float> outputs;
+const std::vector<float>& Network::predict(const Samples& samples) {
+  impl_->every_row.resize(size(samples.rows));
+  std::iota(impl_->every_row.begin(), impl_->every_row.end(), 0);
+  impl_->forward(samples, impl_->every_row.data(), samples.rows, false);
+  impl_->predicted.clear();
   for (int row = 0; row < samples.rows; ++row) {
     const float* const begin = impl_->outputs + row * padded_action;
-    outputs.insert(outputs.end(), begin, begin + action_size);
+    impl_->predicted.insert(impl_->predicted.end(), begin, begin + action_size);
   }
-  return outputs;
+  return impl_->predicted;
 }
 
 double Network::backward(const Samples& samples, const std::vector<int>& batch, Loss loss) {

@@ -51,8 +51,9 @@ class Network {
   /// Of the last backward(), likewise.
   std::vector<float> gradients() const;
 
-  /// Outputs for each row, rows x 12. With batch normalisation the running statistics are used. Labels are not read.
-  std::vector<float> predict(const Samples& samples);
+  /// Outputs for each row, rows x 12, valid until the next call. With batch normalisation the running statistics are
+  /// used. Labels are not read.
+  const std::vector<float>& predict(const Samples& samples);
   /// Mean loss over `batch`, which names rows of `samples`; keeps its gradients.
   double backward(const Samples& samples, const std::vector<int>& batch, Loss loss);
   /// One step of Adam (betas .9 and .999, epsilon 1e-8) along the gradients of the last backward().

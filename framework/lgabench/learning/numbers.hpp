@@ -1,0 +1,34 @@
+// Private to learning/.
+#pragma once
+#include <cstddef>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+namespace lgabench {
+
+/// Numbers that begin at a cache line, all 0 at first.
+class Numbers {
+ public:
+  /// None.
+  Numbers() = default;
+  /// @throws std::bad_alloc
+  explicit Numbers(std::size_t count)
+      : values_(static_cast<float*>(std::aligned_alloc(64, (count * sizeof(float) + 63) / 64 * 64))) {
+    if (!values_) throw std::bad_alloc();
+    std::memset(values_.get(), 0, count * sizeof(float));
+  }
+  /// The first; owned by this. Null if there are none.
+  operator float*() { return values_.get(); }
+  /// Likewise.
+  operator const float*() const { return values_.get(); }
+
+ private:
+  struct Free {
+    void operator()(float* values) const { std::free(values); }
+  };
+  std::unique_ptr<float[], Free> values_;
+};
+
+}  // namespace lgabench
