@@ -6,7 +6,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 
 // An edge of `a` has all of `b` on its outer side (separating axis).

@@ -8,6 +8,9 @@ namespace lgabench::tabletop {
 
 using Polygon = std::vector<Vec2>;  // counter-clockwise, metres, not closed
 
+/// Positive if b lies counter-clockwise of a.
+inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+
 /// Area of a simple polygon in m^2; positive for counter-clockwise order.
 double area(const Polygon& polygon);
 

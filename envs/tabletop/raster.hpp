@@ -6,6 +6,7 @@
 
 #include <lgabench/core/geometry.hpp>
 #include <lgabench/core/observation.hpp>
+#include <tabletop/outline.hpp>
 
 namespace lgabench::tabletop {
 
@@ -27,8 +28,6 @@ inline Area area_of(Vec2 low, Vec2 high) {
   const auto down = [](double x, int n) { return static_cast<int>(std::floor(std::clamp(x, -1.0, n - 1.0))); };
   return {up(low.x, rows), down(high.x, rows), up(low.y, columns), down(high.y, columns)};
 }
-
-inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// Twice the triangle's area; positive if a, b, c run counter-clockwise, as the side of a surface does that faces the
 /// eye (or the light).

@@ -14,8 +14,6 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr int most_bodies = 6;  // in one scene: the most that a scenario can ask for
-
 class Tabletop final : public Environment {
  public:
   Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space) : world_(std::move(world)) {

@@ -87,7 +87,7 @@ Played& played(const std::string& name) {
                                std::make_unique<BareMujoco>(recorder.known, recorder.placed)});
   }
   played.world = std::make_unique<MujocoWorld>();
-  played.world->load(recorder.known, 6);
+  played.world->load(recorder.known, tabletop::most_bodies);
   return played;
 }
 

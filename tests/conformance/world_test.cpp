@@ -7,12 +7,14 @@
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
+#include <tabletop/tabletop.hpp>
 
 #include "../engine_under_test.hpp"
 
 namespace lgabench {
 namespace {
 
+using tabletop::most_bodies;
 using tabletop::object_model;
 using tabletop::object_types;
 
@@ -25,8 +27,6 @@ std::vector<BodyModel> all_models() {
   return models;
 }
 BodyPlacement pallet(double x, double y) { return {static_cast<int>(object_types().size()), {{x, y, 0}, {}}}; }
-
-constexpr int most_bodies = 6;
 
 std::unique_ptr<PhysicsWorld> fresh_world() {
   auto made = make_engine();

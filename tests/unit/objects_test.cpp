@@ -18,7 +18,6 @@ namespace {
 
 constexpr double tolerance = 1e-9;
 
-double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 Vec2 xy(Vec3 p) { return {p.x, p.y}; }
 
 bool covers(const std::vector<Polygon>& outline, Vec2 p, double slack = 0) {

@@ -5,11 +5,6 @@
 #include <cstring>
 
 namespace lgabench {
-namespace {
-
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
-}  // namespace
 
 MaskFront::MaskFront(const Kernels& kernels) : kernels_(kernels), weights_(size(second_.weights() / groups)) {}
 

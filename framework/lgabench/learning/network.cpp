@@ -18,8 +18,6 @@
 namespace lgabench {
 namespace {
 
-std::size_t size(int count) { return static_cast<std::size_t>(count); }
-
 // Of a parameter's first value.
 struct Range {
   double low, high;

@@ -8,6 +8,9 @@
 
 namespace lgabench {
 
+/// A count or a place, as an array takes it.
+inline std::size_t size(int count) { return static_cast<std::size_t>(count); }
+
 /// Numbers that begin at a cache line, all 0 at first.
 class Numbers {
  public:
