@@ -13,6 +13,7 @@ void run(const JsonReader& reader, const Messages& messages) {
               reader.at("directory").string(),
               reader.at("cache").string(),
               reader.at("answers").string(),
+              reader.at("scratch").string(),
               reader.at("build").json()};
   if (reader.has("method")) job.method = job_plugin(reader.at("method"));
   if (job.cell.method.is_reference() == job.method.has_value())

@@ -6,7 +6,7 @@
 #include <array>
 #include <memory>
 
-#include <lgabench/cli/scratch.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/check.hpp>

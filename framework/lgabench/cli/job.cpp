@@ -11,6 +11,7 @@
 #include <new>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -39,6 +40,7 @@ Json read_job() {
 Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
 
 void Messages::send(const Json& message) const {
+  if (message.contains("phase")) phase_ = message["phase"];
   if (!open_) return;
   const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
@@ -59,6 +61,10 @@ void do_job(const std::function<void(const JsonReader& job, const Messages& mess
   try {
     const Json job = read_job();
     work(JsonReader(job, "job"), messages);
+  } catch (const MethodGone& e) {
+    const MethodGone placed(fmt::format("{} in phase {}", e.what(), messages.phase()), e.signal);
+    messages.send({{"reason", placed.what()}, {"fault", "plugin"}, {"signal", e.signal}});
+    throw placed;
   } catch (const MethodError& e) {
     complain(e, "plugin");
     throw;

@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-#include <lgabench/cli/scratch.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>

@@ -15,6 +15,7 @@
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
+#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -69,9 +70,11 @@ class TrainingLines : public TrainingLog {
   const Phases& phases_;
 };
 
-// The plugin's method, the constant action, or none for a row that learns nothing.
+// The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
-  if (job.method) return load_method(*job.method);
+  if (job.method)
+    return std::make_unique<HostedMethod>(
+        HostJob{*job.method, job.cell.method.options, job.cell.training_seed, job.scratch});
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
@@ -197,6 +200,8 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     attribute_failures(*environment, scenario.space, tests, policy ? policy_actor(*policy, true_ones, id) : Actor(),
                        episodes);
   }
+
+  if (auto* hosted = dynamic_cast<HostedMethod*>(method.get())) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.
   std::string episode_lines;

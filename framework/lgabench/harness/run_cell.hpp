@@ -17,6 +17,7 @@ struct CellJob {
   std::filesystem::path directory;   // gets the cell's files
   std::filesystem::path cache;       // of demonstrations
   std::filesystem::path answers;     // files of answers that the cell names (see answers.hpp)
+  std::filesystem::path scratch;     // empty, of the method's process
   Json build;                        // of build_hashes()
 };
 

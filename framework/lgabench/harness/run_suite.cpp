@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/progress.hpp>
 
@@ -78,7 +79,8 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
 // status.json of a worker that left none.
 Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
   const auto [reason, fault] = why_it_ended(end, timeout_s);
-  return {{"state", "failed"},        {"reason", reason}, {"signal", end.signal ? Json(end.signal) : Json(nullptr)},
+  const int signal = end.signal ? end.signal : end.host_signal;
+  return {{"state", "failed"},        {"reason", reason}, {"signal", signal ? Json(signal) : Json(nullptr)},
           {"fault", fault},           {"build", build},   {"files", Json::object()},
           {"log_tail", log_tail(log)}};
 }
@@ -164,14 +166,18 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   Progress progress(missing.size());
   std::vector<const Cell*> played(missing.size());
   std::vector<fs::path> scratch(missing.size());
+  const Scratch hosts("hosts");  // not below the run's directory: a method does not learn where that is
   const auto make = [&](std::size_t i) {
     played[i] = schedule.next();
     const Cell& cell = *played[i];
     scratch[i] = directory.scratch(key(cell));
+    const fs::path own = hosts.path / std::to_string(i);
+    fs::create_directory(own);
     Json job{{"cell", to_json(cell)},
              {"directory", fs::absolute(scratch[i]).string()},
              {"cache", fs::absolute(plan.cache).string()},
              {"answers", fs::absolute(plan.out / "answers").string()},
+             {"scratch", own.string()},
              {"build", build_of(cell, catalogue)},
              {"limits", worker_limits(plan.pool)},
              {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
@@ -187,6 +193,8 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
     const std::string reason = settle(cell, end, scratch[i], build_of(cell, catalogue), plan.pool.timeout_s);
     directory.keep(key(cell));
+    std::error_code ignored;
+    fs::remove_all(hosts.path / std::to_string(i), ignored);
     outcome.time.workers_s += end.seconds;
     const fs::path kept = directory.cell(key(cell));
     if (reason.empty()) {

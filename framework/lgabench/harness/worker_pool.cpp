@@ -163,7 +163,11 @@ void take_line(const std::string& line, Worker& worker, const PoolEvents& events
   const auto text = [&message](const char* name) {
     return message.contains(name) && message[name].is_string() ? message[name].get<std::string>() : std::string();
   };
-  if (message.contains("reason")) worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+  if (message.contains("reason")) {
+    worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+    const Json signal = message.value("signal", Json(0));
+    if (signal.is_number_integer()) worker.end.host_signal = signal.get<int>();
+  }
   if (!message.contains("phase")) return;
   worker.end.phase = text("phase");
   const auto count = message.find("count");

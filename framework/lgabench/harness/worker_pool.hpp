@@ -23,6 +23,7 @@ struct WorkerEnd {
   int signal = 0;          // that ended it, or 0
   bool timed_out = false;  // it was stopped after the limit
   std::string phase;       // the last one it reported
+  int host_signal = 0;     // that ended the method's process, or 0
   Json complaint;          // {"reason", "fault"} if it said why it failed, else null
 };
 
