@@ -341,7 +341,7 @@ TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {
   EXPECT_EQ(recovery.noise_max, .2);
   EXPECT_EQ(none.targets, Needs::Targets::truth);
   EXPECT_EQ(none.noisy_per_clean, 0);
-  EXPECT_THROW(needs("gcbc_dart", {{"dart", "posthoc"}}), InputError);
+  EXPECT_EQ(needs("gcbc_dart", {{"dart", "posthoc"}}).noisy_per_clean, 0) << "its noise needs no physics";
   EXPECT_EQ(needs("gcbc_seg", Json::object()).targets, Needs::Targets::truth);
   EXPECT_EQ(needs("gcbc_seg", Json::object()).noisy_per_clean, 0);
   EXPECT_EQ(needs("factorial", {{"scenes", "selected"}}).targets, Needs::Targets::selected);
@@ -414,6 +414,29 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
   EXPECT_EQ(action(probe) != action(star_moved), GetParam().star);
   EXPECT_EQ(action(probe) != action(heart_moved), GetParam().heart);
+}
+
+// Of gcbc_dart with this option, on ten demonstrations of one step: batches of ten rows.
+long long steps_of_a_pass(const char* dart, std::uint64_t seed, std::vector<double>* losses = nullptr) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const PluginInfo& plugin = catalogue.find("method", "gcbc_dart");
+  const Scenario scenario = load_scenario("heart");
+  const Json options = resolve_options(plugin, {{"epochs", 1}, {"dart", dart}});
+  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  Services services{lm, human, options, seed, log};
+  load_method(plugin)->learn(demonstrations(10), services);
+  if (losses) losses->push_back(log.lines.back().loss);
+  return log.lines.back().steps;
+}
+
+TEST(GcbcDart, PosthocTrainsOnFiveNoisyCopiesBesideEachDemonstration) {
+  std::vector<double> losses;
+  EXPECT_EQ(steps_of_a_pass("none", 0), 1);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(losses[0], losses[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,

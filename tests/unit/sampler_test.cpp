@@ -129,7 +129,7 @@ void check_roles(const Scenario& s, const Scene& scene) {
     ASSERT_EQ(goal->texture, "wooden");
     ASSERT_EQ(goal->yaw_rad, 0);
   }
-  ASSERT_EQ(scene.angle_rad > 0, s.task == Task::rotate);
+  ASSERT_EQ(scene.angle_rad != 0, s.task == Task::rotate);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     ASSERT_EQ(scene.objects[i].instance_id, i + 1);
     ASSERT_TRUE(&scene.objects[i] == goal || scene.objects[i].object_type != "pallet");
@@ -139,6 +139,11 @@ void check_roles(const Scenario& s, const Scene& scene) {
     ASSERT_FALSE(command.truth.avoid && command.truth.avoid->contains(d->object_type, d->texture));
     ASSERT_FALSE(scene.split != "train" && s.never_distractor &&
                  s.never_distractor->contains(d->object_type, d->texture));
+    for (const ScenarioCommand& other : s.commands)
+      if (content.outside_all_commands) {
+        ASSERT_FALSE(other.truth.target.contains(d->object_type, d->texture));
+        ASSERT_FALSE(other.truth.avoid && other.truth.avoid->contains(d->object_type, d->texture));
+      }
     const SceneObject& t = *targets[0];
     ASSERT_TRUE(!content.hard || d->texture == t.texture || d->object_type == t.object_type);
   }
@@ -317,6 +322,77 @@ TEST(Sampler, SweepTakesItsObstacleFromTheSelection) {
   wrong = s.commands[0].truth;
   wrong.target.object_types = {"frame"};  // wider than the spatula
   EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
+}
+
+// Suite q3: one named object and one that no command means, whatever the method selects.
+TEST(Sampler, TrainingDistractorsOfSeveralCommandsAreOutsideThemAll) {
+  const std::map<std::string, std::set<std::string>> meant{
+      {"q3_fruit", {"apple", "tomato", "banana", "orange", "lemon", "pear"}},
+      {"q3_food", {"bowl", "container", "pan", "mug", "plate"}},
+      {"q3_utensil", {"block", "small block", "shorter block", "L-shaped block", "fork", "spoon", "knife"}}};
+  for (const auto& [id, types] : meant) {
+    const Scenario s = load_scenario(id);
+    std::set<std::string> distractors;
+    for (int i = 0; i < many; ++i) {
+      const Scene scene = sample_scene(s, train_request("cells"), i);
+      ASSERT_EQ(of_role(scene, Role::distractor).size(), 1u);
+      distractors.insert(scene.find(Role::distractor)->object_type);
+      if (i >= 100) continue;
+      const Selection other{{{"heart"}, {"red"}}, FeatureSet{{"mug"}, {"red"}}};
+      EXPECT_EQ(sample_scene(s, {"cells", "train", "train", 0, {other, other, other}}, i).hash(), scene.hash());
+    }
+    for (const std::string& type : types) EXPECT_EQ(distractors.count(type), 0u) << type;
+    EXPECT_EQ(distractors.size() + types.size() + 1, s.space.object_types.size()) << "all others but the pallet";
+  }
+}
+
+TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
+  const Scenario s = load_scenario("q3_utensil");
+  const auto distance = [](const Scene& scene, Role role) {
+    return std::abs(scene.find(role)->position_m.y - scene.find(Role::target)->position_m.y);
+  };
+  for (const std::string& layout : layouts(Task::sweep)) {
+    int near = 0;
+    for (int i = 0; i < many; ++i) {
+      const Scene train = sample_scene(s, train_request(layout), i);
+      const bool is_near = distance(train, Role::obstacle) < .2;
+      EXPECT_NEAR(distance(train, Role::obstacle), is_near ? .17 : .25, 1e-12);
+      EXPECT_EQ(train.find(Role::distractor)->position_m.x > .5, train.find(Role::obstacle)->position_m.x < .5);
+      EXPECT_EQ(std::abs(train.find(Role::distractor)->position_m.y), .16);
+      near += is_near;
+
+      const Scene seen = sample_scene(s, test_request(layout, 0, "seen"), i),
+                  varied = sample_scene(s, test_request(layout, 0, "seen_varied"), i);
+      EXPECT_NEAR(distance(seen, Role::obstacle), .21, 1e-12);
+      EXPECT_NEAR(distance(varied, Role::obstacle), distance(varied, Role::obstacle) < .2 ? .17 : .25, 1e-12);
+      EXPECT_NEAR(distance(varied, Role::distractor), distance(varied, Role::obstacle), 1e-12) << "opposite";
+      ASSERT_EQ(seen.objects.size(), varied.objects.size());
+      for (std::size_t k = 0; k < seen.objects.size(); ++k) {  // scene by scene the same but for the distance
+        EXPECT_EQ(seen.objects[k].object_type, varied.objects[k].object_type);
+        EXPECT_EQ(seen.objects[k].texture, varied.objects[k].texture);
+        EXPECT_EQ(seen.objects[k].position_m.x, varied.objects[k].position_m.x);
+        EXPECT_EQ(seen.objects[k].position_m.y > 0, varied.objects[k].position_m.y > 0);
+      }
+    }
+    EXPECT_NEAR(near, many / 2, 250);
+  }
+}
+
+TEST(Sampler, ClockwiseTurnsTheOtherWayAndChangesNothingElse) {
+  const Scenario left = load_scenario("rotate_block");
+  Json json = left.json;
+  EXPECT_EQ(left.angle_deg, 120);
+  json["direction"] = "counter_clockwise";
+  EXPECT_EQ(read_scenario(json, "test").angle_deg, 120);
+  json["direction"] = "clockwise";
+  const Scenario right = read_scenario(json, "test");
+  for (int i = 0; i < 20; ++i) {
+    const Scene a = sample_scene(left, test_request("continuous"), i),
+                b = sample_scene(right, test_request("continuous"), i);
+    EXPECT_GT(a.angle_rad, 0);
+    EXPECT_EQ(b.angle_rad, -a.angle_rad);
+    EXPECT_EQ(to_json(a)["objects"], to_json(b)["objects"]);
+  }
 }
 
 // A Selection that differs from the truth of "heart" in types and textures.

@@ -84,8 +84,8 @@ class Method {
   /// empty Selection is an answer, and fails it as abstraction_empty if targets are drawn from it. `cost` is what this
   /// call alone cost.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
-  /// Learns from the demonstrations, the cell's number of them, in the order of their scenes. The policy must not refer
-  /// to them afterwards. @returns never null.
+  /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
+  /// scenes. The policy must not refer to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
 };
 

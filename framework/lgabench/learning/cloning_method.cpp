@@ -87,6 +87,8 @@ class CloningPolicy : public Policy {
 
 }  // namespace
 
+Samples CloningMethod::training_rows(Samples clean, const NetworkShape&, const Services&) const { return clean; }
+
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const JsonReader options(services.options, "options");
   TrainingOptions training;
@@ -110,7 +112,7 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
     }
 
   auto policy = std::make_unique<CloningPolicy>(featurizer, shape, services.seed);
-  train(policy->network, samples, training, services.seed, services.log);
+  train(policy->network, training_rows(std::move(samples), shape, services), training, services.seed, services.log);
   return policy;
 }
 

@@ -18,6 +18,9 @@
 
 namespace lgabench {
 
+struct NetworkShape;
+struct Samples;
+
 /// The pictures and the text that a policy is given. Each picture gets a tower of its own.
 struct PolicyInputs {
   /// One channel-first picture of 36 x 72.
@@ -51,6 +54,9 @@ class CloningMethod : public Method {
  protected:
   /// What the network sees; the goal mask alone unless a subclass says otherwise. `options` as in Services.
   virtual PolicyInputs inputs(const Json& /*options*/) const { return {{PolicyInputs::Picture::mask}}; }
+  /// What the network of that shape is trained on, made of `clean`: a row for each step of each demonstration, in their
+  /// order. Those rows alone unless a subclass adds others.
+  virtual Samples training_rows(Samples clean, const NetworkShape& shape, const Services& services) const;
 };
 
 }  // namespace lgabench

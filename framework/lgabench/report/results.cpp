@@ -94,6 +94,8 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   for (const JsonReader& command : scenario.at("commands").elements())
     cell.commands.push_back(
         {command.at("utterance").string(), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
+  cell.demonstrated_commands = static_cast<int>(
+      std::count_if(cell.commands.begin(), cell.commands.end(), [](const CommandResult& c) { return c.seen; }));
   for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(arm.at("arm").string());
   cell.layout = reader.at("layout").string();
   cell.engine = reader.at("engine").string();
@@ -164,6 +166,7 @@ RunResults read_run(const fs::path& run) {
   for (const std::string& key : found)
     if (asked.count(key) == 0) ++results.foreign;
 
+  const bool divided = reader.at("version").string() == "0.1.0";
   std::map<std::string, std::size_t> order;  // of scenarios: the suite's, which run.json's cells keep
   for (const std::string& key : listed) {
     if (found.erase(key) == 0) {
@@ -171,6 +174,7 @@ RunResults read_run(const fs::path& run) {
       continue;
     }
     results.cells.push_back(read_cell(run / "cells" / key));
+    if (divided) results.cells.back().demonstrated_commands = 1;
     order.emplace(results.cells.back().scenario, order.size());
   }
   const auto place = [&order](const CellResult& c) {

@@ -38,6 +38,7 @@ struct CellResult {
   std::string participant;  // whose answers it stands on; empty where nobody was asked
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
+  int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
   bool failed = false;
   std::string fault, reason;                                   // where it failed; fault: plugin or host
   std::vector<std::string> log_tail;                           // what a failed cell's worker printed last

@@ -257,7 +257,9 @@ Table make_table(const Cells& cells) {
   std::vector<std::string> scenarios;                            // as the cells are ordered
   using Place = std::tuple<std::string, int, std::string, int>;  // kind, rank, method, demonstrations
   std::map<std::string, std::map<Place, Cells>> grouped;
+  table.demonstrated_commands = cells.front()->demonstrated_commands;
   for (const CellResult* cell : cells) {
+    if (cell->demonstrated_commands != table.demonstrated_commands) table.demonstrated_commands = 0;
     add_new(scenarios, cell->scenario);
     for (const std::string& arm : cell->arms) add_new(table.arms, arm);
     grouped[cell->scenario][{cell->kind, display_rank(cell->method), cell->method, cell->demonstrations}].push_back(
@@ -267,14 +269,19 @@ Table make_table(const Cells& cells) {
     std::map<Place, std::vector<const Draft*>> over_scenarios;
     std::vector<Draft> drafts;
     drafts.reserve(cells.size());  // as many rows at most: pointers to them stay valid
+    bool played_by_all = true;
     for (const std::string& scenario : scenarios)
       for (const auto& [place, seeds] : grouped[scenario]) {
         const std::vector<std::string>& played = seeds.front()->arms;
-        if (std::find(played.begin(), played.end(), arm) == played.end()) continue;
+        if (std::find(played.begin(), played.end(), arm) == played.end()) {
+          played_by_all = false;
+          continue;
+        }
         drafts.push_back(scenario_draft(seeds, arm, table.arms.front()));
         over_scenarios[place].push_back(&drafts.back());
         table.rows.push_back(drafts.back().row);
       }
+    if (!played_by_all) continue;
     for (const auto& [place, rows] : over_scenarios)
       table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
   }
@@ -302,6 +309,12 @@ std::vector<int> Table::demonstrations() const {
   }
   const std::set<int>& columns = learned.empty() ? any : learned;
   return {columns.begin(), columns.end()};
+}
+
+std::string Table::demonstrations_text(int n) const {
+  if (demonstrated_commands == 1) return fmt::format("{} demonstrations", n);
+  if (demonstrated_commands == 0) return fmt::format("demonstrations: {} per command", n);
+  return fmt::format("demonstrations: {} per command, {} in all", n, n * demonstrated_commands);
 }
 
 const Row* Table::find(const std::string& arm, const std::string& scenario, const std::string& method, int n) const {

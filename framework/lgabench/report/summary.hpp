@@ -43,15 +43,18 @@ struct Row {
   int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
 };
 
-/// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;
-/// methods, reference rows last; demonstrations ascending.
+/// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last,
+/// which arms have that every scenario plays; methods, reference rows last; demonstrations ascending.
 struct Table {
   std::string layout, engine;
   std::vector<std::string> arms;
+  int demonstrated_commands = 1;  // of each scenario, each with as many demonstrations; 0 where scenarios differ
   std::vector<Row> rows;
 
   std::vector<std::string> scenarios() const;  // in order, the mean last
   std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none
+  /// "50 demonstrations", or where several commands were demonstrated "demonstrations: 50 per command, 100 in all".
+  std::string demonstrations_text(int n) const;
   /// The row, nullptr where there is none. A reference row that learns nothing (demonstrations 0) stands in every
   /// number of demonstrations.
   const Row* find(const std::string& arm, const std::string& scenario, const std::string& method,

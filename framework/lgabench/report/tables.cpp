@@ -30,12 +30,13 @@ std::vector<View> views(const Table& table) {
   std::vector<View> all;
   const std::vector<int> demonstrations = table.demonstrations();
   if (table.arms.size() == 1) {
-    View& view = all.emplace_back(View{"demonstrations", {}, {}});
+    const char* corner = table.demonstrated_commands == 1 ? "demonstrations" : "demonstrations per command";
+    View& view = all.emplace_back(View{corner, {}, {}});
     for (const int n : demonstrations) view.columns.push_back({std::to_string(n), table.arms.front(), n});
     return all;
   }
   for (const int n : demonstrations) {
-    View& view = all.emplace_back(View{fmt::format("{} demonstrations", n), {}, {}});
+    View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
     for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
