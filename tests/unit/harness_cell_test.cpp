@@ -294,7 +294,7 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   const auto demonstrations = demonstrate(*household, shown, {}, {tomato, apple, any});
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(demonstrations[i].instruction.utterance, i % 2 ? apple : tomato);
-    EXPECT_EQ(shown[i].objects.size(), 2u) << "the named one and the pallet";
+    EXPECT_EQ(shown[i].objects.size(), 3u) << "the named one, a distractor and the pallet";
     EXPECT_EQ(shown[i].find(Role::target)->object_type, i % 2 ? "apple" : "tomato");
   }
 }

@@ -338,7 +338,9 @@ TEST(Sampler, TrainingDistractorsOfSeveralCommandsAreOutsideThemAll) {
       ASSERT_EQ(of_role(scene, Role::distractor).size(), 1u);
       distractors.insert(scene.find(Role::distractor)->object_type);
       if (i >= 100) continue;
-      const Selection other{{{"heart"}, {"red"}}, FeatureSet{{"mug"}, {"red"}}};
+      Selection other;
+      other.target = {{"heart"}, {"red"}};
+      other.avoid = FeatureSet{{"mug"}, {"red"}};
       EXPECT_EQ(sample_scene(s, {"cells", "train", "train", 0, {other, other, other}}, i).hash(), scene.hash());
     }
     for (const std::string& type : types) EXPECT_EQ(distractors.count(type), 0u) << type;
