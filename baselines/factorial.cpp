@@ -13,7 +13,7 @@ class Factorial : public lgabench::CloningMethod {
 
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
-    true_masks_[command.utterance] = services.human.specify(command);
+    true_masks_[command.utterance] = services.truth(command);
     return lgabench::select_features(command, space, services.lm);
   }
 
@@ -30,8 +30,9 @@ class Factorial : public lgabench::CloningMethod {
   std::map<std::string, lgabench::Selection> true_masks_;  // by utterance
 };
 
-LGABENCH_METHOD("factorial", "0.1", "What phi-hat does to the data, and what to the input: LGA with either replaced",
-                Factorial, "{" LGABENCH_CLONING_OPTIONS R"(,
+LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
+                       "What phi-hat does to the data, and what to the input: LGA with either replaced", Factorial,
+                       "{" LGABENCH_CLONING_OPTIONS R"(,
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
              "source": "PROTOCOL, section 4"},

@@ -63,7 +63,7 @@ TEST(Allocations, APolicyThatSeesTheGoalMaskActsWithoutAny) {
   instruction.selection.target = {{"heart"}, {"red"}};
 
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Silent log;
   const Json options = {

@@ -211,7 +211,7 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
       {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
   options.update(changes);
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, seed, log};
@@ -365,7 +365,7 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
   for (const auto& [input, star, heart] :
        {Case{"mask", false, true}, Case{"true_mask", true, false}, Case{"rgb", true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
-    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+    RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human({{scenario.commands[0].utterance, blue_stars}});
     Lines log;
     Services services{lm, human, options, 0, log};
@@ -394,7 +394,7 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const Scenario scenario = load_scenario("red_heart");
   const PluginInfo& plugin = catalogue.find("method", GetParam().id);
   const Json options = resolve_options(plugin, {{"epochs", 3}});
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, 0, log};

@@ -43,6 +43,8 @@ void print(const Scenario& scenario) {
     print_set("target", command.truth.target);
     if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
   }
+  fmt::print("  answers     {}{}\n", scenario.recorded,
+             scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
   std::vector<std::string> arms;
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   fmt::print("  tests       {}\n", fmt::join(arms, ", "));

@@ -4,6 +4,7 @@
 // option or a file is wrong, not the method.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -52,10 +53,12 @@ class TrainingLog {
 /// What the host lends to a method for the length of a call.
 struct Services {
   LanguageModel& lm;
-  HumanAnswers& human;
+  HumanAnswers& human;  // answers as the descriptor asks, see LGABENCH_METHOD_ASKING; else throws MethodError
   const Json& options;  // an object with every option of the descriptor, defaults filled in
   std::uint64_t seed;   // governs initial weights and batch order
   TrainingLog& log;
+  /// A command's true distribution, for a method whose descriptor asks for the truth; for others it throws MethodError.
+  std::function<Selection(const Command&)> truth = {};
 };
 
 /// What was learned. It may outlive its Method and the demonstrations. One thread.

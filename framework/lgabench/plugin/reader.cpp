@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 
@@ -173,6 +174,12 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.kind = text(d.kind, "kind");
   if (plugin.kind != "method" && plugin.kind != "engine")
     throw PluginError(fmt::format("descriptor: kind \"{}\", expected \"method\" or \"engine\"", plugin.kind));
+  plugin.asks = text(d.asks, "asks");
+  constexpr std::array<const char*, 4> known{"", "specify", "edit", "truth"};
+  if (std::find(known.begin(), known.end(), plugin.asks) == known.end() ||
+      (plugin.kind == "engine" && !plugin.asks.empty()))
+    throw PluginError(fmt::format(
+        "descriptor: asks \"{}\", expected \"specify\", \"edit\" or \"truth\" of a method, or \"\"", plugin.asks));
   plugin.id = text(d.id, "id");
   if (!is_name(plugin.id))
     throw PluginError(

@@ -165,7 +165,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
       cells.push_back(count(phi.at("human_seconds")));
       text += row_of(cells);
     }
-    if (phi.at("asked_as") != phi.at("utterance"))
+    if (worded_otherwise(phi.at("asked_as"), phi.at("utterance")))
       wordings.insert(
           fmt::format("- {}, of {}: “{}”\n", plain(row.scenario), plain(phi.at("source")), plain(phi.at("asked_as"))));
   }

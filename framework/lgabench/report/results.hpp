@@ -36,6 +36,7 @@ struct CellResult {
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::string participant;  // whose answers it stands on; empty where nobody was asked
+  std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
   int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
