@@ -22,7 +22,7 @@ class GcbcDart : public lgabench::CloningMethod {
 
 LGABENCH_METHOD("gcbc_dart", "0.1",
                 "Behaviour cloning on the picture and the command, with noise-injected demonstrations", GcbcDart,
-                "{" LGABENCH_CLONING_OPTIONS R"(,
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
   "dart": {"default": "recovery", "values": ["recovery", "none"],
            "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads",
            "source": "paper, section 5; PROTOCOL, section 5"}})")

@@ -25,6 +25,6 @@ class LgaL : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga_l", "0.1", "Behaviour cloning on a language model's Selection in words", LgaL,
-                "{" LGABENCH_CLONING_OPTIONS R"(,
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
   "image": {"default": "none", "values": ["none", "rgb"], "help": "what the policy sees beside the words",
             "source": "none: paper, section 5, \"the language abstraction only\"; rgb: another reading of it"}})")
