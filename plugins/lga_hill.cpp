@@ -18,4 +18,4 @@ class LgaHill : public lgabench::CloningMethod {
 
 LGABENCH_METHOD_ASKING("edit", "lga_hill", "0.1",
                        "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
-                       "{" LGABENCH_CLONING_OPTIONS "}")
+                       "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <lgabench/core/action.hpp>
@@ -72,6 +73,9 @@ class Policy {
   /// `instruction` may hold an utterance that was not, and any Selection, an empty one or the true one included.
   /// @returns positions in metres in the frame of Workspace. Not finite: the episode fails as method_error.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
+  /// Whether all that the last act() made its action of was, to the byte, an input that the policy learned from. None
+  /// where it does not tell.
+  virtual std::optional<bool> seen_in_training() const { return std::nullopt; }
 };
 
 /// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default

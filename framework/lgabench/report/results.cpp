@@ -57,6 +57,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     }
     if (const JsonReader action = reader.at("action"); !action.json().is_null())
       for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
+    if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
     if (!played[arm].emplace(index, std::move(e)).second)
       reader.at("index").fail(fmt::format("each index once in arm \"{}\"", arm));

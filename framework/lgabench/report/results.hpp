@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct PlayedEpisode {
   std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
   std::string scene;           // the scene's hash, 16 hexadecimal digits
   std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
+  std::optional<bool> input_seen;  // its input stood in training; none where the policy does not tell
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.

@@ -63,6 +63,16 @@ std::string shift_text(const Row* row) {
                      hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
 }
 
+std::string seen_text(const Row* row) {
+  if (!row) return "";
+  const std::optional<double> share = row->seen_share();
+  return share ? fmt::format("{:.2f}", *share) : "–";
+}
+
+bool any_seen(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   bool not_learned = false, incomplete = false;
   std::set<std::string> same_as;              // arms
