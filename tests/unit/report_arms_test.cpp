@@ -190,6 +190,14 @@ TEST(Paper, BarsBelongToTheirScenarios) {
     EXPECT_EQ(q3.find(scenario, "GCBC-DART", 50), rate) << scenario;
   EXPECT_EQ(q3.find("q3_fruit", "LGA", 10), std::nullopt);
   EXPECT_TRUE(report::paper_values("factorial").rates.empty());
+
+  const report::PaperValues q1 = report::paper_values("q1");
+  EXPECT_EQ(q1.find(report::mean_scenario, "LGA", 50), .747);
+  EXPECT_EQ(q1.error(report::mean_scenario, "LGA", 50), .078);
+  EXPECT_EQ(q1.error(report::mean_scenario, "GCBC-SEG", 10), .012);
+  for (const int n : {10, 20, 30, 40, 50})
+    EXPECT_FALSE(q1.find(report::mean_scenario, "GCBC-DART", n)) << "the figure's curve is another row's error bars";
+  EXPECT_FALSE(q2.error("q2_heart", "LGA", 50)) << "the figure has none";
 }
 
 TEST(Commands, EachHasItsOwnSelection) {

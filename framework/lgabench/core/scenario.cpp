@@ -113,12 +113,43 @@ SceneContent read_train(const JsonReader& scenario, const FeatureSpace& space) {
   return content;
 }
 
+// Whose answers are the scenario's recorded ones, and which of them are given to people.
+void read_answers(const JsonReader& reader, Scenario& scenario) {
+  reader.only({"recorded", "edited"});
+  std::error_code none_to_list;
+  const std::vector<std::string> known = json_names(data_directory() / "answers", none_to_list);
+  const auto file = [&known](const JsonReader& name) {
+    if (std::find(known.begin(), known.end(), name.string()) == known.end())
+      name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
+    return name.string();
+  };
+  scenario.recorded = file(reader.at("recorded"));
+  scenario.edited = reader.has("edited") ? file(reader.at("edited")) : scenario.recorded;
+}
+
+// The file's members with the appendix's in place of the released ones.
+Json as_printed(Json json) {
+  const Json printed = json.value("printed", Json());
+  if (printed.is_null()) return json;
+  json.erase("printed");
+  json.update(printed);
+  json["truth"] = "printed";
+  return json;
+}
+
 }  // namespace
+
+Truth read_truth(const std::string& word) {
+  if (word == "released") return Truth::released;
+  if (word == "printed") return Truth::printed;
+  throw InputError(fmt::format("truth: expected released or printed, got \"{}\"", word));
+}
 
 Scenario read_scenario(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"id", "environment", "task", "angle_deg", "direction", "feature_space", "commands", "answers_of",
-               "never_distractor", "train", "tests", "note"});
+               "answers", "never_distractor", "train", "tests", "truth", "printed", "note"});
+  if (reader.has("printed")) reader.at("printed").only({"commands", "never_distractor", "note"});
   Scenario s;
   s.id = reader.at("id").string();
   s.environment = reader.at("environment").string();
@@ -131,6 +162,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   for (const JsonReader& command : reader.at("commands").elements())
     s.commands.push_back(read_command(command, s.task, s.space));
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
+  if (reader.has("answers")) read_answers(reader.at("answers"), s);
   if (reader.has("never_distractor")) s.never_distractor = read_feature_set(reader.at("never_distractor"), s.space);
   s.train = read_train(reader, s.space);
   for (const JsonReader& arm : reader.at("tests").elements()) {
@@ -174,12 +206,13 @@ std::vector<std::string> scenario_ids() {
   return json_names(data_directory() / "scenarios", none_to_list);
 }
 
-Scenario load_scenario(const std::string& id) {
+Scenario load_scenario(const std::string& id, Truth truth) {
   const auto known = scenario_ids();
   if (std::find(known.begin(), known.end(), id) == known.end())
     throw InputError(fmt::format("scenario \"{}\": expected one of: {}", id, fmt::join(known, ", ")));
   const fs::path file = data_directory() / "scenarios" / (id + ".json");
-  Scenario s = read_scenario(read_json(file), file.string());
+  const Json json = read_json(file);
+  Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
   if (s.id != id)
     throw InputError(
         fmt::format("{}: /id: expected \"{}\", as the file is named, got \"{}\"", file.string(), id, s.id));

@@ -46,6 +46,10 @@ struct Arm {
   double label_noise = 0, missed_segment = 0;  // how imperfect the textualization is (see textualization.hpp)
 };
 
+/// Whose true distributions: the annotations that the paper's authors released with their code where there are any, or
+/// those that the paper's appendix prints.
+enum class Truth { released, printed };
+
 /// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
 struct Scenario {
   std::string id, environment;
@@ -53,7 +57,10 @@ struct Scenario {
   double angle_deg = 0;  // rotate only: counter-clockwise seen from above, negative where it is clockwise
   FeatureSpace space;
   std::vector<ScenarioCommand> commands;
-  std::string answers_of;                      // the scenario whose GPT-4 answers hold for this one; mostly its own id
+  std::string answers_of;  // the scenario whose recorded answers hold for this one; mostly its own id
+  /// Files of the data directory's answers/, without their ending: whose answers "recorded" means here, and which of
+  /// them people are given to edit.
+  std::string recorded = "claude", edited = "claude";
   std::optional<FeatureSet> never_distractor;  // test distractors stay out of it, beyond the true distribution
   SceneContent train;
   std::vector<Arm> tests;
@@ -74,8 +81,12 @@ struct Scenario {
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.
 Scenario read_scenario(const Json& json, const std::string& file);
 
-/// The scenario named `id` from the data directory's scenarios/. @throws InputError that lists the known ids.
-Scenario load_scenario(const std::string& id);
+/// The scenario named `id` from the data directory's scenarios/. With the printed truth, what the file says under
+/// "printed" stands in its place, and "truth" says so. @throws InputError that lists the known ids.
+Scenario load_scenario(const std::string& id, Truth truth = Truth::released);
+
+/// "released" or "printed". @throws InputError for another word.
+Truth read_truth(const std::string& word);
 
 /// Ids of all shipped scenarios, sorted.
 std::vector<std::string> scenario_ids();

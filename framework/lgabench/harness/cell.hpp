@@ -20,6 +20,7 @@ struct Competitor {
   std::string name;  // its row's: the id, then "+option=value" for each that differs from the default, sorted by option
   std::string version;
   Json options = Json::object();  // every option, defaults included
+  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
 
   bool is_reference() const { return kind == "reference"; }
 };
@@ -37,7 +38,7 @@ struct Cell {
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
   int episodes = 0;
-  std::string answers;                         // recorded, gpt4, claude, or "cassette:" and the cassette's SHA-256
+  std::string answers;                         // recorded, one of recorded_sources(), or "cassette:" and its SHA-256
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
@@ -63,11 +64,12 @@ struct Variation {
   Json options =
       Json::object();      // method id -> option -> value, for each row of it that does not set the option itself
   bool references = true;  // add the reference rows
+  Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
-/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of human or
-/// lga_hill for each one who specified, or edited, all commands of the scenario; for none, where nobody did.
+/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
+/// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// @throws PluginError for an unknown method or engine, InputError for an unknown option, for a method that is not
 /// written ID+OPTION=VALUE+..., for two that name one row, and for one that no participant answered at all.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);

@@ -57,6 +57,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     }
     if (const JsonReader action = reader.at("action"); !action.json().is_null())
       for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
+    if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
     if (!played[arm].emplace(index, std::move(e)).second)
       reader.at("index").fail(fmt::format("each index once in arm \"{}\"", arm));
@@ -101,6 +102,7 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.engine = reader.at("engine").string();
   cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
+  if (method.has("asks")) cell.asks = method.at("asks").string();
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();

@@ -195,6 +195,8 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
     for (const PlayedEpisode& e : episodes) {
       if (!e.success) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
+      row.inputs_told += e.input_seen ? 1 : 0;
+      row.inputs_seen += e.input_seen.value_or(false) ? 1 : 0;
     }
     row.episodes += policy.episodes;
     row.successes += policy.successes;
@@ -213,7 +215,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   Row& row = mean.row = drafts.front()->row;
   row.scenario = mean_scenario;
   row.phi = nullptr;
-  row.seeds = row.episodes = row.successes = row.n_error = 0;
+  row.seeds = row.episodes = row.successes = row.inputs_told = row.inputs_seen = row.n_error = 0;
   row.failures.clear();
   row.attribution = Row().attribution;
   row.marks.clear();
@@ -225,6 +227,8 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
     row.seeds = std::max(row.seeds, draft->row.seeds);
     row.episodes += draft->row.episodes;
     row.successes += draft->row.successes;
+    row.inputs_told += draft->row.inputs_told;
+    row.inputs_seen += draft->row.inputs_seen;
     row.n_error += draft->row.n_error;
     for (const auto& [failure, n] : draft->row.failures) row.failures[failure] += n;
     for (const auto& [to, n] : draft->row.attribution) row.attribution[to] += n;

@@ -32,14 +32,18 @@ struct Row {
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
   std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures laid to each
-  std::optional<Shift> shift;  // none in the first arm, nor where the arms give different commands
-  int n_error = 0;             // episodes not played: the engine or the host failed
+  std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
+  int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
+  int n_error = 0;                       // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
   Json phi;  // a list: provenance, cost, quality of what was selected for each of the arm's commands; null in mean rows
 
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }
   bool marked(const std::string& mark) const;
+  std::optional<double> seen_share() const {
+    return inputs_told > 0 ? std::optional(static_cast<double>(inputs_seen) / inputs_told) : std::nullopt;
+  }
   int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
 };
 

@@ -63,11 +63,24 @@ std::string shift_text(const Row* row) {
                      hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
 }
 
+std::string seen_text(const Row* row) {
+  if (!row) return "";
+  const std::optional<double> share = row->seen_share();
+  return share ? fmt::format("{:.2f}", *share) : "–";
+}
+
+bool any_seen(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   bool not_learned = false, incomplete = false;
   std::set<std::string> same_as;              // arms
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
   std::set<std::string> models;               // behind cassettes
+  std::set<std::string> edited;               // methods whose Selections began as a language model's
+  for (const CellResult& cell : run.cells)
+    if (cell.asks == "edit") edited.insert(cell.method);
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       not_learned = not_learned || row.marked("baseline_not_learned");
@@ -79,9 +92,8 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
-        people[row.method] =
-            fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
-                        row.method.rfind("lga_hill", 0) == 0 ? ", who edited a language model's φ̂" : "");
+        people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                         edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
