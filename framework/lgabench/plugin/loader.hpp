@@ -65,5 +65,7 @@ Json option_value(const std::string& word);
 /// option with a fractional default becomes fractional.
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values.
 Json resolve_options(const PluginInfo& plugin, const Json& overrides);
+/// Likewise of an object that need not be all that is given: its options one by one, each complaint with its place.
+Json check_options(const PluginInfo& plugin, const JsonReader& given);
 
 }  // namespace lgabench

@@ -22,9 +22,8 @@ Json option_value(const std::string& word) {
   return value.is_number() || value.is_boolean() ? value : Json(word);
 }
 
-Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
-  const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
-  const JsonReader given(overrides, owner);
+Json check_options(const PluginInfo& plugin, const JsonReader& given) {
+  const Json& overrides = given.json();
   std::vector<std::string> known;
   for (const auto& option : plugin.options.items()) known.push_back(option.key());
   if (known.empty() && overrides.is_object() && !overrides.empty()) given.fail("none: it has no options");
@@ -48,6 +47,10 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
     resolved[name] = std::move(value);
   }
   return resolved;
+}
+
+Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
+  return check_options(plugin, JsonReader(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id)));
 }
 
 }  // namespace lgabench

@@ -99,6 +99,9 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.engine = reader.at("engine").string();
   cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
+  cell.id = method.at("id").string();
+  cell.options = method.at("options").json();
+  if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();

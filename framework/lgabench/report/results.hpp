@@ -33,6 +33,8 @@ struct PlayedEpisode {
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string id;                                           // of the plugin, or of the reference row
+  Json options = Json::object();                            // of the method, all of them
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::string participant;  // whose answers it stands on; empty where nobody was asked
