@@ -186,6 +186,7 @@ void check(const SceneRequest& request, int index) {
   const auto& split = request.split;
   if (split != "train" && split != "dev" && split != "test")
     throw InputError(fmt::format("split \"{}\": expected train, dev or test", split));
+  if (request.training_seed && split != "test") throw InputError("a training seed's own scenes: expected split test");
   if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
 }
 
@@ -201,9 +202,10 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Request what{scenario, find_layout(scenario.task, request.layout), content, training,
                      asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
+  const std::string own = request.training_seed ? fmt::format("/training seed {}", *request.training_seed) : "";
   const Streams stream = [&](const std::string& purpose) {
-    return RandomStream(fmt::format("scene/{}/{}/{}/{}/{}/{}", scenario.id, request.layout, request.split, request.seed,
-                                    index, purpose));
+    return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
+                                    request.seed, own, index, purpose));
   };
 
   Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, 0, request.seed, index, 0, {}};

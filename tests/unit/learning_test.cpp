@@ -424,7 +424,7 @@ TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
     EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
   EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
   EXPECT_NE(refusal("factorial", {{"policy", "centroid"}, {"input", "rgb"}})
-                .find(R"("centroid" needs input to be one of ["mask","true_mask","object_mask"], got "rgb")"),
+                .find(R"(one of ["mask","true_mask","object_mask"], which policy=centroid needs, got "rgb")"),
             std::string::npos);
 }
 

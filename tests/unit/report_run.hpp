@@ -1,6 +1,7 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ class FabricatedRun : public TemporaryDirectory {
            {"preset", "smoke"},
            {"smoke", true},
            {"cells", Json::array()},
-           {"version", "0.1.0"},
+           {"version", "0.2.0"},
            {"machine", {{"processor", "a processor"}, {"cores", 2}, {"memory_gib", 8.0}, {"system", "Linux"}}},
            {"plugins", {{{"kind", "method"}, {"id", "lga"}, {"version", "0.1"}, {"sha256", std::string(64, 'a')}}}},
            {"build", {{"lgabench-worker", std::string(64, 'b')}}},
@@ -52,6 +53,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
+    Json options = Json::object();                         // of the method, beside those in its row's name
 
     std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
     std::vector<std::pair<std::string, bool>> all_commands() const {
@@ -59,6 +61,15 @@ class FabricatedRun : public TemporaryDirectory {
                               : commands;
     }
   };
+
+  static Json options_of(const Spec& s) {
+    Json options = s.options;
+    std::istringstream words(s.method);
+    std::string word;
+    std::getline(words, word, '+');  // the id
+    while (std::getline(words, word, '+')) options[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
+    return options;
+  }
 
   static Json cell_json(const Spec& s) {
     Json commands = Json::array(), tests = Json::array();
@@ -82,7 +93,7 @@ class FabricatedRun : public TemporaryDirectory {
                 {"id", s.method.substr(0, s.method.find('+'))},
                 {"name", s.method},
                 {"version", "0.1"},
-                {"options", Json::object()}}},
+                {"options", options_of(s)}}},
               {"demonstrations", s.demonstrations},
               {"training_seed", s.seed},
               {"scene_seed", 7},

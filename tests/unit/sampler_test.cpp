@@ -590,5 +590,22 @@ TEST(Sampler, SameArgumentsSameBytes) {
               backwards[static_cast<std::size_t>(49 - i)]);
 }
 
+// The hash is from a run of 0.1.
+TEST(TestScenes, OfATrainingSeedAreItsOwnAndSharedOnesStay) {
+  const Scenario scenario = load_scenario("heart");
+  SceneRequest request = test_request("cells");
+  const std::uint64_t shared = sample_scene(scenario, request, 0).hash();
+  EXPECT_EQ(hex(shared), "56f4c7ff2daa91c1");
+  std::set<std::uint64_t> hashes{shared};
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    request.training_seed = seed;
+    hashes.insert(sample_scene(scenario, request, 0).hash());
+    EXPECT_EQ(sample_scene(scenario, request, 0).hash(), sample_scene(scenario, request, 0).hash());
+  }
+  EXPECT_EQ(hashes.size(), 4u);
+  request.split = "dev";
+  EXPECT_THROW(sample_scene(scenario, request, 0), InputError) << "test scenes alone";
+}
+
 }  // namespace
 }  // namespace lgabench::tabletop

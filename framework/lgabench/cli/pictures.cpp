@@ -52,7 +52,8 @@ class Pictures {
     const Played& played = cell(request.at("cell").string());
     const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
     const std::string arm = request.at("arm").string();
-    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index);
+    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index,
+                                   played.cell.scenes_of_seed());
     if (hex(scene.hash()) != request.at("scene").string())
       throw InputError("this version samples another scene than the run played");
 

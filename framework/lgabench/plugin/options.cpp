@@ -26,9 +26,8 @@ Json option_value(const std::string& word) {
   return value.is_number() || value.is_boolean() ? value : Json(word);
 }
 
-Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
-  const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
-  const JsonReader given(overrides, owner);
+Json check_options(const PluginInfo& plugin, const JsonReader& given) {
+  const Json& overrides = given.json();
   std::vector<std::string> known;
   for (const auto& option : plugin.options.items()) known.push_back(option.key());
   if (known.empty() && overrides.is_object() && !overrides.empty()) given.fail("none: it has no options");
@@ -57,10 +56,15 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
     const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
     for (const auto& [other, values] : needs.items())
       if (!contains(values, resolved[other]))
-        throw InputError(fmt::format("{}: /{}: {} needs {} to be one of {}, got {}", owner, name, canonical(value),
-                                     other, canonical(values), canonical(resolved[other])));
+        JsonReader(resolved, given.file(), given.place())
+            .at(other)
+            .fail(fmt::format("one of {}, which {}={} needs", canonical(values), name, value.get<std::string>()));
   }
   return resolved;
+}
+
+Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
+  return check_options(plugin, JsonReader(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id)));
 }
 
 }  // namespace lgabench

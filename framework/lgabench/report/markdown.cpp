@@ -6,6 +6,7 @@
 #include <set>
 
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
@@ -284,6 +285,7 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
                      const std::vector<EngineAgreement>& agreements, const PaperValues& paper,
                      const std::vector<std::vector<Figure>>& figures) {
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
+  for (const std::string& line : settings(run)) text += "> " + plain(line) + "  \n";
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
   if (!paper.rates.empty())

@@ -51,10 +51,10 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const CommandResult& command = cell.commands[episode.command];
         if (command.quality.is_null()) continue;
         Request& request = all[known->second];
-        const std::string key = mask_key(episode.scene, command.selection, cell.instances);
+        const std::string key = mask_key(episode.scene, command.selection, cell.options.value("instances", "all"));
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
-        request.json["selections"].push_back(what_is_kept(command.selection, cell.instances));
+        request.json["selections"].push_back(what_is_kept(command.selection, cell.options.value("instances", "all")));
       }
   }
   std::stable_sort(all.begin(), all.end(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
@@ -50,6 +51,8 @@ std::string block(const Table& table, const std::string& corner, const std::vect
 
 std::string plain_text(const RunResults& run, const Summary& summary) {
   std::string text;
+  for (const std::string& line : settings(run)) text += fmt::format("{}: {}\n", summary.suite, line);
+  if (!text.empty()) text += '\n';
   for (const Table& table : summary.tables)
     for (const View& view : views(table)) {
       text += fmt::format("{}, {}: success [95 % interval]\n\n{}\n", summary.suite, table.title(),

@@ -103,7 +103,9 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
   if (method.has("asks")) cell.asks = method.at("asks").string();
-  cell.instances = method.at("options").json().value("instances", cell.instances);
+  cell.id = method.at("id").string();
+  cell.options = method.at("options").json();
+  if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();

@@ -35,10 +35,11 @@ struct PlayedEpisode {
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string id;                                           // of the plugin, or of the reference row
+  Json options = Json::object();                            // of the method, all of them
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
-  std::string instances = "all";  // of a role, in its goal masks: the method's option of that name
-  std::string participant;        // whose answers it stands on; empty where nobody was asked
+  std::string participant;  // whose answers it stands on; empty where nobody was asked
   std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
