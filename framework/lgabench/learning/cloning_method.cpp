@@ -20,11 +20,11 @@ class Featurizer {
     if (has_text()) embeddings_ = std::make_shared<SentenceEmbeddings>();
   }
 
-  NetworkShape shape(bool batch_norm) const {
+  NetworkShape shape(Architecture architecture) const {
     NetworkShape shape;
     for (const Picture picture : inputs_.pictures) shape.channels.push_back(picture == Picture::rgb ? 3 : 1);
     shape.text = has_text();
-    shape.batch_norm = batch_norm;
+    shape.architecture = architecture;
     return shape;
   }
 
@@ -85,7 +85,18 @@ class CloningPolicy : public Policy {
   Samples input_;
 };
 
+Architecture architecture_of(const std::string& network) {
+  if (network == "plain") return Architecture::plain;
+  return network == "released" ? Architecture::released : Architecture::text;
+}
+
 }  // namespace
+
+PolicyInputs CloningMethod::inputs(const Json& options) const {
+  PolicyInputs inputs{{Picture::mask}};
+  if (options.value("picture", "none") == "rgb") inputs.pictures.push_back(Picture::rgb);
+  return inputs;
+}
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const JsonReader options(services.options, "options");
@@ -95,8 +106,10 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   training.learning_rate = options.at("learning_rate").number();
   training.loss = options.at("loss").string() == "squared" ? Loss::squared : Loss::norm;
 
+  training.batches = options.at("batches").string() == "drawn" ? Batches::drawn : Batches::shuffled;
+
   Featurizer featurizer(inputs(services.options));
-  const NetworkShape shape = featurizer.shape(options.at("batch_norm").boolean());
+  const NetworkShape shape = featurizer.shape(architecture_of(options.at("network").string()));
   int rows = 0;
   for (const Demonstration& demonstration : demonstrations) rows += static_cast<int>(demonstration.steps.size());
   Samples samples(shape, rows);
@@ -108,6 +121,9 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
       std::copy(label.begin(), label.end(), samples.labels.begin() + row * action_size);
       ++row;
     }
+
+  // `plain` keeps the bits that earlier versions gave it.
+  if (shape.architecture != Architecture::plain) samples.find_usual();
 
   auto policy = std::make_unique<CloningPolicy>(featurizer, shape, services.seed);
   train(policy->network, samples, training, services.seed, services.log);
