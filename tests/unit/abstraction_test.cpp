@@ -75,6 +75,41 @@ TEST(GoalMask, AnythingIsAnObjectWithoutLanguage) {
   EXPECT_EQ(std::count(mask.begin(), mask.end(), 0), static_cast<std::ptrdiff_t>(pixels) - 5);
 }
 
+TEST(GoalMask, MayKeepTheFirstInstanceOfEachRoleAlone) {
+  Selection selection;  // 5, red, comes first of the hearts; the pan matches both sets
+  selection.target = {{"heart", "pan"}, {"red", "blue"}};
+  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  const auto first = goal_mask(four_objects(), selection, Instances::first);
+  EXPECT_EQ(first[0], 1);
+  EXPECT_EQ(first[pixels - 1], 1) << "all of an instance, wherever it is";
+  EXPECT_EQ(first[Observation::columns - 1], 0) << "the other heart";
+  EXPECT_EQ(first[pixels - Observation::columns], 0) << "what matches both is a target, and not the first";
+  EXPECT_EQ(first[1000], 1) << "target and avoid apart";
+  Observation hidden = four_objects();
+  hidden.ids[0] = hidden.ids[pixels - 1] = 0;
+  EXPECT_EQ(goal_mask(hidden, selection, Instances::first)[Observation::columns - 1], 1) << "the first that is seen";
+  const auto all = goal_mask(four_objects(), selection);
+  EXPECT_EQ(std::count(all.begin(), all.end(), 1), 5);
+}
+
+TEST(GoalMask, TellsRolesApart) {
+  Selection selection;
+  selection.target = {{"heart", "pan"}, {"red"}};
+  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  std::vector<std::uint8_t> roles;
+  role_mask(four_objects(), selection, roles);
+  EXPECT_EQ(roles[0], target_role);
+  EXPECT_EQ(roles[1000], avoid_role);
+  EXPECT_EQ(roles[pixels - Observation::columns], target_role) << "both";
+  EXPECT_EQ(roles[Observation::columns - 1], 0);
+}
+
+TEST(GoalMask, OfAnyObjectMayLeaveAnObjectTypeOut) {
+  const auto mask = object_mask(four_objects(), "heart");
+  EXPECT_EQ(std::count(mask.begin(), mask.end(), 1), 2);
+  EXPECT_EQ(mask[0], 0);
+}
+
 TEST(GoalMask, RefusesAnObservationThatContradictsItself) {
   Observation stray = four_objects();
   stray.ids[77] = 6;
@@ -173,6 +208,7 @@ TEST(RecordedAnswers, KeepTheWordingThatWasAsked) {
 TEST(RecordedAnswers, AreEachScenariosOwn) {
   const std::map<std::string, std::pair<std::string, std::string>> others{
       {"rotate_block", {"claude", "claude"}},
+      {"rotate_block_clockwise", {"claude", "claude"}},
       {"rotate_something_to_drink_water_out_of", {"claude", "claude"}},
       {"rotate_something_to_drink_water_out_of_as_printed", {"claude", "claude"}},
       {"sweep_block_without_touching_line", {"claude", "claude"}},

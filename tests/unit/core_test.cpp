@@ -121,6 +121,16 @@ TEST(Scenario, AllShippedOnesAreRead) {
   EXPECT_EQ(s.commands[0].truth.provenance, Provenance::truth);
 }
 
+TEST(Scenario, DemonstrationsCountForEachSeenCommand) {
+  EXPECT_EQ(load_scenario("heart").training_scenes(50), 50);
+  EXPECT_EQ(load_scenario("q2_block").training_scenes(50), 50);
+  for (const char* id : {"q3_fruit", "q3_food", "q3_utensil"}) {
+    const Scenario s = load_scenario(id);
+    EXPECT_EQ(s.training_scenes(50), 100) << id;
+    EXPECT_EQ(s.commands_of("train"), (std::vector<int>{0, 1})) << "in turn";
+  }
+}
+
 TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
   const auto textures = [](const char* id, Truth truth) {
     return load_scenario(id, truth).commands[0].truth.target.textures.size();
@@ -202,6 +212,19 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["train"] = {{"target", json["commands"][0]["truth"]["target"]}};
   EXPECT_SAYS(refusal(json), "mine.json: /train: expected \"as_method_asks\": false");
+  json["train"] = {{"barrier_distances_m", {.21, .05}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m/1: expected 0.15 to 0.3, got 0.05");
+  json["train"] = {{"barrier_distances_m", Json::array()}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m: expected at least one");
+  json = heart();
+  json["direction"] = "clockwise";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected no direction for another task than rotate");
+  json = load_scenario("rotate_block").json;
+  json["direction"] = "left";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected clockwise or counter_clockwise, got \"left\"");
+  json["direction"] = "clockwise";
+  json["angle_deg"] = -120;
+  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 0, at most 180, got -120");
   EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
 }
 

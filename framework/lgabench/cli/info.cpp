@@ -28,6 +28,10 @@ void print(const PluginInfo& plugin) {
                option["source"].get<std::string>());
     if (option.contains("min")) fmt::print("      {} or more\n", canonical(option["min"]));
     if (option.contains("values")) fmt::print("      one of {}\n", canonical(option["values"]));
+    if (option.contains("needs"))
+      for (const auto& [value, others] : option["needs"].items())
+        for (const auto& [other, values] : others.items())
+          fmt::print("      {} needs {} to be one of {}\n", value, other, canonical(values));
   }
 }
 

@@ -60,13 +60,13 @@ Grid grid_of(const Arguments& a, const Suite& suite) {
   return grid;
 }
 
-// --set method.option=value
+// --set method.option=value, or *.option=value
 Json options_of(const Words& settings) {
   Json options = Json::object();
   for (const std::string& setting : settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || dot > equals)
-      throw InputError(fmt::format("--set {}: expected method.option=value", setting));
+      throw InputError(fmt::format("--set {}: expected method.option=value or *.option=value", setting));
     options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] =
         option_value(setting.substr(equals + 1));
   }
@@ -135,7 +135,7 @@ int run(const Arguments& a) {
                        {"answers", variation.answers},
                        {"truth", a.truth},
                        {"participants", participant_hashes(variation.participants)},
-                       {"options", variation.options},
+                       {"set", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
   plan.command = joined(command_line());
@@ -173,7 +173,8 @@ void add_run(CLI::App& app, int& exit) {
     verb->add_option(name, words, help)->delimiter(',')->take_all();
   };
   verb->add_option("suite", a->suite, "A suite's id, or a .json file of one")->required();
-  verb->add_option("--preset", a->preset, "A part of the suite: smoke, paper, leaderboard");
+  verb->add_option("--preset", a->preset,
+                   "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
   list("--methods", a->methods, "Methods, by plugin id; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
@@ -199,7 +200,8 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--limit", a->limit, "Only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
   verb->add_option("--set", a->settings,
-                   "method.option=value, for each of its rows that does not set it; may be given again")
+                   "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; goes before the "
+                   "preset's options, after a row's own; may be given again")
       ->take_all();
   verb->add_option("--answers", a->answers,
                    "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
@@ -224,8 +226,11 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
-      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared\n"
+      "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
+      "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
+      "as\n"
+      "lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }

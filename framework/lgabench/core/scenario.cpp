@@ -27,7 +27,19 @@ ScenarioCommand read_command(const JsonReader& reader, Task task, const FeatureS
   return command;
 }
 
-const std::vector<std::string> content_members{"target", "avoid", "distractors", "hard", "later_letters", "choice"};
+// In degrees; positive: counter-clockwise.
+double read_angle(const JsonReader& scenario) {
+  const double angle_deg = scenario.at("angle_deg").number();
+  if (!(angle_deg > 0 && angle_deg <= 180)) scenario.at("angle_deg").fail("above 0, at most 180");
+  if (!scenario.has("direction")) return angle_deg;
+  const std::string direction = scenario.at("direction").string();
+  if (direction != "clockwise" && direction != "counter_clockwise")
+    scenario.at("direction").fail("clockwise or counter_clockwise");
+  return direction == "clockwise" ? -angle_deg : angle_deg;
+}
+
+const std::vector<std::string> content_members{"target", "avoid",         "distractors", "outside_all_commands",
+                                               "hard",   "later_letters", "choice",      "barrier_distances_m"};
 
 // Members of the content that the reader gives, over those of `content`.
 SceneContent read_content(const JsonReader& reader, SceneContent content, const FeatureSpace& space) {
@@ -41,6 +53,7 @@ SceneContent read_content(const JsonReader& reader, SceneContent content, const 
     content.distractors.first = static_cast<int>(range[0].integer(0, most));
     content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
   }
+  if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
   if (reader.has("hard")) content.hard = reader.at("hard").boolean();
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
   if (reader.has("choice")) {
@@ -50,6 +63,16 @@ SceneContent read_content(const JsonReader& reader, SceneContent content, const 
     for (const JsonReader& type : reader.at("choice").elements())
       if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
         type.fail("an object type of the feature space");
+  }
+  if (reader.has("barrier_distances_m")) {
+    constexpr double nearest_m = .15, farthest_m = .3;  // outlines apart, and within the picture beside any target
+    content.barrier_distances_m.clear();
+    for (const JsonReader& distance : reader.at("barrier_distances_m").elements()) {
+      content.barrier_distances_m.push_back(distance.number());
+      if (!(distance.number() >= nearest_m && distance.number() <= farthest_m))
+        distance.fail(fmt::format("{} to {}", nearest_m, farthest_m));
+    }
+    if (content.barrier_distances_m.empty()) reader.at("barrier_distances_m").fail("at least one distance");
   }
   return content;
 }
@@ -124,14 +147,17 @@ Truth read_truth(const std::string& word) {
 
 Scenario read_scenario(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
-  reader.only({"id", "environment", "task", "angle_deg", "feature_space", "commands", "answers_of", "answers",
-               "never_distractor", "train", "tests", "truth", "printed", "note"});
+  reader.only({"id", "environment", "task", "angle_deg", "direction", "feature_space", "commands", "answers_of",
+               "answers", "never_distractor", "train", "tests", "truth", "printed", "note"});
   if (reader.has("printed")) reader.at("printed").only({"commands", "never_distractor", "note"});
   Scenario s;
   s.id = reader.at("id").string();
   s.environment = reader.at("environment").string();
   s.task = read_task(reader.at("task"));
-  if (s.task == Task::rotate) s.angle_deg = reader.at("angle_deg").number();
+  if (s.task == Task::rotate)
+    s.angle_deg = read_angle(reader);
+  else if (reader.has("direction"))
+    reader.at("direction").fail("no direction for another task than rotate");
   s.space = load_feature_space(reader.at("feature_space").string());
   for (const JsonReader& command : reader.at("commands").elements())
     s.commands.push_back(read_command(command, s.task, s.space));
@@ -169,6 +195,10 @@ std::vector<int> Scenario::commands_of(const std::string& name) const {
   for (std::size_t i = 0; i < commands.size(); ++i)
     if (commands[i].seen == seen) indices.push_back(static_cast<int>(i));
   return indices;
+}
+
+int Scenario::training_scenes(int demonstrations) const {
+  return demonstrations * static_cast<int>(commands_of("train").size());
 }
 
 std::vector<std::string> scenario_ids() {

@@ -28,11 +28,14 @@ struct SceneContent {
   std::optional<FeatureSet> target, avoid;
   bool as_method_asks = false;  // training alone: targets and obstacles from the Selection, if the method wants that
   std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
+  bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
   bool hard = false;           // a distractor shares the target's type or its texture, and still is no target
   bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
   /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets; for
   /// sweep, obstacles), the others are distractors.
   std::vector<std::string> choice;
+  /// Sweep: how far from the target, along y, what bars a side alone stands; each with equal odds, one a scene.
+  std::vector<double> barrier_distances_m{.21};
 };
 
 /// Test scenes of one kind, played by one policy. Arms share their random streams: scene i of each has one layout.
@@ -51,7 +54,7 @@ enum class Truth { released, printed };
 struct Scenario {
   std::string id, environment;
   Task task = Task::pick_and_place;
-  double angle_deg = 0;  // rotate only
+  double angle_deg = 0;  // rotate only: counter-clockwise seen from above, negative where it is clockwise
   FeatureSpace space;
   std::vector<ScenarioCommand> commands;
   std::string answers_of;  // the scenario whose recorded answers hold for this one; mostly its own id
@@ -71,6 +74,8 @@ struct Scenario {
   /// Commands that scenes of this arm ("train" for training scenes) give in turn, as indices: scene i gives number
   /// i modulo their count. @throws InputError for an arm that the scenario lacks.
   std::vector<int> commands_of(const std::string& name) const;
+  /// How many training scenes `demonstrations` of each seen command take: the first ones.
+  int training_scenes(int demonstrations) const;
 };
 
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.

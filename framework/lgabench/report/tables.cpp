@@ -30,12 +30,13 @@ std::vector<View> views(const Table& table) {
   std::vector<View> all;
   const std::vector<int> demonstrations = table.demonstrations();
   if (table.arms.size() == 1) {
-    View& view = all.emplace_back(View{"demonstrations", {}, {}});
+    const char* corner = table.demonstrated_commands == 1 ? "demonstrations" : "demonstrations per command";
+    View& view = all.emplace_back(View{corner, {}, {}});
     for (const int n : demonstrations) view.columns.push_back({std::to_string(n), table.arms.front(), n});
     return all;
   }
   for (const int n : demonstrations) {
-    View& view = all.emplace_back(View{fmt::format("{} demonstrations", n), {}, {}});
+    View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
     for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
@@ -60,6 +61,16 @@ std::string shift_text(const Row* row) {
   const Shift& shift = *row->shift;
   return fmt::format("{} [{}, {}]{}", hundredths(shift.difference), hundredths(shift.interval.low),
                      hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
+}
+
+std::string seen_text(const Row* row) {
+  if (!row) return "";
+  const std::optional<double> share = row->seen_share();
+  return share ? fmt::format("{:.2f}", *share) : "–";
+}
+
+bool any_seen(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
 }
 
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
