@@ -18,6 +18,9 @@ void print(const PluginInfo& plugin) {
   fmt::print("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
   fmt::print("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
              plugin.sha256, plugin.fingerprint);
+  if (!plugin.asks.empty())
+    fmt::print("  asks        {}\n",
+               plugin.asks == "truth" ? "for the truth: a diagnosis" : "people to " + plugin.asks);
   if (plugin.options.empty()) return;
   fmt::print("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {
