@@ -15,5 +15,5 @@ class Human : public lgabench::CloningMethod {
   }
 };
 
-LGABENCH_METHOD("human", "0.1", "Behaviour cloning on the goal mask of what a person specified", Human,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+LGABENCH_METHOD_ASKING("specify", "human", "0.1", "Behaviour cloning on the goal mask of what a person specified",
+                       Human, "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

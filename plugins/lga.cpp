@@ -17,4 +17,4 @@ class Lga : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga", "0.1", "Behaviour cloning on a goal mask that a language model selected", Lga,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

@@ -16,5 +16,6 @@ class LgaHill : public lgabench::CloningMethod {
   }
 };
 
-LGABENCH_METHOD("lga_hill", "0.1", "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+LGABENCH_METHOD_ASKING("edit", "lga_hill", "0.1",
+                       "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
+                       "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

@@ -82,8 +82,14 @@ struct Request {
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
   const FeatureSpace& space = request.scenario.space;
   const SceneContent& content = request.content;
-  std::vector<const FeatureSet*> excluded{&request.meant.target};
-  if (request.meant.avoid) excluded.push_back(&*request.meant.avoid);
+  std::vector<const FeatureSet*> excluded;
+  const auto exclude = [&excluded](const Selection& meant) {
+    excluded.push_back(&meant.target);
+    if (meant.avoid) excluded.push_back(&*meant.avoid);
+  };
+  exclude(request.meant);
+  if (content.outside_all_commands)
+    for (const ScenarioCommand& command : request.scenario.commands) exclude(command.truth);
   if (!request.training && request.scenario.never_distractor) excluded.push_back(&*request.scenario.never_distractor);
 
   // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
@@ -206,7 +212,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   scene.angle_rad = scenario.angle_deg * pi / 180;
   scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
-  place(what.layout, scene.objects, !content.choice.empty(), stream);
+  place(what.layout, content, scene.objects, stream);
   if (what.layout.pallet) scene.objects.push_back({goal_type, goal_texture, Role::goal, *what.layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;

@@ -310,6 +310,18 @@ class Demonstrations(Case):
             self.assertEqual({cell["smoke"] for cell, _ in self.cells(out).values()}, {stamped})
 
 
+class Commands(Case):
+    def test_demonstrations_are_per_seen_command(self):
+        arguments = ["--scenarios", "q3_fruit,q3_utensil", "--methods", "lga", "--demos", "10", "--seeds", "0",
+                     "--episodes", "2", "--set", "lga.epochs=1", "--no-reference"]
+        said = self.call("run", "q3", *arguments, "--out", "out").stdout
+        self.assertIn("demonstrations: 10 per command, 20 in all", said)
+        for key, (cell, _) in self.cells("out").items():
+            self.assertEqual(cell["demonstrations"], 10)
+            line = json.loads((self.dir / "out/cells" / key / "training.jsonl").read_text().splitlines()[-1])
+            self.assertEqual(line["steps"], 2, "batches of ten in one pass over 20 demonstrations")
+
+
 class Page(Case):
     def data(self, run):
         page = (self.dir / run / "report.html").read_text()

@@ -53,7 +53,9 @@ struct Silent : TrainingLog {
   void epoch(int, long long, double) override {}
 };
 
-TEST(Allocations, APolicyThatSeesTheGoalMaskActsWithoutAny) {
+class Acting : public testing::TestWithParam<const char*> {};
+
+TEST_P(Acting, OnTheGoalMaskMakesNoAllocation) {
   Observation seen;
   seen.rgb.resize(std::size_t{Observation::rows} * Observation::columns * 3);
   seen.ids.resize(std::size_t{Observation::rows} * Observation::columns);
@@ -63,11 +65,11 @@ TEST(Allocations, APolicyThatSeesTheGoalMaskActsWithoutAny) {
   instruction.selection.target = {{"heart"}, {"red"}};
 
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Silent log;
-  const Json options = {
-      {"epochs", 1}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
+  const Json options = {{"epochs", 1},    {"batch_size", 10},    {"learning_rate", 1e-3},
+                        {"loss", "norm"}, {"batch_norm", false}, {"policy", GetParam()}};
   Services services{lm, human, options, 0, log};
   const auto policy = MaskCloner().learn({{instruction, {{seen, {}}}}}, services);
 
@@ -77,6 +79,8 @@ TEST(Allocations, APolicyThatSeesTheGoalMaskActsWithoutAny) {
   EXPECT_EQ(allocations, before);
   EXPECT_EQ(to_vector(again), first);
 }
+
+INSTANTIATE_TEST_SUITE_P(Policies, Acting, testing::Values("regression", "centroid"));
 
 }  // namespace
 }  // namespace lgabench

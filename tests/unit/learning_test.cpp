@@ -211,7 +211,7 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
       {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
   options.update(changes);
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, seed, log};
@@ -319,6 +319,66 @@ TEST(Policies, MaskTheSelectionOfTheirInputsWhereThereIsOne) {
   EXPECT_THROW(trained.policy->act(here, other), MethodError) << "not silently the instruction's own";
 }
 
+TEST(Policies, TellWhetherTheirInputStoodInTraining) {
+  const auto data = demonstrations(10);
+  const Observation shown = data[3].steps[0].observation;
+  Observation star_moved = shown, moved = shown;
+  std::replace(star_moved.ids.begin(), star_moved.ids.end(), std::uint8_t{7}, std::uint8_t{0});
+  std::rotate(moved.ids.begin(), moved.ids.begin() + 7, moved.ids.end());
+  star_moved.rgb[0] ^= 1;
+  for (const char* policy : {"regression", "centroid"}) {
+    const Trained mask = learn({{Picture::mask}}, data, 1, 0, {{"policy", policy}});
+    EXPECT_EQ(mask.policy->seen_in_training(), std::nullopt) << "of no action yet";
+    act(mask, shown);
+    EXPECT_EQ(mask.policy->seen_in_training(), true);
+    act(mask, moved);
+    EXPECT_EQ(mask.policy->seen_in_training(), false);
+    act(mask, star_moved);
+    EXPECT_EQ(mask.policy->seen_in_training(), true) << "the star is not in the mask";
+  }
+  const Trained both = learn({{Picture::mask, Picture::rgb}, Text::utterance}, data, 1);
+  act(both, shown);
+  EXPECT_EQ(both.policy->seen_in_training(), true);
+  act(both, star_moved);
+  EXPECT_EQ(both.policy->seen_in_training(), false) << "another picture";
+  Instruction other = instruction();
+  other.utterance = "Bring me the heart.";
+  both.policy->act(shown, other);
+  EXPECT_EQ(both.policy->seen_in_training(), false) << "another text";
+}
+
+// A second red heart, the first in reading order.
+Observation with_another_heart(Observation o) {
+  o.instances.push_back({9, "heart", "red", 400});
+  for (int y = 0; y < 20; ++y) std::fill_n(o.ids.begin() + y * columns, 20, std::uint8_t{9});
+  return o;
+}
+
+TEST(Policies, MayBeShownTheFirstInstanceAlone) {
+  const auto data = demonstrations(10);
+  const Observation one = scene(30, 100, 80, 30), two = with_another_heart(one);
+  Observation first = two;
+  std::replace(first.ids.begin(), first.ids.end(), std::uint8_t{3}, std::uint8_t{0});
+  for (const char* policy : {"regression", "centroid"}) {
+    const Trained all = learn({{Picture::mask}}, data, 5, 0, {{"policy", policy}});
+    const Trained alone = learn({{Picture::mask}}, data, 5, 0, {{"policy", policy}, {"instances", "first"}});
+    EXPECT_EQ(act(alone, two), act(alone, first)) << policy;
+    EXPECT_NE(act(all, two), act(all, first)) << policy;
+    EXPECT_EQ(act(alone, one), act(all, one)) << policy;
+  }
+}
+
+TEST(Policies, OfCentroidsTakeTheMiddleOfTheMaskAndTrainNothing) {
+  const auto data = demonstrations(10);
+  const Trained centroid = learn({{Picture::mask, Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}});
+  EXPECT_TRUE(centroid.log.empty());
+  const Action action = centroid.policy->act(scene(10, 100, 80, 30), instruction());
+  EXPECT_NEAR(action.pose0.position_m.x, .25 + 30 / 256., 1e-6);
+  EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
+  EXPECT_NEAR(action.pose1.position_m.y, .3, 1e-6);
+  EXPECT_THROW(learn({{Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}}), InputError);
+}
+
 TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Trained trained = learn({{Picture::mask, Picture::rgb}, Text::utterance}, demonstrations(10), 5);
   const Observation probe = scene(10, 100, 80, 30);
@@ -341,11 +401,31 @@ TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {
   EXPECT_EQ(recovery.noise_max, .2);
   EXPECT_EQ(none.targets, Needs::Targets::truth);
   EXPECT_EQ(none.noisy_per_clean, 0);
-  EXPECT_THROW(needs("gcbc_dart", {{"dart", "posthoc"}}), InputError);
+  EXPECT_EQ(needs("gcbc_dart", {{"dart", "posthoc"}}).noisy_per_clean, 0) << "its noise needs no physics";
   EXPECT_EQ(needs("gcbc_seg", Json::object()).targets, Needs::Targets::truth);
   EXPECT_EQ(needs("gcbc_seg", Json::object()).noisy_per_clean, 0);
   EXPECT_EQ(needs("factorial", {{"scenes", "selected"}}).targets, Needs::Targets::selected);
   EXPECT_EQ(needs("factorial", {{"scenes", "truth"}}).targets, Needs::Targets::truth);
+}
+
+TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const auto refusal = [&](const char* id, const Json& overrides) -> std::string {
+    try {
+      resolve_options(catalogue.find("method", id), overrides);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  for (const char* id : {"lga", "lga_hill", "human", "lga_s", "factorial"})
+    EXPECT_EQ(refusal(id, {{"policy", "centroid"}, {"instances", "first"}}), "") << id;
+  for (const char* id : {"lga_l", "gcbc_dart", "gcbc_seg"})
+    EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
+  EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
+  EXPECT_NE(refusal("factorial", {{"policy", "centroid"}, {"input", "rgb"}})
+                .find(R"("centroid" needs input to be one of ["mask","true_mask","object_mask"], got "rgb")"),
+            std::string::npos);
 }
 
 // With a truth that is not what the language model selects, each input shows itself by what moves the action.
@@ -362,10 +442,10 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
     const char* input;
     bool star, heart;  // whether the action follows it
   };
-  for (const auto& [input, star, heart] :
-       {Case{"mask", false, true}, Case{"true_mask", true, false}, Case{"rgb", true, true}}) {
+  for (const auto& [input, star, heart] : {Case{"mask", false, true}, Case{"true_mask", true, false},
+                                           Case{"object_mask", true, true}, Case{"rgb", true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
-    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+    RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human({{scenario.commands[0].utterance, blue_stars}});
     Lines log;
     Services services{lm, human, options, 0, log};
@@ -394,7 +474,7 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const Scenario scenario = load_scenario("red_heart");
   const PluginInfo& plugin = catalogue.find("method", GetParam().id);
   const Json options = resolve_options(plugin, {{"epochs", 3}});
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, 0, log};
@@ -414,6 +494,29 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
   EXPECT_EQ(action(probe) != action(star_moved), GetParam().star);
   EXPECT_EQ(action(probe) != action(heart_moved), GetParam().heart);
+}
+
+// Of gcbc_dart with this option, on ten demonstrations of one step: batches of ten rows.
+long long steps_of_a_pass(const char* dart, std::uint64_t seed, std::vector<double>* losses = nullptr) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const PluginInfo& plugin = catalogue.find("method", "gcbc_dart");
+  const Scenario scenario = load_scenario("heart");
+  const Json options = resolve_options(plugin, {{"epochs", 1}, {"dart", dart}});
+  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  Services services{lm, human, options, seed, log};
+  load_method(plugin)->learn(demonstrations(10), services);
+  if (losses) losses->push_back(log.lines.back().loss);
+  return log.lines.back().steps;
+}
+
+TEST(GcbcDart, PosthocTrainsOnFiveNoisyCopiesBesideEachDemonstration) {
+  std::vector<double> losses;
+  EXPECT_EQ(steps_of_a_pass("none", 0), 1);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(losses[0], losses[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,

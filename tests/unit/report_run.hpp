@@ -49,6 +49,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell stands on
     double human_seconds = 0;                              // of each command
+    int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
@@ -142,16 +143,16 @@ class FabricatedRun : public TemporaryDirectory {
     for (const Arm& arm : s.all_arms())
       for (std::size_t i = 0; i < 20; ++i) {
         const bool won = static_cast<int>(i) < arm.won;
-        episodes +=
-            canonical({{"arm", arm.name},
-                       {"index", i},
-                       {"command", arm.commands[i % arm.commands.size()]},
-                       {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
-                       {"success", won},
-                       {"failure", won ? "none" : s.failure},
-                       {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
-                       {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
-            '\n';
+        Json episode{{"arm", arm.name},
+                     {"index", i},
+                     {"command", arm.commands[i % arm.commands.size()]},
+                     {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
+                     {"success", won},
+                     {"failure", won ? "none" : s.failure},
+                     {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
+                     {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}};
+        if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
+        episodes += canonical(episode) + '\n';
       }
     for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
     const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},

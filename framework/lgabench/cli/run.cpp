@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
@@ -15,7 +16,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, answers = "recorded", humans, out, cache, shard = "1/1";
+  std::string suite, preset, answers = "recorded", truth = "released", humans, out, cache, shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
@@ -110,7 +111,7 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
 int run(const Arguments& a) {
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
-  Variation variation{a.answers, options_of(a.settings), !a.no_reference};
+  Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
@@ -118,6 +119,8 @@ int run(const Arguments& a) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
+  } else {
+    check_recorded(a.answers, grid.scenarios);
   }
   if (!a.humans.empty())
     for (AnswerFile& file : read_participants(a.humans, variation.participants))
@@ -130,6 +133,7 @@ int run(const Arguments& a) {
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
                        {"answers", variation.answers},
+                       {"truth", a.truth},
                        {"participants", participant_hashes(variation.participants)},
                        {"set", variation.options},
                        {"references", variation.references},
@@ -200,16 +204,24 @@ void add_run(CLI::App& app, int& exit) {
                    "preset's options, after a row's own; may be given again")
       ->take_all();
   verb->add_option("--answers", a->answers,
-                   "Which language model answered; recorded: GPT-4 where it was asked, else Claude; gpt4, claude: that "
-                   "one alone; cassette:FILE: the replies of a server's model, as lgabench select --suite keeps them")
+                   "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
+                   "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
+                   "as lgabench select --suite keeps them")
       ->check([](const std::string& word) {
-        const bool known =
-            word == "recorded" || word == "gpt4" || word == "claude" || word.rfind(cassette_prefix, 0) == 0;
-        return known ? "" : "expected recorded, gpt4, claude or cassette:FILE, got " + word;
+        const std::vector<std::string> sources = recorded_sources();
+        const bool known = word == "recorded" || word.rfind(cassette_prefix, 0) == 0 ||
+                           std::find(sources.begin(), sources.end(), word) != sources.end();
+        return known ? ""
+                     : fmt::format("expected recorded, {} or cassette:FILE, got {}", fmt::join(sources, ", "), word);
       })
       ->capture_default_str();
+  verb->add_option("--truth", a->truth,
+                   "The true distributions: those that the paper's authors released with their code, or those printed "
+                   "in its appendix, where they differ")
+      ->check(CLI::IsMember({"released", "printed"}))
+      ->capture_default_str();
   verb->add_option("--humans", a->humans,
-                   "A directory of participants' .json files: human and lga_hill then have a cell for each of them");
+                   "A directory of participants' .json files: methods that ask people then have a cell for each");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(

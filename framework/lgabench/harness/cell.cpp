@@ -98,7 +98,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
     given.update(layer_for(info, settings));
     usual[info.id] = check_options(info, JsonReader(given, info.id));
     given.update(own_options(grid.methods[i]));
-    methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given)});
+    methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});
     for (const Competitor& other : methods)
       if (other.id == info.id)
         for (const auto& [option, value] : other.options.items())
@@ -122,9 +122,9 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
 // Those whose answers the method stands on in this scenario; one that is nobody where it asks no people, or where the
 // truth stands in for them.
 using Answering = std::vector<std::optional<CellParticipant>>;
-Answering participants(const std::string& method, const Scenario& scenario, const std::vector<Participant>& all) {
-  if (all.empty() || (method != "human" && method != "lga_hill")) return {std::nullopt};
-  const auto how = method == "human" ? &Participant::Answer::specified : &Participant::Answer::edited;
+Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {
+  if (all.empty() || (method.asks != "specify" && method.asks != "edit")) return {std::nullopt};
+  const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
     if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
@@ -181,6 +181,7 @@ Json to_json(const Cell& cell) {
             {"answers", cell.answers},
             {"data", cell.data},
             {"smoke", cell.smoke}};
+  if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
   return json;
 }
@@ -190,7 +191,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
                "scene_seed", "test_scenes", "episodes", "answers", "participant", "data", "smoke"});
   const JsonReader method = reader.at("method");
-  method.only({"kind", "id", "name", "version", "options"});
+  method.only({"kind", "id", "name", "version", "options", "asks"});
   constexpr long long most = std::numeric_limits<int>::max();
 
   Cell cell;
@@ -202,6 +203,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.engine = reader.at("engine").string();
   cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),
                  method.at("version").string(), method.at("options").json()};
+  if (method.has("asks")) cell.method.asks = method.at("asks").string();
   if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = seed_at(reader.at("training_seed"));
@@ -236,7 +238,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
-    const Scenario scenario = with_arms(load_scenario(id), suite);
+    const Scenario scenario = with_arms(load_scenario(id, variation.truth), suite);
     if (scenario.environment != suite.environment)
       throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
                                    scenario.environment, suite.environment));
@@ -254,7 +256,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       cell.method = method;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
-      for (const auto& participant : participants(method.id, scenario, variation.participants)) {
+      for (const auto& participant : participants(method, scenario, variation.participants)) {
         cell.participant = participant;
         cells.push_back(cell);
       }

@@ -20,6 +20,7 @@ struct Competitor {
   std::string name;  // its row's: the id, and what tells it from the run's other rows of that id (see expand())
   std::string version;
   Json options = Json::object();  // every option, defaults included
+  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
 
   bool is_reference() const { return kind == "reference"; }
 };
@@ -38,7 +39,7 @@ struct Cell {
   std::uint64_t training_seed = 0, scene_seed = 0;
   std::string test_scenes = "shared";  // as Grid::test_scenes
   int episodes = 0;
-  std::string answers;                         // recorded, gpt4, claude, or "cassette:" and the cassette's SHA-256
+  std::string answers;                         // recorded, one of recorded_sources(), or "cassette:" and its SHA-256
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
@@ -62,14 +63,15 @@ Json data_hashes(const Scenario& scenario);
 
 /// What is not on the grid.
 struct Variation {
-  std::string answers = "recorded";         // as Cell::answers
-  Json options = Json::object();            // as Grid::options, before which they go
-  bool references = true;                   // add the reference rows
+  std::string answers = "recorded";  // as Cell::answers
+  Json options = Json::object();     // as Grid::options, before which they go
+  bool references = true;            // add the reference rows
+  Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
-/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of human or
-/// lga_hill for each one who specified, or edited, all commands of the scenario; for none, where nobody did.
+/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
+/// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// An option's value is the first that is given by: the row itself, the variation for its id, the variation for "*",
 /// the grid for its id, the grid for "*", the plugin's default.
 /// A row is named by its id, followed by "+option=value" (sorted) for each option in which the grid's rows of that id

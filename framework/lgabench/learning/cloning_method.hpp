@@ -16,7 +16,25 @@
   R"("source": "norm: released code; squared: paper"},)"                                                           \
   R"("batch_norm": {"default": false, "help": "batch normalisation before each ReLU", "source": "true: paper"})"
 
+/// Those of a method whose policy sees a goal mask, beside the former.
+#define LGABENCH_MASK_OPTIONS                                                                                    \
+  R"("instances": {"default": "all", "values": ["all", "first"], )"                                              \
+  R"("help": "of several visible instances that match one role: all in the mask, or the first, row by row",)"    \
+  R"("source": "all: PROTOCOL; first: paper, section 3.2, 'an unambiguous abstract state'"},)"                   \
+  R"("policy": {"default": "regression", "values": ["regression", "centroid"], )"                                \
+  R"("help": "a network; or, untrained, the centroid of the target set's own plane, an input that the network )" \
+  R"(lacks, and the demonstrations' means: other options of training and pictures do nothing then",)"            \
+  R"("source": "regression: paper; centroid: not the paper's"})"
+
+/// Those of a method whose policy sees none, in their place: it says why it lacks them.
+#define LGABENCH_NO_MASK_OPTIONS                                      \
+  R"("policy": {"default": "regression", "values": ["regression"], )" \
+  R"("help": "centroid needs a goal mask, which this method lacks", "source": "regression: paper"})"
+
 namespace lgabench {
+
+struct NetworkShape;
+struct Samples;
 
 /// The pictures and the text that a policy is given. Each picture gets a tower of its own.
 struct PolicyInputs {
@@ -24,7 +42,7 @@ struct PolicyInputs {
   enum class Picture {
     mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
     rgb,          // 3 channels
-    segmentation  // 1 channel: 1 on any object
+    segmentation  // 1 channel: 1 on any object but those of the type `left_out`
   };
   std::vector<Picture> pictures;
   /// One sentence embedding of 384 numbers.
@@ -37,6 +55,7 @@ struct PolicyInputs {
   /// Utterance -> the Selection that its mask is made of in place of the instruction's. Empty, or with every utterance
   /// that will be given. Held by value: the policy keeps it when the method is gone.
   std::map<std::string, Selection> masks{};
+  std::string left_out{};  // "": nothing
 };
 
 /// A subclass overrides select(), inputs() if its network sees more or other things than the goal mask, and needs() if
@@ -44,13 +63,18 @@ struct PolicyInputs {
 class CloningMethod : public Method {
  public:
   Needs needs(const Json&) const override { return {}; }
-  /// Trains on every step of every demonstration. @throws InputError for a text without a sentence embedding,
-  /// where the encoder's weights are not there.
+  /// Trains on every step of every demonstration, or fits the CentroidRule where the option `policy` says so. The
+  /// policy tells whether an input, to the byte, stood in training (of the centroid: a picture of roles). @throws
+  /// InputError for a text without a sentence embedding, where the encoder's weights are not there; for policy=centroid
+  /// without a mask among inputs().
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
  protected:
   /// What the network sees; the goal mask alone unless a subclass says otherwise. `options` as in Services.
   virtual PolicyInputs inputs(const Json& /*options*/) const { return {{PolicyInputs::Picture::mask}}; }
+  /// What the network of that shape is trained on, made of `clean`: a row for each step of each demonstration, in their
+  /// order. Those rows alone unless a subclass adds others.
+  virtual Samples training_rows(Samples clean, const NetworkShape& shape, const Services& services) const;
 };
 
 }  // namespace lgabench

@@ -15,6 +15,10 @@ const char* type_of(const Json& value) {
   return "a number";
 }
 
+bool contains(const Json& values, const Json& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
 }  // namespace
 
 Json option_value(const std::string& word) {
@@ -39,8 +43,8 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
     if (!same_type) given.at(name).fail(type_of(usual));
     if (option.contains("values")) {
       const Json& values = option.at("values");
-      if (std::find(values.begin(), values.end(), value) == values.end())
-        given.at(name).fail("one of " + canonical(values));
+      if (!contains(values, value))
+        given.at(name).fail(fmt::format("one of {} ({})", canonical(values), option.at("help").get<std::string>()));
     }
     if (option.contains("min") && value.get<double>() < option.at("min").get<double>())
       given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));
@@ -50,7 +54,18 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
 }
 
 Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
-  return check_options(plugin, JsonReader(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id)));
+  const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
+  Json resolved = check_options(plugin, JsonReader(overrides, owner));
+  for (const auto& [name, option] : plugin.options.items()) {
+    const Json& value = resolved[name];
+    if (!option.contains("needs") || !value.is_string()) continue;
+    const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
+    for (const auto& [other, values] : needs.items())
+      if (!contains(values, resolved[other]))
+        throw InputError(fmt::format("{}: /{}: {} needs {} to be one of {}, got {}", owner, name, canonical(value),
+                                     other, canonical(values), canonical(resolved[other])));
+  }
+  return resolved;
 }
 
 }  // namespace lgabench

@@ -23,11 +23,11 @@ Json pixel(double x_m, double y_m) {
 }
 
 std::string title_of(const Table& table, const Row& row) {
-  return fmt::format("{}, {}, {} demonstrations, arm {}, {}", display_name(row.method), table.title(row.scenario),
-                     row.demonstrations, row.arm, table.title());
+  return fmt::format("{}, {}, {}, arm {}, {}", display_name(row.method), table.title(row.scenario),
+                     table.demonstrations_text(row.demonstrations), row.arm, table.title());
 }
 
-// The rows that each (cell, arm) counts in: its scenario's and the mean's.
+// The rows that each (cell, arm) counts in: its scenario's, and the mean's of an arm that every scenario plays.
 using Place = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
 Place place(const std::string& layout, const std::string& engine, const std::string& arm, const std::string& scenario,
             const std::string& method, int n) {
@@ -73,11 +73,13 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
           actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
-      const auto row = [&](const std::string& scenario) {
-        return rows.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
-      };
+      Json counted_in = Json::array();
+      for (const std::string& scenario : {cell.scenario, std::string(mean_scenario)}) {
+        const auto row = rows.find(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
+        if (row != rows.end()) counted_in.push_back(row->second);
+      }
       played.push_back({{"arm", arm},
-                        {"rows", {row(cell.scenario), row(mean_scenario)}},
+                        {"rows", counted_in},
                         {"scenes", shared},
                         {"commands", given},
                         {"outcomes", outcomes},
