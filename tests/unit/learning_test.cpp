@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <lgabench/abstraction/human.hpp>
@@ -102,7 +103,7 @@ TEST(Losses, ArePlainNumbersAndTheNormsSubgradientAtZeroIsZero) {
 }
 
 TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
-  Network network({{1}, false, false}, 11);
+  Network network({{1}, false, Architecture::plain}, 11);
   struct Range {
     int count, fan_in;
   };
@@ -122,17 +123,100 @@ TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
   EXPECT_EQ(value, parameters.end());
 }
 
+// The linear weights of `released`, which stand last: a matrix and its biases, as often as `outs` names one.
+TEST(Network, ReleasedStartsWithOrthonormalLinearLayersWithoutBias) {
+  struct Matrix {
+    int outs, ins;
+  };
+  for (const auto& [shape, matrices] :
+       {std::pair(NetworkShape{{1}, false, Architecture::released}, std::vector<Matrix>{{12, 160}}),
+        std::pair(NetworkShape{{1, 3}, true, Architecture::released},
+                  std::vector<Matrix>{{100, 160}, {100, 160}, {100, 584}, {12, 100}})}) {
+    const std::vector<float> parameters = Network(shape, 11).parameters();
+    EXPECT_EQ(parameters, Network(shape, 11).parameters());
+    EXPECT_NE(parameters, Network(shape, 12).parameters());
+    auto row = parameters.end();
+    for (const auto [outs, ins] : matrices) row -= outs * (ins + 1);
+    for (const auto [outs, ins] : matrices) {
+      double sum = 0;
+      for (int i = 0; i < outs; ++i)
+        for (int j = 0; j <= i; ++j)
+          EXPECT_NEAR(std::inner_product(row + i * ins, row + (i + 1) * ins, row + j * ins, 0.), i == j, 1e-6);
+      for (auto weight = row; weight != row + outs * ins; ++weight) sum += *weight;
+      EXPECT_LT(std::abs(sum), 4 * std::sqrt(outs))
+          << "standard deviation of an orthonormal matrix's sum: root of outs";
+      row += outs * ins;
+      EXPECT_EQ(std::vector<float>(row, row + outs), std::vector<float>(static_cast<std::size_t>(outs)));
+      row += outs;
+    }
+  }
+}
+
+// All samples the same: a variance of 0 in the last convolution, and in channels that are dead.
+TEST(Network, StaysFiniteWhereABatchHasNoVariance) {
+  for (const Architecture architecture : {Architecture::text, Architecture::released}) {
+    const NetworkShape shape{{1}, false, architecture};
+    Network network(shape, 1);
+    std::vector<float> parameters = network.parameters();
+    // All weights 0 leaves every convolution its bias, half of them below 0.
+    for (std::size_t i = 0; i < 2048; ++i) parameters[i] = 0;
+    network.set_parameters(parameters);
+    Samples samples(shape, 10);
+    for (float& label : samples.labels) label = .5f;
+    for (int step = 0; step < 50; ++step) {
+      ASSERT_TRUE(std::isfinite(network.backward(samples, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, Loss::norm))) << step;
+      network.update(1e-3);
+    }
+    for (const float number : network.predict(samples)) EXPECT_TRUE(std::isfinite(number));
+  }
+}
+
+TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
+  Samples samples({{1, 3}}, 7);
+  RandomStream random("usual");
+  for (std::size_t t = 0; t < 2; ++t) {
+    std::vector<float> expected(samples.usual[t].size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expected[i] = static_cast<float>(random.uniform());
+      const std::vector<int> order = random.permutation(7);
+      for (std::size_t row = 0; row < 7; ++row)
+        samples.pictures[t][row * expected.size() + i] =
+            order[row] < 4 ? expected[i] : static_cast<float>(random.uniform());
+    }
+    samples.find_usual();
+    EXPECT_EQ(samples.usual[t], expected);
+  }
+}
+
 TEST(BatchOrder, IsAnotherPermutationInEveryPassAndForEverySeed) {
   std::set<std::vector<int>> orders;
   for (const std::uint64_t seed : {0u, 1u})
     for (int epoch = 1; epoch <= 5; ++epoch) {
-      std::vector<int> order = batch_order(seed, epoch, 50);
-      EXPECT_EQ(order, batch_order(seed, epoch, 50));
+      std::vector<int> order = batch_order(Batches::shuffled, seed, epoch, 50);
+      EXPECT_EQ(order, batch_order(Batches::shuffled, seed, epoch, 50));
       orders.insert(order);
       std::sort(order.begin(), order.end());
       for (int i = 0; i < 50; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
     }
   EXPECT_EQ(orders.size(), 10u);
+}
+
+TEST(BatchOrder, DrawnIsUniformWithReplacement) {
+  std::vector<int> counts(50);
+  std::set<std::vector<int>> orders;
+  int different = 0;
+  for (int epoch = 1; epoch <= 200; ++epoch) {
+    const std::vector<int> order = batch_order(Batches::drawn, 3, epoch, 50);
+    ASSERT_EQ(order.size(), 50u);
+    EXPECT_EQ(order, batch_order(Batches::drawn, 3, epoch, 50));
+    EXPECT_NE(order, batch_order(Batches::drawn, 4, epoch, 50));
+    orders.insert(order);
+    for (const int sample : order) ++counts.at(static_cast<std::size_t>(sample));
+    different += static_cast<int>(std::set<int>(order.begin(), order.end()).size());
+  }
+  EXPECT_EQ(orders.size(), 200u);
+  EXPECT_NEAR(different / 200., 50 * (1 - std::pow(.98, 50)), 1);  // 31.8
+  for (const int count : counts) EXPECT_NEAR(count, 200, 60);      // more than four standard deviations
 }
 
 struct Lines : TrainingLog {
@@ -207,8 +291,8 @@ struct Trained {
 
 Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, int epochs, std::uint64_t seed = 0,
               const Json& changes = Json::object()) {
-  Json options = {
-      {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
+  Json options = {{"epochs", epochs}, {"batch_size", 10},      {"learning_rate", 1e-3},
+                  {"loss", "norm"},   {"batches", "shuffled"}, {"network", "text"}};
   options.update(changes);
   const Scenario scenario = load_scenario("red_heart");
   RecordedLanguageModel lm(scenario, scenario.recorded);
@@ -266,8 +350,9 @@ TEST(Training, OptionsChangeWhatIsLearned) {
   const PolicyInputs seen{{Picture::mask}};
   const Observation probe = scene(10, 100, 80, 30);
   const ActionVector usual = act(learn(seen, data, 5), probe);
-  for (const Json& change : {Json{{"loss", "squared"}}, Json{{"batch_norm", true}}, Json{{"learning_rate", 2e-3}},
-                             Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
+  for (const Json& change :
+       {Json{{"loss", "squared"}}, Json{{"network", "plain"}}, Json{{"network", "released"}},
+        Json{{"batches", "drawn"}}, Json{{"learning_rate", 2e-3}}, Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
     EXPECT_NE(act(learn(seen, data, 5, 0, change), probe), usual) << change;
 }
 
@@ -424,7 +509,7 @@ TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
     EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
   EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
   EXPECT_NE(refusal("factorial", {{"policy", "centroid"}, {"input", "rgb"}})
-                .find(R"("centroid" needs input to be one of ["mask","true_mask","object_mask"], got "rgb")"),
+                .find(R"(one of ["mask","true_mask","object_mask"], which policy=centroid needs, got "rgb")"),
             std::string::npos);
 }
 
@@ -502,7 +587,7 @@ long long steps_of_a_pass(const char* dart, std::uint64_t seed, std::vector<doub
   const PluginInfo& plugin = catalogue.find("method", "gcbc_dart");
   const Scenario scenario = load_scenario("heart");
   const Json options = resolve_options(plugin, {{"epochs", 1}, {"dart", dart}});
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, seed, log};
@@ -517,6 +602,28 @@ TEST(GcbcDart, PosthocTrainsOnFiveNoisyCopiesBesideEachDemonstration) {
   EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
   EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
   EXPECT_EQ(losses[0], losses[1]);
+}
+
+// rgb makes LGA's input that of LGA-S: the same actions to the bit.
+TEST(ShippedMethodsOptions, PictureGivesTheMasksMethodsTheInputOfLgaS) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const Scenario scenario = load_scenario("red_heart");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  const Observation probe = scene(10, 100, 80, 30);
+  const auto action = [&](const char* id, Json overrides) {
+    overrides["epochs"] = 3;
+    const PluginInfo& plugin = catalogue.find("method", id);
+    const Json options = resolve_options(plugin, overrides);
+    Services services{lm, human, options, 0, log};
+    return to_vector(load_method(plugin)->learn(demonstrations(10), services)->act(probe, instruction()));
+  };
+  const ActionVector both = action("lga_s", Json::object());
+  for (const char* id : {"lga", "lga_hill", "human"}) {
+    EXPECT_EQ(action(id, {{"picture", "rgb"}}), both) << id;
+    EXPECT_NE(action(id, Json::object()), both) << id;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,

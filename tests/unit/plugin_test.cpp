@@ -185,7 +185,7 @@ TEST(Options, AValueMayNeedAnotherOptions) {
   EXPECT_SAYS(message_of<InputError>([&] {
                 resolve_options(info, {{"see", "rgb"}, {"way", "centroid"}});
               }),
-              R"(options of method m: /way: "centroid" needs see to be one of ["mask","all"], got "rgb")");
+              R"(options of method m: /see: expected one of ["mask","all"], which way=centroid needs, got "rgb")");
 }
 
 TEST(Options, APluginWithoutOptionsSaysSo) {

@@ -35,13 +35,13 @@ Json row_of(const Json& summary, const std::string& scenario, const std::string&
 TEST(Summary, VariantsOfAMethodAreRowsOfTheirOwn) {
   FabricatedRun run;
   run.add({"lga", 15});
-  run.add({"lga+batch_norm=true+learning_rate=1e+30", 5});
+  run.add({"lga+learning_rate=1e+30+network=released", 5});
   run.add({"gcbc_dart", 2});
   const Json summary = summary_of(run);
   EXPECT_EQ(row_of(summary, "heart", "lga").at("successes"), 15);
-  EXPECT_EQ(row_of(summary, "heart", "lga+batch_norm=true+learning_rate=1e+30").at("successes"), 5);
+  EXPECT_EQ(row_of(summary, "heart", "lga+learning_rate=1e+30+network=released").at("successes"), 5);
   const std::string text = table_text(run.path);
-  const std::size_t variant = text.find("LGA batch_norm=true learning_rate=1e+30");
+  const std::size_t variant = text.find("LGA learning_rate=1e+30 network=released");
   EXPECT_LT(text.find("  LGA  "), variant);
   EXPECT_LT(variant, text.find("GCBC-DART")) << "a variant stands with its method";
 }

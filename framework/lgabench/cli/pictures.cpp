@@ -63,7 +63,8 @@ class Pictures {
         seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
-      const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
+      const auto mask = goal_mask(perceived, read_distribution(selection.at("distribution"), played.scenario.space),
+                                  selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     return {{"picture", picture_of(seen)},

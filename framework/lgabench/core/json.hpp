@@ -28,6 +28,7 @@ class JsonReader {
 
   /// The value as it is; belongs to the document.
   const Json& json() const { return value_; }
+  const std::string& file() const { return file_; }
   /// Its JSON pointer in the file.
   const std::string& place() const { return place_; }
   /// It is an object with that member.

@@ -22,11 +22,11 @@ class Featurizer {
     if (has_text()) embeddings_ = std::make_shared<SentenceEmbeddings>();
   }
 
-  NetworkShape shape(bool batch_norm) const {
+  NetworkShape shape(Architecture architecture) const {
     NetworkShape shape;
     for (const Picture picture : inputs_.pictures) shape.channels.push_back(picture == Picture::rgb ? 3 : 1);
     shape.text = has_text();
-    shape.batch_norm = batch_norm;
+    shape.architecture = architecture;
     return shape;
   }
 
@@ -166,9 +166,20 @@ class CloningPolicy : public Policy {
   Samples input_;
 };
 
+Architecture architecture_of(const std::string& network) {
+  if (network == "plain") return Architecture::plain;
+  return network == "released" ? Architecture::released : Architecture::text;
+}
+
 }  // namespace
 
 Samples CloningMethod::training_rows(Samples clean, const NetworkShape&, const Services&) const { return clean; }
+
+PolicyInputs CloningMethod::inputs(const Json& options) const {
+  PolicyInputs inputs{{Picture::mask}};
+  if (options.value("picture", "none") == "rgb") inputs.pictures.push_back(Picture::rgb);
+  return inputs;
+}
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const JsonReader options(services.options, "options");
@@ -178,13 +189,15 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   training.learning_rate = options.at("learning_rate").number();
   training.loss = options.at("loss").string() == "squared" ? Loss::squared : Loss::norm;
 
+  training.batches = options.at("batches").string() == "drawn" ? Batches::drawn : Batches::shuffled;
+
   // A method without a mask, or not of this library, may lack both options.
   const auto chosen = [&options](const char* name, const char* value) {
     return options.has(name) && options.at(name).string() == value;
   };
   Featurizer featurizer(inputs(services.options), chosen("instances", "first") ? Instances::first : Instances::all);
   if (chosen("policy", "centroid")) return std::make_unique<CentroidPolicy>(std::move(featurizer), demonstrations);
-  const NetworkShape shape = featurizer.shape(options.at("batch_norm").boolean());
+  const NetworkShape shape = featurizer.shape(architecture_of(options.at("network").string()));
   int rows = 0;
   for (const Demonstration& demonstration : demonstrations) rows += static_cast<int>(demonstration.steps.size());
   Samples samples(shape, rows);
@@ -198,7 +211,9 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
     }
 
   auto policy = std::make_unique<CloningPolicy>(featurizer, shape, services.seed);
-  const Samples shown = training_rows(std::move(samples), shape, services);
+  Samples shown = training_rows(std::move(samples), shape, services);
+  // `plain` keeps the bits that earlier versions gave it.
+  if (shape.architecture != Architecture::plain) shown.find_usual();
   for (int i = 0; i < shown.rows; ++i) policy->seen.learn(hash_of(shown, i));
   train(policy->network, shown, training, services.seed, services.log);
   return policy;

@@ -14,7 +14,18 @@
   R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "PROTOCOL, section 5"},)"          \
   R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)"   \
   R"("source": "norm: released code; squared: paper"},)"                                                           \
-  R"("batch_norm": {"default": false, "help": "batch normalisation before each ReLU", "source": "true: paper"})"
+  R"("batches": {"default": "shuffled", "values": ["shuffled", "drawn"],)"                                         \
+  R"("help": "each sample once a pass, or each batch drawn with replacement",)"                                    \
+  R"("source": "drawn: released code"},)"                                                                          \
+  R"("network": {"default": "text", "values": ["text", "released", "plain"],)"                                     \
+  R"("help": "batch normalisation before each ReLU, after it, or none",)"                                          \
+  R"("source": "text: paper, appendix; released: released code"})"
+
+/// One more, of methods that see the goal mask alone unless it is asked for: options as in Services say whether the
+/// picture has a tower beside the mask's.
+#define LGABENCH_PICTURE_OPTION                                                                       \
+  R"("picture": {"default": "none", "values": ["none", "rgb"], "help": "seen beside the goal mask",)" \
+  R"("source": "rgb: paper, appendix"})"
 
 /// Those of a method whose policy sees a goal mask, beside the former.
 #define LGABENCH_MASK_OPTIONS                                                                                    \
@@ -70,8 +81,9 @@ class CloningMethod : public Method {
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
  protected:
-  /// What the network sees; the goal mask alone unless a subclass says otherwise. `options` as in Services.
-  virtual PolicyInputs inputs(const Json& /*options*/) const { return {{PolicyInputs::Picture::mask}}; }
+  /// What the network sees; the goal mask, and the picture where the method has the option `picture` and it says so,
+  /// unless a subclass says otherwise. `options` as in Services.
+  virtual PolicyInputs inputs(const Json& options) const;
   /// What the network of that shape is trained on, made of `clean`: a row for each step of each demonstration, in their
   /// order. Those rows alone unless a subclass adds others.
   virtual Samples training_rows(Samples clean, const NetworkShape& shape, const Services& services) const;

@@ -62,8 +62,9 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
     const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
     for (const auto& [other, values] : needs.items())
       if (!contains(values, resolved[other]))
-        throw InputError(fmt::format("{}: /{}: {} needs {} to be one of {}, got {}", owner, name, canonical(value),
-                                     other, canonical(values), canonical(resolved[other])));
+        JsonReader(resolved, given.file(), given.place())
+            .at(other)
+            .fail(fmt::format("one of {}, which {}={} needs", canonical(values), name, value.get<std::string>()));
   }
   return resolved;
 }

@@ -27,7 +27,7 @@ std::string title_of(const Table& table, const Row& row) {
                      table.demonstrations_text(row.demonstrations), row.arm, table.title());
 }
 
-// The rows that each (cell, arm) counts in: its scenario's, and the mean's of an arm that every scenario plays.
+// The rows that each (cell, arm) counts in: its scenario's and the mean's.
 using Place = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
 Place place(const std::string& layout, const std::string& engine, const std::string& arm, const std::string& scenario,
             const std::string& method, int n) {
@@ -54,7 +54,9 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
       // What follows the scene's hash in the names of pictures.masks.
-      masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", command.selection)));
+      masks.push_back(command.quality.is_null()
+                          ? Json()
+                          : Json(mask_key("", command.selection, cell.options.value("instances", "all"))));
     }
     Json played = Json::array();
     for (const std::string& arm : cell.arms) {
@@ -73,13 +75,11 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
           actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
-      Json counted_in = Json::array();
-      for (const std::string& scenario : {cell.scenario, std::string(mean_scenario)}) {
-        const auto row = rows.find(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
-        if (row != rows.end()) counted_in.push_back(row->second);
-      }
+      const auto row = [&](const std::string& scenario) {
+        return rows.at(place(cell.layout, cell.engine, arm, scenario, cell.method, cell.demonstrations));
+      };
       played.push_back({{"arm", arm},
-                        {"rows", counted_in},
+                        {"rows", {row(cell.scenario), row(mean_scenario)}},
                         {"scenes", shared},
                         {"commands", given},
                         {"outcomes", outcomes},

@@ -102,10 +102,10 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.engine = reader.at("engine").string();
   cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
+  if (method.has("asks")) cell.asks = method.at("asks").string();
   cell.id = method.at("id").string();
   cell.options = method.at("options").json();
   if (!cell.options.is_object()) method.at("options").fail("an object");
-  if (method.has("asks")) cell.asks = method.at("asks").string();
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();

@@ -273,19 +273,14 @@ Table make_table(const Cells& cells) {
     std::map<Place, std::vector<const Draft*>> over_scenarios;
     std::vector<Draft> drafts;
     drafts.reserve(cells.size());  // as many rows at most: pointers to them stay valid
-    bool played_by_all = true;
     for (const std::string& scenario : scenarios)
       for (const auto& [place, seeds] : grouped[scenario]) {
         const std::vector<std::string>& played = seeds.front()->arms;
-        if (std::find(played.begin(), played.end(), arm) == played.end()) {
-          played_by_all = false;
-          continue;
-        }
+        if (std::find(played.begin(), played.end(), arm) == played.end()) continue;
         drafts.push_back(scenario_draft(seeds, arm, table.arms.front()));
         over_scenarios[place].push_back(&drafts.back());
         table.rows.push_back(drafts.back().row);
       }
-    if (!played_by_all) continue;
     for (const auto& [place, rows] : over_scenarios)
       table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
   }

@@ -47,8 +47,8 @@ struct Row {
   int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
 };
 
-/// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last,
-/// which arms have that every scenario plays; methods, reference rows last; demonstrations ascending.
+/// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;
+/// methods, reference rows last; demonstrations ascending.
 struct Table {
   std::string layout, engine;
   std::vector<std::string> arms;
