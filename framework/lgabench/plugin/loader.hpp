@@ -67,7 +67,7 @@ Json option_value(const std::string& word);
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values, and
 /// for one whose needs of other options are not met.
 Json resolve_options(const PluginInfo& plugin, const Json& overrides);
-/// Likewise of an object that need not be all that is given: its options one by one, each complaint with its place.
+/// Likewise of an object that need not be all that is given: its options one by one, without their needs.
 Json check_options(const PluginInfo& plugin, const JsonReader& given);
 
 }  // namespace lgabench
