@@ -191,7 +191,7 @@ TEST(Html, SaysWhatAReaderMustKnow) {
        {"Smoke or limited run: not for the leaderboard.", "1 of 27 cells have not run yet", "† baseline not learned",
         "‡ incomplete", "Human: true φ̂: an upper bound, no human data.", "= same actions as in control",
         "signal 11 (Segmentation fault) in phase learn", "last words", "a language model's recorded answers", "gpt-4",
-        "“fetch | heart”", "Failures laid to abstraction or policy", "<th scope=col>demonstrate</th>", "a processor"})
+        "“fetch | heart”", "Failures attributed to abstraction or policy", "<th scope=col>demonstrate</th>", "a processor"})
     EXPECT_SAYS(page, note);
   // No scene of a fabricated run can be drawn.
   EXPECT_SAYS(page, "No pictures of scenes: ");

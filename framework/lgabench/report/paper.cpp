@@ -23,9 +23,13 @@ void read_curves(const JsonReader& figure, PaperValues& values) {
   const auto demonstrations = figure.at("demonstrations").elements();
   for (const auto& item : figure.json().items()) {
     if (item.key() == "demonstrations") continue;
-    const std::vector<double> means = rates(figure.at(item.key()).at("mean"), demonstrations.size());
-    for (std::size_t i = 0; i < means.size(); ++i)
-      values.rates[mean_scenario][item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = means[i];
+    const JsonReader curve = figure.at(item.key());
+    for (const auto& [member, of] : {std::pair("mean", &values.rates), {"err", &values.errors}}) {
+      if (curve.at(member).json().is_null()) continue;
+      const std::vector<double> numbers = rates(curve.at(member), demonstrations.size());
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        (*of)[mean_scenario][item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = numbers[i];
+    }
   }
 }
 
@@ -41,14 +45,14 @@ void read_bars(const JsonReader& figure, const std::vector<std::string>& ids, Pa
 
 }  // namespace
 
-std::optional<double> PaperValues::find(const std::string& scenario, const std::string& method,
-                                        int demonstrations) const {
-  const auto methods = rates.find(scenario);
-  if (methods == rates.end()) return std::nullopt;
-  const auto values = methods->second.find(method);
-  if (values == methods->second.end()) return std::nullopt;
-  const auto value = values->second.find(demonstrations);
-  return value == values->second.end() ? std::nullopt : std::optional(value->second);
+std::optional<double> PaperValues::find(const Values& values, const std::string& scenario, const std::string& method,
+                                        int demonstrations) {
+  const auto methods = values.find(scenario);
+  if (methods == values.end()) return std::nullopt;
+  const auto numbers = methods->second.find(method);
+  if (numbers == methods->second.end()) return std::nullopt;
+  const auto number = numbers->second.find(demonstrations);
+  return number == numbers->second.end() ? std::nullopt : std::optional(number->second);
 }
 
 PaperValues paper_values(const std::string& suite) {

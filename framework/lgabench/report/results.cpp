@@ -99,6 +99,7 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.engine = reader.at("engine").string();
   cell.method = method.at("name").string();
   cell.kind = method.at("kind").string();
+  cell.options = method.at("options").json();
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();

@@ -33,6 +33,7 @@ struct PlayedEpisode {
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  Json options;                                             // every option of the method, as resolved
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::string participant;  // whose answers it stands on; empty where nobody was asked
@@ -63,8 +64,8 @@ std::vector<std::string> failure_words();
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
 
-/// What a failure may be laid to, in a fixed order: a failed episode that the same policy wins with the true mask is
-/// the abstraction's, any other the policy's.
+/// What a failure may be attributed to, in a fixed order: a failed episode that the same policy wins with the true mask
+/// is the abstraction's, any other the policy's.
 constexpr std::array<const char*, 2> attributions{"abstraction", "policy"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
