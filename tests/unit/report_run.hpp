@@ -1,5 +1,6 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -48,6 +49,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell stands on
     double human_seconds = 0;                              // of each command
+    Json options = Json::object();                         // resolved, beside those that the row's name tells
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
@@ -58,6 +60,18 @@ class FabricatedRun : public TemporaryDirectory {
                               : commands;
     }
   };
+
+  // Those given, and "instances=first" of the row "lga+instances=first" (no numbers with a '+').
+  static Json options(const Spec& s) {
+    Json all = s.options;
+    for (std::size_t at = s.method.find('+'); at < s.method.size();) {
+      const std::size_t equals = s.method.find('=', at), end = std::min(s.method.find('+', equals), s.method.size());
+      if (equals >= end) break;
+      all[s.method.substr(at + 1, equals - at - 1)] = s.method.substr(equals + 1, end - equals - 1);
+      at = end;
+    }
+    return all;
+  }
 
   static Json cell_json(const Spec& s) {
     Json commands = Json::array(), tests = Json::array();
@@ -81,7 +95,7 @@ class FabricatedRun : public TemporaryDirectory {
                 {"id", s.method.substr(0, s.method.find('+'))},
                 {"name", s.method},
                 {"version", "0.1"},
-                {"options", Json::object()}}},
+                {"options", options(s)}}},
               {"demonstrations", s.demonstrations},
               {"training_seed", s.seed},
               {"scene_seed", 7},
