@@ -25,6 +25,10 @@ void print(const PluginInfo& plugin) {
                option["source"].get<std::string>());
     if (option.contains("min")) fmt::print("      {} or more\n", canonical(option["min"]));
     if (option.contains("values")) fmt::print("      one of {}\n", canonical(option["values"]));
+    if (option.contains("needs"))
+      for (const auto& [value, others] : option["needs"].items())
+        for (const auto& [other, values] : others.items())
+          fmt::print("      {} needs {} to be one of {}\n", value, other, canonical(values));
   }
 }
 
@@ -43,6 +47,8 @@ void print(const Scenario& scenario) {
     print_set("target", command.truth.target);
     if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
   }
+  fmt::print("  answers     {}{}\n", scenario.recorded,
+             scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
   std::vector<std::string> arms;
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   fmt::print("  tests       {}\n", fmt::join(arms, ", "));

@@ -14,6 +14,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/report/agreement.hpp>
 
@@ -175,6 +176,11 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
 
 int verify(const Arguments& a) {
   const Json record = read_json(a.run / "run.json");
+  const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
+  if (!same_cells(version, LGABENCH_VERSION))
+    throw InputError(
+        fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: verify it with {}",
+                    a.run.string(), version, LGABENCH_VERSION, version));
   const Inventory inventory = take_stock(a.run, record);
   for (const std::string& line : inventory.edited) fmt::print(stderr, "edited: {}\n", line);
   if (inventory.cells.empty() && inventory.edited.empty())
@@ -248,7 +254,7 @@ void add_verify(CLI::App& app, int& exit) {
       "Example: lgabench verify runs/q1 --sample 5\n"
       "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
       "differs. With the recorded build, processor and data the same bytes are owed. Exit 1 if a cell differs or was\n"
-      "edited.");
+      "edited. A run of another version (0.1 for 0.2) is refused: it says which one to verify it with.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

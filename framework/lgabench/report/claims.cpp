@@ -134,7 +134,7 @@ using Seconds = std::map<std::string, std::map<std::pair<std::string, std::strin
 Seconds seconds_of(const Field& field, const std::string& method) {
   Seconds seconds;
   for (const CellResult* cell : field.cells())  // whatever the options: what is learned takes the person no time
-    if (cell->method.substr(0, cell->method.find('+')) == method && !cell->participant.empty() && !cell->failed)
+    if (cell->id == method && !cell->participant.empty() && !cell->failed)
       for (const CommandResult& command : cell->commands)
         seconds[cell->participant][{cell->scenario, command.utterance}] =
             command.selection.at("cost").at("human_seconds").get<double>();

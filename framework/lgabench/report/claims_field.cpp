@@ -42,7 +42,7 @@ std::vector<std::string> named_options(const std::string& row) {
 }
 
 bool is_method(const CellResult& cell, const ClaimedMethod& method) {
-  if (cell.method.substr(0, cell.method.find('+')) != method.id) return false;
+  if (cell.id != method.id) return false;
   for (const auto& [option, value] : method.options)
     if (!cell.options.contains(option) || option_text(cell.options.at(option)) != value) return false;
   const std::vector<std::string> named = named_options(cell.method);

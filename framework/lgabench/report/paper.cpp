@@ -24,11 +24,12 @@ void read_curves(const JsonReader& figure, PaperValues& values) {
   for (const auto& item : figure.json().items()) {
     if (item.key() == "demonstrations") continue;
     const JsonReader curve = figure.at(item.key());
-    for (const auto& [member, of] : {std::pair("mean", &values.rates), {"err", &values.errors}}) {
-      if (curve.at(member).json().is_null()) continue;
-      const std::vector<double> numbers = rates(curve.at(member), demonstrations.size());
-      for (std::size_t i = 0; i < numbers.size(); ++i)
-        (*of)[mean_scenario][item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = numbers[i];
+    const std::vector<double> means = rates(curve.at("mean"), demonstrations.size());
+    const std::vector<double> errors = rates(curve.at("err"), demonstrations.size());
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      const auto n = static_cast<int>(demonstrations[i].integer(1, 1000000));
+      values.rates[mean_scenario][item.key()][n] = means[i];
+      values.errors[mean_scenario][item.key()][n] = errors[i];
     }
   }
 }
@@ -43,16 +44,26 @@ void read_bars(const JsonReader& figure, const std::vector<std::string>& ids, Pa
   }
 }
 
+std::optional<double> find_in(const PaperValues::Rates& rates, const std::string& scenario, const std::string& method,
+                              int demonstrations) {
+  const auto methods = rates.find(scenario);
+  if (methods == rates.end()) return std::nullopt;
+  const auto values = methods->second.find(method);
+  if (values == methods->second.end()) return std::nullopt;
+  const auto value = values->second.find(demonstrations);
+  return value == values->second.end() ? std::nullopt : std::optional(value->second);
+}
+
 }  // namespace
 
-std::optional<double> PaperValues::find(const Values& values, const std::string& scenario, const std::string& method,
-                                        int demonstrations) {
-  const auto methods = values.find(scenario);
-  if (methods == values.end()) return std::nullopt;
-  const auto numbers = methods->second.find(method);
-  if (numbers == methods->second.end()) return std::nullopt;
-  const auto number = numbers->second.find(demonstrations);
-  return number == numbers->second.end() ? std::nullopt : std::optional(number->second);
+std::optional<double> PaperValues::find(const std::string& scenario, const std::string& method,
+                                        int demonstrations) const {
+  return find_in(rates, scenario, method, demonstrations);
+}
+
+std::optional<double> PaperValues::error(const std::string& scenario, const std::string& method,
+                                         int demonstrations) const {
+  return find_in(errors, scenario, method, demonstrations);
 }
 
 PaperValues paper_values(const std::string& suite) {
