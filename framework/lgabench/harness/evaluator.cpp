@@ -4,6 +4,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -32,7 +33,7 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
     episode.failure = environment.step(action).failure;  // refuses an action that is not finite
     episode.action = to_vector(action);
   } catch (const MethodError& e) {
-    fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+    to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
     episode.failure = Failure::method_error;
   }
   return episode;
