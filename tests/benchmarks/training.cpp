@@ -36,8 +36,10 @@ double flops_of(const NetworkShape& shape) {
 }
 
 const std::vector<std::pair<const char*, NetworkShape>>& shapes() {
-  static const std::vector<std::pair<const char*, NetworkShape>> all = {
-      {"mask", {{1}}}, {"rgb_and_text", {{3}, true}}, {"mask_and_rgb", {{1, 3}}}};
+  static const std::vector<std::pair<const char*, NetworkShape>> all = {{"mask", {{1}}},
+                                                                        {"rgb_and_text", {{3}, true}},
+                                                                        {"mask_and_rgb", {{1, 3}}},
+                                                                        {"rgb_segmentation_and_text", {{3, 1}, true}}};
   return all;
 }
 

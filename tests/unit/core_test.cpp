@@ -172,8 +172,39 @@ TEST(Scenario, AllShippedOnesAreRead) {
   EXPECT_EQ(s.commands[0].truth.provenance, Provenance::truth);
 }
 
-TEST(Scenario, WarmColoursAreNeverDistractors) {
-  const Scenario s = load_scenario("consonant_with_a_warm_color");
+TEST(Scenario, DemonstrationsCountForEachSeenCommand) {
+  EXPECT_EQ(load_scenario("heart").training_scenes(50), 50);
+  EXPECT_EQ(load_scenario("q2_block").training_scenes(50), 50);
+  for (const char* id : {"q3_fruit", "q3_food", "q3_utensil"}) {
+    const Scenario s = load_scenario(id);
+    EXPECT_EQ(s.training_scenes(50), 100) << id;
+    EXPECT_EQ(s.commands_of("train"), (std::vector<int>{0, 1})) << "in turn";
+  }
+}
+
+TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
+  const auto textures = [](const char* id, Truth truth) {
+    return load_scenario(id, truth).commands[0].truth.target.textures.size();
+  };
+  const struct {
+    const char* id;
+    std::size_t released, printed;
+  } truths[] = {{"red_heart", 5, 4}, {"consonant_with_a_warm_color", 48, 37}, {"vowel_with_multiple_colors", 65, 62}};
+  for (const auto& t : truths) {
+    EXPECT_EQ(textures(t.id, Truth::released), t.released) << t.id;
+    EXPECT_EQ(textures(t.id, Truth::printed), t.printed) << t.id;
+    EXPECT_EQ(load_scenario(t.id, Truth::printed).json.at("truth"), "printed") << "a cell says so";
+    EXPECT_FALSE(load_scenario(t.id, Truth::printed).json.contains("printed"));
+    EXPECT_FALSE(load_scenario(t.id).json.contains("truth"));
+  }
+  EXPECT_EQ(load_scenario("heart", Truth::printed).json, load_scenario("heart").json) << "nothing differs";
+  EXPECT_FALSE(load_scenario("consonant_with_a_warm_color").never_distractor) << "the list holds plain warm colours";
+  EXPECT_EQ(read_truth("printed"), Truth::printed);
+  EXPECT_SAYS(message_of<InputError>([] { read_truth("true"); }), "expected released or printed, got \"true\"");
+}
+
+TEST(Scenario, WarmColoursAreNeverDistractorsOfThePrintedTruth) {
+  const Scenario s = load_scenario("consonant_with_a_warm_color", Truth::printed);
   ASSERT_TRUE(s.never_distractor);
   EXPECT_EQ(s.never_distractor->object_types, s.space.object_types);
   for (const std::string& texture : s.space.textures) {
@@ -193,6 +224,12 @@ TEST(Scenario, RefusesBadInput) {
               "mine.json: /commands/0/truth/target/textures/1: expected a name of the feature space, got \"reddish\"");
   json["commands"][0]["truth"]["target"]["textures"] = {"red", "red"};
   EXPECT_SAYS(refusal(json), "expected each name once");
+  json = heart();
+  json["answers"] = {{"recorded", "gpt4"}};
+  EXPECT_SAYS(refusal(json), "mine.json: /answers/recorded: expected one of: claude, gpt4_released, gpt4_study");
+  json = heart();
+  json["printed"] = {{"task", "rotate"}};
+  EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");
   json = heart();
   json["task"] = "juggle";
   EXPECT_SAYS(refusal(json), "mine.json: /task: expected pick_and_place, rotate or sweep, got \"juggle\"");
@@ -231,6 +268,19 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["train"] = {{"target", json["commands"][0]["truth"]["target"]}};
   EXPECT_SAYS(refusal(json), "mine.json: /train: expected \"as_method_asks\": false");
+  json["train"] = {{"barrier_distances_m", {.21, .05}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m/1: expected 0.15 to 0.3, got 0.05");
+  json["train"] = {{"barrier_distances_m", Json::array()}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m: expected at least one");
+  json = heart();
+  json["direction"] = "clockwise";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected no direction for another task than rotate");
+  json = load_scenario("rotate_block").json;
+  json["direction"] = "left";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected clockwise or counter_clockwise, got \"left\"");
+  json["direction"] = "clockwise";
+  json["angle_deg"] = -120;
+  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 0, at most 180, got -120");
   EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
 }
 

@@ -110,14 +110,74 @@ TEST(Compare, RefusesOtherTests) {
   suite.run["suite"] = "q2";
   suite.add({"lga", 15});
   EXPECT_SAYS(refusal(a, suite), "suite q1 in A, q2 in B");
-  FabricatedRun arms;
-  other = {"lga", 15};
-  other.arms = {{"test", 15}, {"hard", 10}};
-  arms.add(other);
-  EXPECT_SAYS(refusal(a, arms), "heart, layout cells: arms test in A, test, hard in B");
   FabricatedRun nothing;
   nothing.add({"lga", 15, "letter"});
   EXPECT_SAYS(refusal(a, nothing), "no cell finished in both");
+}
+
+TEST(Compare, NamesCellsThatPlayedOtherScenes) {
+  FabricatedRun a, b;
+  Spec other{"lga", 15, "letter"};
+  for (FabricatedRun* run : {&a, &b}) {
+    run->add({"lga", 15});
+    other.first_scene = run == &a ? 0 : 1;
+    run->add(other);
+  }
+  const RunComparison comparison = compared(a, b);
+  ASSERT_EQ(comparison.rows.size(), 1u);
+  EXPECT_EQ(comparison.rows[0].scenarios, 1);
+  ASSERT_EQ(comparison.other_scenes.size(), 1u);
+  EXPECT_EQ(comparison.other_scenes[0].scenario, "letter");
+  EXPECT_EQ(comparison.other_scenes[0].cells, std::vector<std::string>{"lga n=20 seed=0"});
+  EXPECT_SAYS(report::comparison_text(comparison),
+              "letter, layout cells, engine mujoco, arm test: other scenes (scenes 0000000000000000 and "
+              "0000000000000001 at index 0), not compared: lga n=20 seed=0");
+  EXPECT_EQ(comparison.times[0].cells, 1);
+  EXPECT_EQ(comparison.only_a + comparison.only_b, 0);
+}
+
+TEST(Compare, TakesTheArmsOfBothRuns) {
+  FabricatedRun a, b;
+  Spec one{"lga", 15}, more{"lga", 15};
+  one.arms = {{"seen", 15}, {"unseen", 12}};
+  more.arms = {{"seen", 15}, {"seen_varied", 10}, {"unseen", 3}};
+  a.add(one);
+  b.add(more);
+  const RunComparison comparison = compared(a, b);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  EXPECT_EQ(comparison.rows[1].arm, "unseen");
+  EXPECT_NEAR(comparison.rows[1].change.difference, -.45, 1e-12);
+  ASSERT_EQ(comparison.other_scenes.size(), 1u);
+  EXPECT_EQ(comparison.other_scenes[0].arm, "seen_varied");
+  EXPECT_EQ(comparison.other_scenes[0].why, "an arm of B alone");
+}
+
+TEST(Compare, PairsRowsByWhatTheyAreNotByTheirNames) {
+  FabricatedRun old, now;
+  const auto add = [](FabricatedRun& run, const std::string& row, int won, const Json& options) {
+    Spec spec{row, won};
+    spec.options = options;
+    run.add(spec);
+  };
+  add(old, "lga", 18, {{"batch_norm", false}, {"loss", "norm"}});
+  add(old, "lga+batch_norm=true", 6, {{"batch_norm", true}, {"loss", "norm"}});
+  Json today{{"loss", "norm"},     {"batches", "shuffled"},  {"picture", "none"},
+             {"instances", "all"}, {"policy", "regression"}, {"network", "plain"}};
+  add(now, "lga+network=plain", 18, today);
+  today["network"] = "text";
+  add(now, "lga", 6, today);
+  today["batches"] = "drawn";
+  add(now, "lga+batches=drawn", 9, today);
+  const RunComparison comparison = compared(old, now);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  EXPECT_EQ(comparison.rows[0].method, "lga");
+  EXPECT_EQ(comparison.rows[0].method_a, "lga+batch_norm=true");
+  EXPECT_EQ(comparison.rows[1].method, "lga+network=plain");
+  EXPECT_EQ(comparison.rows[1].method_a, "lga");
+  for (const ComparedRow& row : comparison.rows) EXPECT_EQ(row.change.difference, 0);
+  EXPECT_EQ(comparison.only_a, 0);
+  EXPECT_EQ(comparison.only_b, 1) << "batches=drawn has no row in the old run";
+  EXPECT_SAYS(report::comparison_text(comparison), "LGA network=plain (in A LGA)");
 }
 
 TEST(Compare, CountsWhatOneRunAloneHas) {

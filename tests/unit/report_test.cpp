@@ -35,13 +35,13 @@ Json row_of(const Json& summary, const std::string& scenario, const std::string&
 TEST(Summary, VariantsOfAMethodAreRowsOfTheirOwn) {
   FabricatedRun run;
   run.add({"lga", 15});
-  run.add({"lga+batch_norm=true+learning_rate=1e+30", 5});
+  run.add({"lga+learning_rate=1e+30+network=released", 5});
   run.add({"gcbc_dart", 2});
   const Json summary = summary_of(run);
   EXPECT_EQ(row_of(summary, "heart", "lga").at("successes"), 15);
-  EXPECT_EQ(row_of(summary, "heart", "lga+batch_norm=true+learning_rate=1e+30").at("successes"), 5);
+  EXPECT_EQ(row_of(summary, "heart", "lga+learning_rate=1e+30+network=released").at("successes"), 5);
   const std::string text = table_text(run.path);
-  const std::size_t variant = text.find("LGA batch_norm=true learning_rate=1e+30");
+  const std::size_t variant = text.find("LGA learning_rate=1e+30 network=released");
   EXPECT_LT(text.find("  LGA  "), variant);
   EXPECT_LT(variant, text.find("GCBC-DART")) << "a variant stands with its method";
 }
@@ -98,6 +98,33 @@ TEST(Summary, CountsWhatFailuresAreLaidTo) {
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
   EXPECT_SAYS(read_file(run.path / "report.md"), "| layout cells, engine mujoco | test | LGA | 20 | 5 | 7 |");
   EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0,,5,7,12,0,");
+}
+
+TEST(Summary, SharesTheTestInputsThatStoodInTraining) {
+  FabricatedRun run;
+  for (int seed = 0; seed < 2; ++seed) {
+    FabricatedRun::Spec lga{"lga", 15, "heart", 20, seed};
+    lga.inputs_seen = 5 + seed;
+    run.add(lga);
+  }
+  FabricatedRun::Spec letter{"lga", 15, "letter"};
+  letter.inputs_seen = 20;
+  run.add(letter);
+  run.add({"human", 15});
+  run.add({"oracle", 20, "heart", 0, 0, "reference"});
+  const Json summary = summary_of(run);
+  EXPECT_EQ(row_of(summary, "heart", "lga").at("inputs_seen"), 11 / 40.0);
+  EXPECT_EQ(row_of(summary, "(mean)", "lga").at("inputs_seen"), 31 / 60.0);
+  EXPECT_EQ(row_of(summary, "heart", "human").at("inputs_seen"), nullptr);
+  EXPECT_EQ(row_of(summary, "heart", "oracle").at("inputs_seen"), nullptr);
+  const std::string markdown = read_file(run.path / "report.md");
+  EXPECT_SAYS(markdown, "| heart | **LGA** | 0.28 |");
+  EXPECT_SAYS(markdown, "| mean over 2 scenarios | **LGA** | 0.52 |");
+  EXPECT_SAYS(markdown, "| heart | **Human** | – |");
+  EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0.275,0,");
+  const std::string table = table_text(run.path);
+  EXPECT_SAYS(table, "test inputs seen in training");
+  EXPECT_SAYS(table, "0.52");
 }
 
 TEST(Summary, SeveralSeedsAreAveraged) {
@@ -300,12 +327,13 @@ TEST(Report, CsvHoldsTheRows) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,"
             "success,low,high,"
-            "against,difference,difference_low,difference_high,same_actions,n_error,marks,abstraction,policy,missed_"
+            "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,abstraction,"
+            "policy,missed_"
             "object,wrong_object,"
             "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
   EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,15,0.75,0.53");
-  EXPECT_SAYS(csv, ",,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
+  EXPECT_SAYS(csv, ",,,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
 }
 
 TEST(Report, WithoutGnuplotItSaysSoAndGoesOn) {

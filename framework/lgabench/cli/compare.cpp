@@ -17,9 +17,13 @@ void add_compare(CLI::App& app, int& exit) {
       "compare",
       "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
   verb->add_option("A", options->a, "A run's directory")->required();
-  verb->add_option("B", options->b, "Another's, with the same suite, scenes and episodes")->required();
+  verb->add_option("B", options->b, "Another's, of the same suite and number of episodes")->required();
   verb->add_flag("--json", options->json, "Print JSON instead of tables");
-  verb->footer("Example: lgabench compare runs/before runs/after");
+  verb->footer(
+      "Example: lgabench compare runs/before runs/after\n"
+      "Rows are paired by method and options, whatever they are named, also with those of a run of 0.1. Cells that "
+      "played\n"
+      "other scenes are named and not compared.");
   verb->callback([options, &exit] {
     const report::RunComparison comparison =
         report::compare_runs(report::read_run(options->a), report::read_run(options->b));

@@ -26,6 +26,10 @@ void print(const PluginInfo& plugin) {
               option["source"].get<std::string>());
     if (option.contains("min")) to_stdout("      {} or more\n", canonical(option["min"]));
     if (option.contains("values")) to_stdout("      one of {}\n", canonical(option["values"]));
+    if (option.contains("needs"))
+      for (const auto& [value, others] : option["needs"].items())
+        for (const auto& [other, values] : others.items())
+          to_stdout("      {} needs {} to be one of {}\n", value, other, canonical(values));
   }
 }
 
@@ -44,6 +48,8 @@ void print(const Scenario& scenario) {
     print_set("target", command.truth.target);
     if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
   }
+  to_stdout("  answers     {}{}\n", scenario.recorded,
+            scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
   std::vector<std::string> arms;
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   to_stdout("  tests       {}\n", fmt::join(arms, ", "));

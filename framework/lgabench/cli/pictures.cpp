@@ -53,7 +53,8 @@ class Pictures {
     const Played& played = cell(request.at("cell").string());
     const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
     const std::string arm = request.at("arm").string();
-    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index);
+    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index,
+                                   played.cell.scenes_of_seed());
     if (hex(scene.hash()) != request.at("scene").string())
       throw InputError("this version samples another scene than the run played");
 
@@ -63,7 +64,8 @@ class Pictures {
         seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
-      const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
+      const auto mask = goal_mask(perceived, read_distribution(selection.at("distribution"), played.scenario.space),
+                                  selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     return {{"picture", picture_of(seen)},

@@ -19,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, layout = "cells", split = "test", arm, out;
+  std::string scenario, gallery, layout = "cells", split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -57,7 +57,7 @@ void render_gallery(const Arguments& arguments) {
 }
 
 void render(const Arguments& arguments) {
-  const Scenario scenario = load_scenario(arguments.scenario);
+  const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const Scene scene = tabletop::sample_scene(
       scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
@@ -98,6 +98,9 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--split", arguments->split, "train, dev or test")->capture_default_str();
   verb->add_option("--arm", arguments->arm,
                    "One of the scenario's tests (lgabench info SCENARIO), or train; its first");
+  verb->add_option("--truth", arguments->truth, "The scenario's true distributions, where released and printed differ")
+      ->check(CLI::IsMember({"released", "printed"}))
+      ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   verb->footer(

@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -16,7 +17,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, answers = "recorded", humans, out, cache, shard = "1/1";
+  std::string suite, preset, answers = "recorded", truth = "released", humans, out, cache, shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
@@ -60,13 +61,13 @@ Grid grid_of(const Arguments& a, const Suite& suite) {
   return grid;
 }
 
-// --set method.option=value
+// --set method.option=value, or *.option=value
 Json options_of(const Words& settings) {
   Json options = Json::object();
   for (const std::string& setting : settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || dot > equals)
-      throw InputError(fmt::format("--set {}: expected method.option=value", setting));
+      throw InputError(fmt::format("--set {}: expected method.option=value or *.option=value", setting));
     options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] =
         option_value(setting.substr(equals + 1));
   }
@@ -110,7 +111,7 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
 int run(const Arguments& a) {
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
-  Variation variation{a.answers, options_of(a.settings), !a.no_reference};
+  Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
@@ -118,6 +119,8 @@ int run(const Arguments& a) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
+  } else {
+    check_recorded(a.answers, grid.scenarios);
   }
   if (!a.humans.empty())
     for (AnswerFile& file : read_participants(a.humans, variation.participants))
@@ -130,8 +133,9 @@ int run(const Arguments& a) {
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
                        {"answers", variation.answers},
+                       {"truth", a.truth},
                        {"participants", participant_hashes(variation.participants)},
-                       {"options", variation.options},
+                       {"set", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
   plan.command = joined(command_line());
@@ -176,7 +180,8 @@ void add_run(CLI::App& app, int& exit) {
     verb->add_option(name, words, help)->delimiter(',')->take_all();
   };
   verb->add_option("suite", a->suite, "A suite's id, or a .json file of one")->required();
-  verb->add_option("--preset", a->preset, "A part of the suite: smoke, paper, leaderboard");
+  verb->add_option("--preset", a->preset,
+                   "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
   list("--methods", a->methods, "Methods, by plugin id; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
@@ -202,25 +207,37 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--limit", a->limit, "Only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
   verb->add_option("--set", a->settings,
-                   "method.option=value, for each of its rows that does not set it; may be given again")
+                   "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; goes before the "
+                   "preset's options, after a row's own; may be given again")
       ->take_all();
   verb->add_option("--answers", a->answers,
-                   "Which language model answered; recorded: GPT-4 where it was asked, else Claude; gpt4, claude: that "
-                   "one alone; cassette:FILE: the replies of a server's model, as lgabench select --suite keeps them")
+                   "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
+                   "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
+                   "as lgabench select --suite keeps them")
       ->check([](const std::string& word) {
-        const bool known =
-            word == "recorded" || word == "gpt4" || word == "claude" || word.rfind(cassette_prefix, 0) == 0;
-        return known ? "" : "expected recorded, gpt4, claude or cassette:FILE, got " + word;
+        const std::vector<std::string> sources = recorded_sources();
+        const bool known = word == "recorded" || word.rfind(cassette_prefix, 0) == 0 ||
+                           std::find(sources.begin(), sources.end(), word) != sources.end();
+        return known ? ""
+                     : fmt::format("expected recorded, {} or cassette:FILE, got {}", fmt::join(sources, ", "), word);
       })
       ->capture_default_str();
+  verb->add_option("--truth", a->truth,
+                   "The true distributions: those that the paper's authors released with their code, or those printed "
+                   "in its appendix, where they differ")
+      ->check(CLI::IsMember({"released", "printed"}))
+      ->capture_default_str();
   verb->add_option("--humans", a->humans,
-                   "A directory of participants' .json files: human and lga_hill then have a cell for each of them");
+                   "A directory of participants' .json files: methods that ask people then have a cell for each");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
-      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared\n"
+      "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
+      "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
+      "as\n"
+      "lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }

@@ -19,14 +19,15 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string command, suite, answers = "recorded", task = "pick_and_place", space = "tabletop", model, cassette;
+  std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
+                              model, cassette;
   int concurrency = 4, max_queries = -1;
   bool json = false;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
 struct Asked {
-  std::string answers_of;
+  std::string answers_of, recorded;  // the scenario's, see there
   FeatureSpace space;
   Command command;
   std::optional<Selection> truth;
@@ -71,22 +72,23 @@ Answerer make_answerer(const Arguments& a) {
 std::vector<Asked> commands_of(const Scenario& scenario) {
   std::vector<Asked> asked;
   for (const ScenarioCommand& c : scenario.commands)
-    asked.push_back({scenario.answers_of, scenario.space, {c.utterance, scenario.task}, c.truth});
+    asked.push_back({scenario.answers_of, scenario.recorded, scenario.space, {c.utterance, scenario.task}, c.truth});
   return asked;
 }
 
 // All commands of the suite, or of the scenario of that id, or the one with that utterance; else the words alone, which
 // have no truth.
 std::vector<Asked> find_commands(const Arguments& arguments) {
+  const Truth truth = read_truth(arguments.truth);
   if (!arguments.suite.empty()) {
     std::vector<Asked> all;
     for (const std::string& id : load_suite(arguments.suite).grid.scenarios)
-      for (Asked& asked : commands_of(load_scenario(id))) all.push_back(std::move(asked));
+      for (Asked& asked : commands_of(load_scenario(id, truth))) all.push_back(std::move(asked));
     return all;
   }
   std::vector<Asked> same_words;
   for (const std::string& id : scenario_ids()) {
-    const Scenario scenario = load_scenario(id);
+    const Scenario scenario = load_scenario(id, truth);
     if (id == arguments.command) return commands_of(scenario);
     for (Asked& asked : commands_of(scenario))
       if (asked.command.utterance == arguments.command) same_words.push_back(std::move(asked));
@@ -95,7 +97,11 @@ std::vector<Asked> find_commands(const Arguments& arguments) {
     if (asked.space.id == arguments.space) return {asked};
   if (!same_words.empty()) return {same_words.front()};
   if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
-  Asked asked{"", load_feature_space(arguments.space), {arguments.command, Task::pick_and_place}, std::nullopt};
+  Asked asked{"",
+              Scenario().recorded,
+              load_feature_space(arguments.space),
+              {arguments.command, Task::pick_and_place},
+              std::nullopt};
   for (const Task task : {Task::pick_and_place, Task::rotate, Task::sweep})
     if (to_string(task) == arguments.task) asked.command.task = task;
   return {asked};
@@ -124,7 +130,9 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
 
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
-  if (!model) model = &recorded.emplace(asked.space, asked.answers_of, arguments.answers);
+  if (!model)
+    model = &recorded.emplace(asked.space, asked.answers_of,
+                              arguments.answers == "recorded" ? asked.recorded : arguments.answers);
   const Selection selection = select_features(asked.command, asked.space, *model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
@@ -155,11 +163,19 @@ void add_select(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("select", "Ask which features matter for a command, and print the Selection");
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
-  verb->add_option(
-          "--answers", arguments->answers,
-          "recorded: GPT-4's where it was asked, else Claude's; gpt4, claude: theirs alone; openai: ask a server "
-          "now; cassette: what it said before")
-      ->check(CLI::IsMember({"recorded", "gpt4", "claude", "openai", "cassette"}))
+  verb->add_option("--answers", arguments->answers,
+                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude: theirs; openai: ask a server now; "
+                   "cassette: "
+                   "what it said before")
+      ->check(CLI::IsMember([] {
+        std::vector<std::string> words = recorded_sources();
+        words.insert(words.end(), {"recorded", "openai", "cassette"});
+        return words;
+      }()))
+      ->capture_default_str();
+  verb->add_option("--truth", arguments->truth,
+                   "What the Selection is compared with, where released and printed differ")
+      ->check(CLI::IsMember({"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "Of a command that is no scenario's")
       ->check(CLI::IsMember({"pick_and_place", "rotate", "sweep"}))

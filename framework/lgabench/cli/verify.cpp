@@ -16,6 +16,7 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/report/agreement.hpp>
 
@@ -217,6 +218,11 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
 
 int verify(const Arguments& a) {
   const Json record = read_json(a.run / "run.json", Links::refused);
+  const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
+  if (!same_cells(version, LGABENCH_VERSION))
+    throw InputError(
+        fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: verify it with {}",
+                    a.run.string(), version, LGABENCH_VERSION, version));
   const Inventory inventory = take_stock(a.run, record);
   for (const std::string& line : inventory.edited) to_stderr("edited: {}\n", one_line(line));
   if (inventory.cells.empty() && inventory.edited.empty())
@@ -295,7 +301,9 @@ void add_verify(CLI::App& app, int& exit) {
       "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
       "differs. With the recorded build, processor and data the same bytes are owed. Where the record names others, "
       "the\n"
-      "changed episodes of all cells of a row are tested together. Exit 1 if a cell or a row differs, or was edited.");
+      "changed episodes of all cells of a row are tested together. Exit 1 if a cell or a row differs, or was edited. A "
+      "run of\n"
+      "another version (0.1 for 0.2) is refused: it says which one to verify it with.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

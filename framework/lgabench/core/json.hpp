@@ -41,6 +41,9 @@ class JsonReader {
 
   /// The value as it is; belongs to the document.
   const Json& json() const { return value_; }
+  const std::string& file() const { return file_; }
+  /// Its JSON pointer in the file.
+  const std::string& place() const { return place_; }
   /// It is an object with that member.
   bool has(const std::string& key) const { return value_.is_object() && value_.contains(key); }
   /// Member of an object. @throws InputError where missing.

@@ -25,6 +25,7 @@ class Part {
     keys_ = read_cell_keys(reader);
     expect_plain_run(path);
     reader.at("command").string();
+    reader.at("version").string();
     reader.at("started").string();
     reader.at("machine").at("processor").string();
     for (const JsonReader& plugin : reader.at("plugins").elements())
@@ -66,6 +67,9 @@ void expect_one_run(const Part& first, const Part& other) {
     throw InputError(
         fmt::format("{} and {} are not parts of one run: {}", first.path().string(), other.path().string(), what));
   };
+  const std::string version = first.json().at("version"), other_version = other.json().at("version");
+  if (!same_cells(version, other_version))
+    refuse(fmt::format("one is of lgabench {}, one of {}", version, other_version));
   if (first.json().at("cells") != other.json().at("cells"))
     refuse("other cells: " + difference(first.json(), other.json()));
   for (const auto& [program, hash] : first.programs()) {

@@ -112,8 +112,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests)
     for (int i = 0; i < cell.episodes; ++i)
-      scenes.push_back(
-          {test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i), {arm.label_noise, arm.missed_segment}});
+      scenes.push_back({test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed()),
+                        {arm.label_noise, arm.missed_segment}});
   return scenes;
 }
 
@@ -148,7 +148,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const std::unique_ptr<Method> method = make_method(job);
   const Answers answers = answers_for(cell, scenario, job.answers);
   TrainingLines training(phases);
-  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training};
+  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
   Needs needs;
   std::vector<Instruction> instructions;
   if (method) needs = guarded(id, [&] { return method->needs(services.options); });
@@ -174,7 +174,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
   std::vector<Scene> scenes;
   if (learns)
-    for (int i = 0; i < cell.demonstrations; ++i)
+    for (int i = 0; i < scenario.training_scenes(cell.demonstrations); ++i)
       scenes.push_back(training_scene(scenario, cell.layout, selections, cell.training_seed, i));
 
   // 3 demonstrate: the oracle shows it.

@@ -53,6 +53,10 @@ std::string difference(const Json& there, const Json& wanted) {
   return "same settings, other data or versions";
 }
 
+bool same_cells(const std::string& version, const std::string& other) {
+  return version.substr(0, version.rfind('.')) == other.substr(0, other.rfind('.'));
+}
+
 CellState cell_state(const fs::path& cell, const std::string& key, const Json& build) {
   CellState state;
   std::error_code not_there;
@@ -127,6 +131,12 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
         remove_tree(path / name);
     } else if (was_there) {
       there = read_json(record, Links::refused);
+      const auto version = [](const Json& json) { return json.is_object() ? json.value("version", "") : ""; };
+      if (!same_cells(version(there), version(run)))
+        throw InputError(fmt::format(
+            "{}: a run of lgabench {}, whose cells {} cannot go on with; choose another --out, or --fresh to "
+            "drop it",
+            path.string(), version(there), version(run)));
       if (!there.is_object() || there.value("cells", Json()) != run.at("cells"))
         throw InputError(fmt::format("{}: holds another run ({}); choose another --out, or --fresh to drop it",
                                      path.string(), difference(there, run)));

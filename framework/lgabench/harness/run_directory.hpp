@@ -28,6 +28,9 @@ CellState cell_state(const fs::path& directory, const std::string& key, const Js
 /// Which setting of two run.json differs first; data and versions may differ where no setting does.
 std::string difference(const Json& there, const Json& wanted);
 
+/// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
+bool same_cells(const std::string& version, const std::string& other);
+
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other

@@ -43,11 +43,15 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     if (named.insert(info.kind + info.id).second)
       plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
   };
-  Json programs;
+  Json programs, settings = Json::object();
   for (const Cell& cell : plan.cells) {
     keys.push_back(key(cell));
     name(catalogue.find("engine", cell.engine));
-    if (const PluginInfo* method = method_plugin(cell, catalogue)) name(*method);
+    if (const PluginInfo* method = method_plugin(cell, catalogue)) {
+      name(*method);
+      for (const auto& [option, value] : cell.method.options.items())
+        if (value != method->options.at(option).at("default")) settings[cell.method.name][option] = value;
+    }
     programs = build_of(cell, catalogue);
   }
   for (const char* plugin : {"engine", "method"}) programs.erase(plugin);
@@ -62,6 +66,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"preset", plan.request.at("preset")},
           {"smoke", plan.cells.front().smoke},
           {"request", plan.request},
+          {"settings", settings},
           {"cells", keys},
           {"plugins", plugins},
           {"build", programs},

@@ -160,7 +160,7 @@ std::string chart(const Table& table, const std::string& arm, const std::string&
   const bool joined = table.demonstrations().size() > 1;
   const std::vector<Place> along = places(table, arm);
   const std::string axis =
-      joined ? "demonstrations" : fmt::format("arm, {} demonstrations", along.front().demonstrations);
+      joined ? "demonstrations" : ("arm, " + table.demonstrations_text(along.front().demonstrations));
   const std::string title =
       table.title(scenario) + (joined && table.arms.size() > 1 ? fmt::format(", arm {}", arm) : "");
   std::string text = axes(along, axis);

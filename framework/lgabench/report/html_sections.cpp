@@ -74,7 +74,8 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
       cells.push_back(phi_value(row, numbers, fmt::format("phi/{}/human_seconds", of.command), "{:.1f}"));
       cells.push_back(escaped(provenance_words(one.at("provenance"))));
       cells.push_back(escaped(one.at("source")));
-      cells.push_back(asked_as == utterance || asked_as.empty() ? "as the command" : "“" + escaped(asked_as) + "”");
+      cells.push_back(asked_as.empty() || !worded_otherwise(asked_as, utterance) ? "as the command"
+                                                                                 : "“" + escaped(asked_as) + "”");
       body += row_of(cells, 4);
     }
   }

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
@@ -133,6 +134,9 @@ std::string success(const Summary& summary, const PaperValues& paper, const std:
       if (!view.shifted.empty())
         text += fmt::format("\nChange against {}, scene by scene:\n\n", plain(table.arms.front())) +
                 table_of(table, view.shifted, shift_text, table.scenarios(), {});
+      if (any_seen(table))
+        text += "\nTest inputs seen in training, share:\n\n" +
+                table_of(table, view.columns, seen_text, table.scenarios(), {});
     }
   }
   return text;
@@ -168,7 +172,7 @@ std::string phi(const RunResults& run, const Summary& summary) {
       cells.push_back(count(phi.at("human_seconds")));
       text += row_of(cells);
     }
-    if (phi.at("asked_as") != phi.at("utterance"))
+    if (worded_otherwise(phi.at("asked_as"), phi.at("utterance")))
       wordings.insert(
           fmt::format("- {}, of {}: “{}”\n", plain(row.scenario), plain(phi.at("source")), plain(phi.at("asked_as"))));
   }
@@ -271,6 +275,9 @@ constexpr const char* how_to_read =
     "- A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired scene by "
     "scene. Its interval is the cluster bootstrap's, nowhere narrower than Bonett and Price's for paired proportions "
     "on all episodes.\n"
+    "- A test input was seen in training where all that the policy is given, pictures and text, is there to the byte: "
+    "a "
+    "high share measures what was learned by heart. – where a policy does not tell.\n"
     "- Reference rows are no methods: the best constant action knows the training actions alone, the random visible "
     "object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing and are "
     "the same for every number of demonstrations.\n";
@@ -281,6 +288,7 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
                      const std::vector<EngineAgreement>& agreements, const PaperValues& paper,
                      const std::vector<std::vector<Figure>>& figures) {
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
+  for (const std::string& line : settings(run)) text += "> " + plain(line) + "  \n";
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
   if (!paper.rates.empty())

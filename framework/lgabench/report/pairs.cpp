@@ -6,19 +6,25 @@
 
 namespace lgabench::report {
 
+std::string why_unpaired(const CellResult& first, const CellResult& second, const std::string& arm) {
+  const std::vector<PlayedEpisode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
+  if (a.size() != b.size()) return fmt::format("{} and {} episodes", a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].scene != b[i].scene) return fmt::format("scenes {} and {} at index {}", a[i].scene, b[i].scene, i);
+    if (a[i].command != b[i].command)
+      return fmt::format("commands {} and {} at index {}", a[i].command, b[i].command, i);
+  }
+  return "";
+}
+
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm) {
   const std::vector<PlayedEpisode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
-  const auto refuse = [&](const std::string& what) {
+  if (const std::string why = why_unpaired(first, second, arm); !why.empty())
     throw InputError(
-        fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, what));
-  };
-  if (a.size() != b.size()) refuse(fmt::format("{} and {} episodes", a.size(), b.size()));
+        fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, why));
   PolicyPair pair;
   pair.episodes = static_cast<int>(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].scene != b[i].scene) refuse(fmt::format("scenes {} and {} at index {}", a[i].scene, b[i].scene, i));
-    if (a[i].command != b[i].command)
-      refuse(fmt::format("commands {} and {} at index {}", a[i].command, b[i].command, i));
     pair.won_first += a[i].success ? 1 : 0;
     pair.won_second += b[i].success ? 1 : 0;
     pair.only_first += a[i].success && !b[i].success ? 1 : 0;

@@ -19,8 +19,11 @@ struct PolicyPair {
   double difference() const { return static_cast<double>(only_second - only_first) / episodes; }
 };
 
-/// @throws InputError, in one line, where the two did not play the same scenes with the same commands. @pre both cells
-/// finished and have the arm
+/// Why the two did not play the same scenes with the same commands in the arm, in one line; empty if they did. @pre
+/// both cells finished and have the arm
+std::string why_unpaired(const CellResult& first, const CellResult& second, const std::string& arm);
+
+/// @throws InputError, in one line, where why_unpaired() has a reason. @pre as there
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm);
 
 /// Pairs of policies of one row of a table: scenarios, and within each training seeds, or participants where a row has

@@ -47,6 +47,7 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     }
     if (const JsonReader action = reader.at("action"); !action.json().is_null())
       for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
+    if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
     if (!played[arm].emplace(index, std::move(e)).second)
       reader.at("index").fail(fmt::format("each index once in arm \"{}\"", arm));
@@ -104,11 +105,17 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   for (const JsonReader& command : scenario.at("commands").elements())
     cell.commands.push_back(
         {shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
+  cell.demonstrated_commands = static_cast<int>(
+      std::count_if(cell.commands.begin(), cell.commands.end(), [](const CommandResult& c) { return c.seen; }));
   for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(shown(arm.at("arm")));
   cell.layout = shown(reader.at("layout"));
   cell.engine = shown(reader.at("engine"));
   cell.method = shown(method.at("name"));
   cell.kind = method.at("kind").string();
+  if (method.has("asks")) cell.asks = method.at("asks").string();
+  cell.id = method.at("id").string();
+  cell.options = method.at("options").json();
+  if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
   if (reader.has("participant")) cell.participant = shown(reader.at("participant").at("id"));
@@ -177,6 +184,7 @@ RunResults read_run(const fs::path& run) {
   for (const std::string& key : found)
     if (asked.count(key) == 0) ++results.foreign;
 
+  const bool divided = reader.at("version").string() == "0.1.0";
   std::map<std::string, std::size_t> order;  // of scenarios: the suite's, which run.json's cells keep
   for (const std::string& key : listed) {
     if (found.erase(key) == 0) {
@@ -184,6 +192,7 @@ RunResults read_run(const fs::path& run) {
       continue;
     }
     results.cells.push_back(read_cell(run / "cells" / key));
+    if (divided) results.cells.back().demonstrated_commands = 1;
     order.emplace(results.cells.back().scenario, order.size());
   }
   const auto place = [&order](const CellResult& c) {

@@ -195,6 +195,8 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
     for (const PlayedEpisode& e : episodes) {
       if (!e.success) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
+      row.inputs_told += e.input_seen ? 1 : 0;
+      row.inputs_seen += e.input_seen.value_or(false) ? 1 : 0;
     }
     row.episodes += policy.episodes;
     row.successes += policy.successes;
@@ -213,7 +215,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   Row& row = mean.row = drafts.front()->row;
   row.scenario = mean_scenario;
   row.phi = nullptr;
-  row.seeds = row.episodes = row.successes = row.n_error = 0;
+  row.seeds = row.episodes = row.successes = row.inputs_told = row.inputs_seen = row.n_error = 0;
   row.failures.clear();
   row.attribution = Row().attribution;
   row.marks.clear();
@@ -225,6 +227,8 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
     row.seeds = std::max(row.seeds, draft->row.seeds);
     row.episodes += draft->row.episodes;
     row.successes += draft->row.successes;
+    row.inputs_told += draft->row.inputs_told;
+    row.inputs_seen += draft->row.inputs_seen;
     row.n_error += draft->row.n_error;
     for (const auto& [failure, n] : draft->row.failures) row.failures[failure] += n;
     for (const auto& [to, n] : draft->row.attribution) row.attribution[to] += n;
@@ -257,7 +261,9 @@ Table make_table(const Cells& cells) {
   std::vector<std::string> scenarios;                            // as the cells are ordered
   using Place = std::tuple<std::string, int, std::string, int>;  // kind, rank, method, demonstrations
   std::map<std::string, std::map<Place, Cells>> grouped;
+  table.demonstrated_commands = cells.front()->demonstrated_commands;
   for (const CellResult* cell : cells) {
+    if (cell->demonstrated_commands != table.demonstrated_commands) table.demonstrated_commands = 0;
     add_new(scenarios, cell->scenario);
     for (const std::string& arm : cell->arms) add_new(table.arms, arm);
     grouped[cell->scenario][{cell->kind, display_rank(cell->method), cell->method, cell->demonstrations}].push_back(
@@ -302,6 +308,12 @@ std::vector<int> Table::demonstrations() const {
   }
   const std::set<int>& columns = learned.empty() ? any : learned;
   return {columns.begin(), columns.end()};
+}
+
+std::string Table::demonstrations_text(int n) const {
+  if (demonstrated_commands == 1) return fmt::format("{} demonstrations", n);
+  if (demonstrated_commands == 0) return fmt::format("demonstrations: {} per command", n);
+  return fmt::format("demonstrations: {} per command, {} in all", n, n * demonstrated_commands);
 }
 
 const Row* Table::find(const std::string& arm, const std::string& scenario, const std::string& method, int n) const {

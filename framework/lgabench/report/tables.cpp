@@ -30,12 +30,13 @@ std::vector<View> views(const Table& table) {
   std::vector<View> all;
   const std::vector<int> demonstrations = table.demonstrations();
   if (table.arms.size() == 1) {
-    View& view = all.emplace_back(View{"demonstrations", {}, {}});
+    const char* corner = table.demonstrated_commands == 1 ? "demonstrations" : "demonstrations per command";
+    View& view = all.emplace_back(View{corner, {}, {}});
     for (const int n : demonstrations) view.columns.push_back({std::to_string(n), table.arms.front(), n});
     return all;
   }
   for (const int n : demonstrations) {
-    View& view = all.emplace_back(View{fmt::format("{} demonstrations", n), {}, {}});
+    View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
     for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
@@ -62,11 +63,24 @@ std::string shift_text(const Row* row) {
                      hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
 }
 
+std::string seen_text(const Row* row) {
+  if (!row) return "";
+  const std::optional<double> share = row->seen_share();
+  return share ? fmt::format("{:.2f}", *share) : "–";
+}
+
+bool any_seen(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   bool not_learned = false, incomplete = false;
   std::set<std::string> same_as;              // arms
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
   std::set<std::string> models;               // behind cassettes
+  std::set<std::string> edited;               // methods whose Selections began as a language model's
+  for (const CellResult& cell : run.cells)
+    if (cell.asks == "edit") edited.insert(cell.method);
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       not_learned = not_learned || row.marked("baseline_not_learned");
@@ -78,9 +92,8 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
-        people[row.method] =
-            fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
-                        row.method.rfind("lga_hill", 0) == 0 ? ", who edited a language model's φ̂" : "");
+        people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                         edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");

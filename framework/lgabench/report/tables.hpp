@@ -33,6 +33,11 @@ std::string success_text(const Row* row);
 /// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
 std::string shift_text(const Row* row);
 
+/// "0.35", of the test inputs those that stood in training; "–" where the row's policies do not tell.
+std::string seen_text(const Row* row);
+/// Whether a row of the table tells.
+bool any_seen(const Table& table);
+
 /// What a reader of the tables must know, one line each: what †, ‡ and = say, how many people made Selections or that
 /// none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
