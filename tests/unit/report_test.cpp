@@ -425,7 +425,7 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
   const auto replacing = [](const std::string& from, const std::string& to) {
     return [=](std::string text) { return text.replace(text.find(from), from.size(), to); };
   };
-  EXPECT_SAYS(broken("episodes.jsonl", half), "episodes.jsonl: line 11: expected valid JSON");
+  EXPECT_SAYS(broken("episodes.jsonl", half), "episodes.jsonl: line 11: byte ");
   EXPECT_SAYS(broken("cell.json", half), "cell.json: line 1 (byte");
   EXPECT_SAYS(broken("status.json", half), "status.json: line 1 (byte");
   EXPECT_SAYS(broken("selection.json", [](auto) { return "[]\n"; }), "selection.json: /: expected an object");
