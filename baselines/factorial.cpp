@@ -1,5 +1,6 @@
 // What a Selection does to the data apart from what it does to the input: every pair of training scenes and picture
-// (PROTOCOL, section 4). No text input. With both defaults it is LGA.
+// (PROTOCOL, section 4). No text input. With all defaults it is LGA. With policy=centroid, what an abstraction is worth
+// to a policy that need not learn where pixels are.
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
@@ -13,7 +14,7 @@ class Factorial : public lgabench::CloningMethod {
 
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
-    true_masks_[command.utterance] = services.human.specify(command);
+    true_masks_[command.utterance] = services.truth(command);
     return lgabench::select_features(command, space, services.lm);
   }
 
@@ -21,6 +22,11 @@ class Factorial : public lgabench::CloningMethod {
   lgabench::PolicyInputs inputs(const lgabench::Json& options) const override {
     using Picture = lgabench::PolicyInputs::Picture;
     if (options.at("input") == "rgb") return {{Picture::rgb}};
+    if (options.at("input") == "object_mask") {
+      lgabench::PolicyInputs inputs{{Picture::segmentation}};
+      inputs.left_out = "pallet";  // the place to bring things to: never a target
+      return inputs;
+    }
     if (options.at("input") == "true_mask")
       return {{Picture::mask}, lgabench::PolicyInputs::Text::none, {}, true_masks_};
     return {{Picture::mask}};
@@ -30,11 +36,19 @@ class Factorial : public lgabench::CloningMethod {
   std::map<std::string, lgabench::Selection> true_masks_;  // by utterance
 };
 
-LGABENCH_METHOD("factorial", "0.1", "What phi-hat does to the data, and what to the input: LGA with either replaced",
-                Factorial, "{" LGABENCH_CLONING_OPTIONS R"(,
+LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
+                       "What phi-hat does to the data, and what to the input: LGA with either replaced", Factorial,
+                       "{" LGABENCH_CLONING_OPTIONS R"(,
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
              "source": "PROTOCOL, section 4"},
-  "input": {"default": "mask", "values": ["mask", "true_mask", "rgb"],
-            "help": "the policy sees the Selection's goal mask, the true distribution's, or the picture",
-            "source": "PROTOCOL, section 4"}})")
+  "input": {"default": "mask", "values": ["mask", "true_mask", "object_mask", "rgb"],
+            "help": "the policy sees the mask of the Selection, of the true distribution, of any object but the pallet, or the picture",
+            "source": "PROTOCOL, section 4; object_mask: ours"},
+  "instances": {"default": "all", "values": ["all", "first"],
+                "help": "of several visible instances that match one role: all in the mask, or the first, row by row",
+                "source": "first: paper, section 3.2", "needs": {"first": {"input": ["mask", "true_mask"]}}},
+  "policy": {"default": "regression", "values": ["regression", "centroid"],
+             "help": "a network; or, untrained, the centroid of the target set's own plane and the demonstrations' means",
+             "source": "centroid: not the paper's",
+             "needs": {"centroid": {"input": ["mask", "true_mask", "object_mask"]}}}})")

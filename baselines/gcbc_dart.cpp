@@ -1,6 +1,7 @@
 // GCBC-DART: goal-conditioned behaviour cloning on the picture and the command's embedding, on demonstrations with
 // injected noise (Laskey et al. 2017; paper, section 5).
 #include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/noisy_copies.hpp>
 #include <lgabench/plugin/plugin.hpp>
 
 class GcbcDart : public lgabench::CloningMethod {
@@ -18,11 +19,19 @@ class GcbcDart : public lgabench::CloningMethod {
   lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
     return {{lgabench::PolicyInputs::Picture::rgb}, lgabench::PolicyInputs::Text::utterance};
   }
+
+  lgabench::Samples training_rows(lgabench::Samples clean, const lgabench::NetworkShape& shape,
+                                  const lgabench::Services& services) const override {
+    if (services.options.at("dart") != "posthoc") return clean;
+    constexpr int copies = 5;
+    constexpr double scale = .05;
+    return lgabench::with_noisy_copies(clean, shape, copies, scale, services.seed);
+  }
 };
 
 LGABENCH_METHOD("gcbc_dart", "0.1",
                 "Behaviour cloning on the picture and the command, with noise-injected demonstrations", GcbcDart,
-                "{" LGABENCH_CLONING_OPTIONS R"(,
-  "dart": {"default": "recovery", "values": ["recovery", "none"],
-           "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads",
-           "source": "paper, section 5; PROTOCOL, section 5"}})")
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
+  "dart": {"default": "recovery", "values": ["recovery", "posthoc", "none"],
+           "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads; posthoc: five copies of its action and 36 x 72 picture with Gaussian noise of .05 of their standard deviations",
+           "source": "paper, section 5; PROTOCOL, section 5; posthoc: released code"}})")

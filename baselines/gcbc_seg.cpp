@@ -19,4 +19,4 @@ class GcbcSeg : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("gcbc_seg", "0.1", "Behaviour cloning on the picture, a mask of all objects, and the command", GcbcSeg,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS "}")

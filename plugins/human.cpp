@@ -8,12 +8,7 @@ class Human : public lgabench::CloningMethod {
                              lgabench::Services& services) override {
     return services.human.specify(command);
   }
-
- protected:
-  lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
-    return {{lgabench::PolicyInputs::Picture::mask}};
-  }
 };
 
-LGABENCH_METHOD("human", "0.1", "Behaviour cloning on the goal mask of what a person specified", Human,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+LGABENCH_METHOD_ASKING("specify", "human", "0.1", "Behaviour cloning on the goal mask of what a person specified",
+                       Human, "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")

@@ -9,12 +9,7 @@ class Lga : public lgabench::CloningMethod {
                              lgabench::Services& services) override {
     return lgabench::select_features(command, space, services.lm);
   }
-
- protected:
-  lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
-    return {{lgabench::PolicyInputs::Picture::mask}};
-  }
 };
 
 LGABENCH_METHOD("lga", "0.1", "Behaviour cloning on a goal mask that a language model selected", Lga,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")

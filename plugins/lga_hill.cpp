@@ -9,12 +9,8 @@ class LgaHill : public lgabench::CloningMethod {
                              lgabench::Services& services) override {
     return services.human.edit(command, lgabench::select_features(command, space, services.lm));
   }
-
- protected:
-  lgabench::PolicyInputs inputs(const lgabench::Json&) const override {
-    return {{lgabench::PolicyInputs::Picture::mask}};
-  }
 };
 
-LGABENCH_METHOD("lga_hill", "0.1", "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+LGABENCH_METHOD_ASKING("edit", "lga_hill", "0.1",
+                       "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
+                       "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")

@@ -125,9 +125,12 @@ void place_freely(const Layout& layout, std::vector<SceneObject>& objects, const
 
 // PROTOCOL, sections 3 and 4: obstacles bar one side of the target's row, distractors stand in the other row, or where
 // they bar the way themselves opposite the obstacle.
-void place_for_sweep(const Layout& layout, std::vector<SceneObject>& objects, bool barring_distractors,
-                     RandomStream random, RandomStream others) {
-  constexpr double one_away_m = .21, distractor_y_m = .16;
+void place_for_sweep(const Layout& layout, const SceneContent& content, std::vector<SceneObject>& objects,
+                     const Streams& stream) {
+  constexpr double distractor_y_m = .16;
+  RandomStream random = stream("layout"), others = stream("layout of distractors"), distance = stream("distance");
+  const std::vector<double>& distances_m = content.barrier_distances_m;
+  const double one_away_m = distances_m[distance.below(static_cast<std::uint32_t>(distances_m.size()))];
   constexpr std::array<double, 2> two_away_m{.17, .25};
   const Vec2 place = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
   const double blocked_side = random.coin() ? 1 : -1;
@@ -148,7 +151,7 @@ void place_for_sweep(const Layout& layout, std::vector<SceneObject>& objects, bo
   for (SceneObject& object : objects) {
     if (object.role == Role::obstacle) bar(object, blocked_side * (two ? two_away_m.at(obstacles++) : one_away_m));
     if (object.role != Role::distractor) continue;
-    if (barring_distractors) {
+    if (!content.choice.empty()) {
       bar(object, -blocked_side * one_away_m);
     } else {
       object.position_m = {Workspace::x_min + Workspace::x_max - place.x, distractor_side * distractor_y_m};
@@ -173,9 +176,10 @@ const Layout& find_layout(Task task, const std::string& id) {
       fmt::format("layout \"{}\": expected one of {} has: {}", id, to_string(task), fmt::join(layouts(task), ", ")));
 }
 
-void place(const Layout& layout, std::vector<SceneObject>& objects, bool barring_distractors, const Streams& stream) {
+void place(const Layout& layout, const SceneContent& content, std::vector<SceneObject>& objects,
+           const Streams& stream) {
   if (layout.task == Task::sweep)
-    place_for_sweep(layout, objects, barring_distractors, stream("layout"), stream("layout of distractors"));
+    place_for_sweep(layout, content, objects, stream);
   else if (layout.target_places.empty())
     place_freely(layout, objects, stream);
   else

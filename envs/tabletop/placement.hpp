@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <lgabench/core/random.hpp>
-#include <lgabench/core/scene.hpp>
+#include <lgabench/core/scenario.hpp>
 
 namespace lgabench::tabletop {
 
@@ -30,9 +30,8 @@ using Streams = std::function<RandomStream(const std::string& purpose)>;
 
 /// Sets position and yaw of every object but the goal. objects[0] is a target and takes its place first, from a stream
 /// of its own, so that scenes with other distractors share it. A distractor that finds no place is left out (fixed
-/// places). `barring_distractors`: in sweep, distractors stand in the
-/// free way (touching them is allowed) instead of in the other row.
-/// @throws Error where free places run out.
-void place(const Layout& layout, std::vector<SceneObject>& objects, bool barring_distractors, const Streams& stream);
+/// places). In sweep, distractors of a choice stand in the free way (touching them is allowed) instead of in the other
+/// row. @throws Error where free places run out.
+void place(const Layout& layout, const SceneContent& content, std::vector<SceneObject>& objects, const Streams& stream);
 
 }  // namespace lgabench::tabletop

@@ -82,8 +82,14 @@ struct Request {
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
   const FeatureSpace& space = request.scenario.space;
   const SceneContent& content = request.content;
-  std::vector<const FeatureSet*> excluded{&request.meant.target};
-  if (request.meant.avoid) excluded.push_back(&*request.meant.avoid);
+  std::vector<const FeatureSet*> excluded;
+  const auto exclude = [&excluded](const Selection& meant) {
+    excluded.push_back(&meant.target);
+    if (meant.avoid) excluded.push_back(&*meant.avoid);
+  };
+  exclude(request.meant);
+  if (content.outside_all_commands)
+    for (const ScenarioCommand& command : request.scenario.commands) exclude(command.truth);
   if (!request.training && request.scenario.never_distractor) excluded.push_back(&*request.scenario.never_distractor);
 
   // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
@@ -180,6 +186,7 @@ void check(const SceneRequest& request, int index) {
   const auto& split = request.split;
   if (split != "train" && split != "dev" && split != "test")
     throw InputError(fmt::format("split \"{}\": expected train, dev or test", split));
+  if (request.training_seed && split != "test") throw InputError("a training seed's own scenes: expected split test");
   if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
 }
 
@@ -195,16 +202,17 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Request what{scenario, find_layout(scenario.task, request.layout), content, training,
                      asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
+  const std::string own = request.training_seed ? fmt::format("/training seed {}", *request.training_seed) : "";
   const Streams stream = [&](const std::string& purpose) {
-    return RandomStream(fmt::format("scene/{}/{}/{}/{}/{}/{}", scenario.id, request.layout, request.split, request.seed,
-                                    index, purpose));
+    return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
+                                    request.seed, own, index, purpose));
   };
 
   Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, 0, request.seed, index, 0, {}};
   scene.angle_rad = scenario.angle_deg * pi / 180;
   scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
-  place(what.layout, scene.objects, !content.choice.empty(), stream);
+  place(what.layout, content, scene.objects, stream);
   if (what.layout.pallet) scene.objects.push_back({goal_type, goal_texture, Role::goal, *what.layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;

@@ -1,6 +1,7 @@
 // From a scenario to scenes.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct SceneRequest {
   /// Of training targets and obstacles where the scenario leaves them to the method: one a command, only target and
   /// avoid count. Empty: the truth.
   std::vector<Selection> selections = {};
+  /// Of test scenes that one training seed has to itself: part of their random streams. None: shared by all seeds.
+  std::optional<std::uint64_t> training_seed = {};
 };
 
 /// Scene number `index`. Layout, target features, distractors and ids come from separate random streams, so that two

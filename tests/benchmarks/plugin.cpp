@@ -22,7 +22,7 @@ class Asked {
  public:
   explicit Asked(std::unique_ptr<Method> method) : method_(std::move(method)) {
     const Scenario scenario = load_scenario("heart");
-    RecordedLanguageModel lm(scenario.space, scenario.answers_of, "recorded");
+    RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Silent log;
     Services services{lm, human, options(), 0, log};

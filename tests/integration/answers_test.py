@@ -116,13 +116,55 @@ class Cassettes(Case):
 
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
-        self.assertIn("--answers: expected recorded, gpt4, claude or cassette:FILE", self.call(*run, "gpt5", expect=2).stderr)
+        for word in ("gpt5", "gpt4"):
+            self.assertIn("--answers: expected recorded, claude, gpt4_released, gpt4_study or cassette:FILE",
+                          self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
         line = {"key": "k", "request": {}, "reply": "Final answer: no", "tokens": 1, "seconds": 1.0}
         (self.dir / "two.jsonl").write_text("".join(json.dumps(dict(line, model=m, key=m)) + "\n" for m in "ab"))
         self.assertIn("it has those of a, b", self.call(*run, "cassette:two.jsonl", expect=2).stderr)
         self.assertIn("expected a command", self.call("select", expect=2).stderr)
+
+
+class Recorded(Case):
+    def test_one_source_alone_refuses_what_it_lacks_before_any_cell(self):
+        run = ["run", "q1", *RUN, "--out", "out", "--scenarios", "heart,letter,rotate_block", "--answers"]
+        for source, lacking in (("gpt4_released", "letter, rotate_block"), ("gpt4_study", "rotate_block")):
+            self.assertIn(f"--answers {source}: expected answers for {lacking}; there are those for: red_heart",
+                          self.call(*run, source, expect=2).stderr)
+        self.assertFalse((self.dir / "out").exists())
+
+    def selections(self, *more):
+        """Method -> the one Selection of its one cell."""
+        run = ["run", "q1", "--scenarios", "red_heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference",
+               "--fresh", "--out", "out", "--methods", "lga,lga_hill,human", *more]
+        self.call(*run, *(word for m in ("lga", "lga_hill", "human") for word in ("--set", f"{m}.epochs=2")))
+        self.assert_matches_schemas("out")
+        found = {}
+        for key, (cell, _) in self.cells("out").items():
+            command, = json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"]
+            found[cell["method"]["id"]] = command["selection"], cell
+        return found
+
+    def test_a_method_that_edits_starts_from_the_answers_that_people_were_given(self):
+        found = self.selections()
+        self.assertEqual(found["lga"][0]["target"]["textures"], ["red", "red paisley"])
+        self.assertEqual(len(found["lga_hill"][0]["target"]["textures"]), 5)
+        self.assertIn("version not stated there", found["lga_hill"][0]["source"])
+        self.assertEqual({m: cell["method"].get("asks") for m, (_, cell) in found.items()},
+                         {"lga": None, "lga_hill": "edit", "human": "specify"})
+        alone = self.selections("--answers", "gpt4_released")
+        self.assertEqual(len(alone["lga_hill"][0]["target"]["textures"]), 2)
+
+    def test_the_truth_is_the_released_one_or_the_printed_one(self):
+        self.assertEqual(len(self.selections()["human"][0]["target"]["textures"]), 5)
+        selection, cell = self.selections("--truth", "printed")["human"]
+        self.assertEqual(selection["target"]["textures"], ["red", "dark red", "dark red swirl", "red paisley"])
+        self.assertEqual(cell["scenario"]["truth"], "printed")
+        self.assertEqual(json.loads((self.dir / "out/run.json").read_text())["request"]["truth"], "printed")
+        shown = json.loads(self.call("select", "red_heart", "--truth", "printed", "--json").stdout)
+        self.assertEqual(shown["quality"]["target"]["textures"]["true_size"], 4)
 
 
 class Humans(Case):
@@ -139,7 +181,7 @@ class Humans(Case):
         (self.dir / "people").mkdir()
         self.proposals = {}
         for scenario in ("heart", "red_heart"):
-            said = json.loads(self.call("select", scenario, "--json").stdout)
+            said = json.loads(self.call("select", scenario, "--answers", "gpt4_study", "--json").stdout)
             self.proposals[scenario] = said["utterance"], {"target": said["selection"]["target"]}
         for person in self.PEOPLE:
             self.write(person)

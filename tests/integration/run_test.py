@@ -38,10 +38,11 @@ class BadInput(Case):
             (["q1", "--episodes", "0"], r"/episodes: .*got 0"),
             (["q1", "--seeds", "3:1"], r"/seeds/0: .*got \"3:1\""),
             (["q1", "--layout", "moon"], r"/layouts/0: expected one of cells, continuous, released"),
-            (["q1", "--preset", "nope"], r'preset "nope": .*q1.json has: leaderboard, paper, smoke'),
+            (["q1", "--preset", "nope"], r'preset "nope": .*q1.json has: leaderboard, paper, paper_text, smoke'),
             (["q1", "--set", "lga.epocs=3"], r"unknown member \"epocs\", expected one of: .*epochs"),
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
             (["q1", "--set", "lga.epochs=-3"], r"/epochs: expected a whole number of 1 or more, got -3"),
+            (["q1", "--set", "*.epocs=3"], r"--set: /\*: unknown member \"epocs\", expected one of: .*epochs"),
             (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, lga_hill, human"),
             (["q1", "--methods", "lga,lga+loss=norm"], r'"lga" and "lga\+loss=norm" are the same row, lga'),
             (["q1", "--methods", "lga+loss"], r'method "lga\+loss": expected ID\+OPTION=VALUE'),
@@ -64,6 +65,10 @@ class BadInput(Case):
             ({"colour": 1}, r"q1.json: /: unknown member \"colour\""),
             ({"id": "other"}, r"q1.json: /id: expected \"q1\""),
             ({"presets": {"smoke": {"seeds": [-1]}}}, r"q1.json: /presets/smoke/seeds/0: "),
+            ({"presets": {"p": {"options": {"nope": {}}}}}, r"q1.json: /presets/p/options: unknown member \"nope\""),
+            ({"options": {"lga": {"epocs": 3}}}, r"q1.json: /options/lga: unknown member \"epocs\""),
+            ({"options": {"*": {"loss": "cubed"}}}, r"q1.json: /options/\*/loss: expected one of"),
+            ({"test_scenes": "mine"}, r"q1.json: /test_scenes: expected shared or per_seed"),
             ({"environment": "kitchen"}, r"is a scenario of tabletop, expected kitchen"),
         ]:
             with self.subTest(change):
@@ -116,17 +121,52 @@ class Variants(Case):
         self.assert_matches_schemas("out")
         rows = {row["method"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]
                 if row["method_kind"] == "method"}
-        self.assertEqual(rows, {"lga+epochs=5", "lga+epochs=6+loss=squared", "factorial+epochs=5"})
-        for shown in ("LGA epochs=5 ", "LGA epochs=6 loss=squared ", "factorial epochs=5 "):
+        self.assertEqual(rows, {"lga+epochs=5", "lga+loss=squared", "factorial"})
+        for shown in ("LGA epochs=5 ", "LGA loss=squared ", "factorial "):
             self.assertIn("  " + shown, table)
+        settings = json.loads((self.dir / "out/run.json").read_text())["settings"]
+        self.assertEqual([settings[row]["epochs"] for row in ("lga+epochs=5", "lga+loss=squared", "factorial")], [5, 6, 5])
+        self.assertIn("beside the plugins' defaults, epochs=6, loss=squared: LGA loss=squared\n", table)
         self.assertIn("0 cells computed, 6 were there", self.call(*arguments).stderr)
 
         # factorial with its defaults is LGA.
         results = {cell["method"]["name"]: [(self.dir / "out/cells" / key / name).read_bytes()
                                             for name in ("selection.json", "training.jsonl", "episodes.jsonl")]
                    for key, (cell, _) in self.cells("out").items()}
-        self.assertEqual(results["factorial+epochs=5"], results["lga+epochs=5"])
-        self.assertNotEqual(results["lga+epochs=6+loss=squared"], results["lga+epochs=5"])
+        self.assertEqual(results["factorial"], results["lga+epochs=5"])
+        self.assertNotEqual(results["lga+loss=squared"], results["lga+epochs=5"])
+
+
+class Presets(Case):
+    """A suite of the test's own: options of a preset, and test scenes of each training seed's own."""
+
+    def test_options_and_test_scenes(self):
+        suite = json.loads((BUILD / "share/lgabench/suites/q1.json").read_text())
+        suite.update(scenarios=["heart"], methods=["lga", "lga+loss=squared"], demonstrations=[10], seeds=[0, 1],
+                     episodes=3, options={"*": {"epochs": 7}},
+                     presets={"own": {"test_scenes": "per_seed", "options": {"*": {"epochs": 5}, "lga": {"batch_size": 5}}}})
+        (self.dir / "q1.json").write_text(json.dumps(suite))
+        table = self.call("run", "q1.json", "--preset", "own", "--out", "own", "--set", "*.learning_rate=0.002").stdout
+        self.call("run", "q1.json", "--out", "shared")
+        self.assert_matches_schemas("own")
+        for line in ("q1: preset own\n", "q1: each training seed plays test scenes of its own\n",
+                     "batch_size=5, epochs=5, learning_rate=0.002: LGA\n"):
+            self.assertIn(line, table)
+        scenes = {}
+        for run in ("own", "shared"):
+            for key, (cell, _) in self.cells(run).items():
+                options = cell["method"]["options"]
+                if cell["method"]["id"] == "lga":
+                    self.assertEqual((options["epochs"], options["batch_size"]), (5, 5) if run == "own" else (7, 10))
+                lines = (self.dir / run / "cells" / key / "episodes.jsonl").read_text().splitlines()
+                scenes.setdefault((run, cell["training_seed"]), set()).add(tuple(json.loads(l)["scene"] for l in lines))
+        self.assertEqual([len(each) for each in scenes.values()], [1] * 4)
+        self.assertEqual(scenes["shared", 0], scenes["shared", 1])
+        self.assertEqual(len(set().union(*scenes.values())), 3)
+        oracles = [cell["training_seed"] for cell, _ in self.cells("own").values() if cell["method"]["id"] == "oracle"]
+        self.assertEqual(sorted(oracles), [0, 1])
+        # The page draws each failed scene as it was played.
+        self.assertNotIn("samples another scene", (self.dir / "own/report.html").read_text())
 
 
 class Determinism(Case):
@@ -268,6 +308,18 @@ class Demonstrations(Case):
             self.call("run", "q1", "--methods", "lga", "--set", "lga.epochs=2", "--episodes", "1", "--out", out, *flags)
             self.assertEqual(json.loads((self.dir / out / "run.json").read_text())["smoke"], stamped)
             self.assertEqual({cell["smoke"] for cell, _ in self.cells(out).values()}, {stamped})
+
+
+class Commands(Case):
+    def test_demonstrations_are_per_seen_command(self):
+        arguments = ["--scenarios", "q3_fruit,q3_utensil", "--methods", "lga", "--demos", "10", "--seeds", "0",
+                     "--episodes", "2", "--set", "lga.epochs=1", "--no-reference"]
+        said = self.call("run", "q3", *arguments, "--out", "out").stdout
+        self.assertIn("demonstrations: 10 per command, 20 in all", said)
+        for key, (cell, _) in self.cells("out").items():
+            self.assertEqual(cell["demonstrations"], 10)
+            line = json.loads((self.dir / "out/cells" / key / "training.jsonl").read_text().splitlines()[-1])
+            self.assertEqual(line["steps"], 2, "batches of ten in one pass over 20 demonstrations")
 
 
 class Page(Case):

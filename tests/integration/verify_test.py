@@ -102,7 +102,7 @@ class Verify(unittest.TestCase):
 
     def test_other_data_are_named(self):
         shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")
-        with open(self.run_directory / "data" / "answers" / "gpt4.json", "a") as file:
+        with open(self.run_directory / "data" / "answers" / "claude.json", "a") as file:
             file.write("\n")  # the same answers, other bytes
         self.environment = {**self.environment, "LGABENCH_DATA": str(self.run_directory / "data")}
         said = self.verify("--all", expect=0).stdout

@@ -1,5 +1,6 @@
 // Goal masks, recorded answers, selection by asking, and the quality of what was selected.
 #include <algorithm>
+#include <map>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/human.hpp>
@@ -26,8 +27,8 @@ Asked scenario(const std::string& id, const std::string& utterance, Task task = 
   return {id, {utterance, task}, load_feature_space(space)};
 }
 
-Selection ask(const Asked& asked, const std::string& answers = "recorded") {
-  RecordedLanguageModel model(asked.space, asked.id, answers);
+Selection ask(const Asked& asked, const std::string& source) {
+  RecordedLanguageModel model(asked.space, asked.id, source);
   return select_features(asked.command, asked.space, model);
 }
 
@@ -74,6 +75,41 @@ TEST(GoalMask, AnythingIsAnObjectWithoutLanguage) {
   EXPECT_EQ(std::count(mask.begin(), mask.end(), 0), static_cast<std::ptrdiff_t>(pixels) - 5);
 }
 
+TEST(GoalMask, MayKeepTheFirstInstanceOfEachRoleAlone) {
+  Selection selection;  // 5, red, comes first of the hearts; the pan matches both sets
+  selection.target = {{"heart", "pan"}, {"red", "blue"}};
+  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  const auto first = goal_mask(four_objects(), selection, Instances::first);
+  EXPECT_EQ(first[0], 1);
+  EXPECT_EQ(first[pixels - 1], 1) << "all of an instance, wherever it is";
+  EXPECT_EQ(first[Observation::columns - 1], 0) << "the other heart";
+  EXPECT_EQ(first[pixels - Observation::columns], 0) << "what matches both is a target, and not the first";
+  EXPECT_EQ(first[1000], 1) << "target and avoid apart";
+  Observation hidden = four_objects();
+  hidden.ids[0] = hidden.ids[pixels - 1] = 0;
+  EXPECT_EQ(goal_mask(hidden, selection, Instances::first)[Observation::columns - 1], 1) << "the first that is seen";
+  const auto all = goal_mask(four_objects(), selection);
+  EXPECT_EQ(std::count(all.begin(), all.end(), 1), 5);
+}
+
+TEST(GoalMask, TellsRolesApart) {
+  Selection selection;
+  selection.target = {{"heart", "pan"}, {"red"}};
+  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  std::vector<std::uint8_t> roles;
+  role_mask(four_objects(), selection, roles);
+  EXPECT_EQ(roles[0], target_role);
+  EXPECT_EQ(roles[1000], avoid_role);
+  EXPECT_EQ(roles[pixels - Observation::columns], target_role) << "both";
+  EXPECT_EQ(roles[Observation::columns - 1], 0);
+}
+
+TEST(GoalMask, OfAnyObjectMayLeaveAnObjectTypeOut) {
+  const auto mask = object_mask(four_objects(), "heart");
+  EXPECT_EQ(std::count(mask.begin(), mask.end(), 1), 2);
+  EXPECT_EQ(mask[0], 0);
+}
+
 TEST(GoalMask, RefusesAnObservationThatContradictsItself) {
   Observation stray = four_objects();
   stray.ids[77] = 6;
@@ -110,10 +146,10 @@ const Study study[] = {
      nullptr},
 };
 
-TEST(RecordedAnswers, AreGpt4sForTheNineScenariosOfTheStudy) {
+TEST(RecordedAnswers, OfTheStudyAreGpt4sForItsNineScenarios) {
   for (const Study& s : study) {
     SCOPED_TRACE(s.id);
-    const Selection selection = ask(scenario(s.id, s.utterance));
+    const Selection selection = ask(scenario(s.id, s.utterance), "gpt4_study");
     EXPECT_EQ(selection.target.object_types.size(), s.types);
     EXPECT_EQ(selection.target.textures.size(), s.textures);
     EXPECT_TRUE(has(selection.target.object_types, s.yes_type));
@@ -126,31 +162,86 @@ TEST(RecordedAnswers, AreGpt4sForTheNineScenariosOfTheStudy) {
     }
     EXPECT_FALSE(selection.avoid);
     EXPECT_EQ(selection.provenance, Provenance::recorded);
-    EXPECT_EQ(selection.source, "gpt-4-0613");
+    EXPECT_EQ(selection.source, "GPT-4, version not stated there");
     EXPECT_EQ(selection.cost.lm_queries, 112);  // 29 object types and 83 textures
     EXPECT_EQ(selection.cost.lm_seconds, 0);
   }
 }
 
+TEST(RecordedAnswers, ReleasedWithTheCodeAreOnesToTheAppendixsWording) {
+  struct Released {
+    const char *id, *utterance;
+    std::size_t types, textures;
+  };
+  const Released released[] = {{"red_heart", "Bring me the red heart.", 1, 2},
+                               {"heart", "Bring me the heart.", 1, 83},  // all 82 that were asked about: any
+                               {"tiger_colored_object", "Bring me the tiger-colored object.", 29, 1},
+                               {"letter_from_the_word_letter", "Bring me a letter from the word 'letter'.", 3, 83},
+                               {"consonant_with_a_warm_color", "Bring me a consonant with a warm color on it.", 5, 44},
+                               {"vowel_with_multiple_colors", "Bring me a vowel with multiple colors on it.", 2, 44},
+                               {"something_to_drink_water_out_of", "Bring me something to drink water out of.", 3, 83}};
+  for (const Released& r : released) {
+    SCOPED_TRACE(r.id);
+    const Selection selection = ask(scenario(r.id, r.utterance), "gpt4_released");
+    EXPECT_EQ(selection.target.object_types.size(), r.types);
+    EXPECT_EQ(selection.target.textures.size(), r.textures);
+    EXPECT_EQ(selection.asked_as + ".", r.utterance);
+    EXPECT_SAYS(selection.source, "GPT-4 (released with the code");
+  }
+  const Selection sweep =
+      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep),
+          "gpt4_released");
+  EXPECT_EQ(sweep.target.object_types, std::vector<std::string>{"block"});
+  EXPECT_EQ(sweep.target.textures.size(), 83u);
+  ASSERT_TRUE(sweep.avoid);
+  EXPECT_EQ(sweep.avoid->object_types, std::vector<std::string>{"pan"});
+  EXPECT_EQ(sweep.avoid->textures.size(), 76u);
+  EXPECT_EQ(sweep.asked_as, "Sweep the block into the square without touching the pan");
+}
+
 TEST(RecordedAnswers, KeepTheWordingThatWasAsked) {
-  EXPECT_EQ(ask(scenario("red_heart", "Bring me the red heart.")).asked_as, "Bring me the red heart");
-  EXPECT_EQ(ask(scenario("vowel_with_multiple_colors", "Bring me a vowel with multiple colors on it.")).asked_as,
+  EXPECT_EQ(ask(scenario("vowel_with_multiple_colors", "Bring me a vowel with multiple colors on it."), "gpt4_study")
+                .asked_as,
             "Bring me a vowel that has multiple colors on it");
 }
 
-TEST(RecordedAnswers, AreClaudesWhereGpt4WasNotAskedOrByChoice) {
-  const Selection block = ask(scenario("rotate_block", "Rotate the block.", Task::rotate));
-  EXPECT_EQ(block.source, "Claude (Anthropic, 2026)");
-  EXPECT_EQ(block.target.object_types,
-            (std::vector<std::string>{"L-shaped block", "block", "shorter block", "small block"}));
-  const Asked letter = scenario("letter", study[6].utterance);
-  EXPECT_FALSE(has(ask(letter, "gpt4").target.object_types, "letter V"));
-  EXPECT_TRUE(has(ask(letter, "claude").target.object_types, "letter V"));
+TEST(RecordedAnswers, AreEachScenariosOwn) {
+  const std::map<std::string, std::pair<std::string, std::string>> others{
+      {"rotate_block", {"claude", "claude"}},
+      {"rotate_block_clockwise", {"claude", "claude"}},
+      {"rotate_something_to_drink_water_out_of", {"claude", "claude"}},
+      {"rotate_something_to_drink_water_out_of_as_printed", {"claude", "claude"}},
+      {"sweep_block_without_touching_line", {"claude", "claude"}},
+      {"sweep_block_without_touching_pan", {"gpt4_released", "gpt4_released"}},
+      {"letter", {"gpt4_study", "gpt4_study"}},
+      {"something_from_a_typical_kitchen", {"gpt4_study", "gpt4_study"}},
+      {"q2_letter", {"gpt4_study", "gpt4_study"}},
+      {"q2_bowl", {"claude", "claude"}},
+      {"q2_block", {"gpt4_released", "gpt4_released"}},
+      {"q3_food", {"claude", "claude"}},
+      {"q3_fruit", {"claude", "claude"}},
+      {"q3_utensil", {"claude", "claude"}}};
+  int of_study = 0;
+  for (const std::string& id : scenario_ids()) {
+    SCOPED_TRACE(id);
+    const Scenario s = load_scenario(id);
+    const auto other = others.find(id);
+    const std::pair<std::string, std::string> expected =
+        other == others.end() ? std::pair<std::string, std::string>{"gpt4_released", "gpt4_study"} : other->second;
+    EXPECT_EQ(recorded_source(s, "recorded"), expected.first);
+    EXPECT_EQ(recorded_source(s, "recorded", true), expected.second);
+    EXPECT_EQ(recorded_source(s, "claude", true), "claude");
+    of_study += s.id.rfind("q2_", 0) != 0 && s.edited == "gpt4_study";
+    for (const std::string& source : {s.recorded, s.edited})
+      for (std::size_t c = 0; c < s.commands.size(); ++c)
+        EXPECT_TRUE(RecordedLanguageModel(s, source).knows(s.command(static_cast<int>(c))));
+  }
+  EXPECT_EQ(of_study, 9);
 }
 
 TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
-  const Selection sweep =
-      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep));
+  const Selection sweep = ask(
+      scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep), "claude");
   ASSERT_TRUE(sweep.avoid);
   EXPECT_EQ(sweep.avoid->object_types, std::vector<std::string>{"pan"});
   EXPECT_EQ(sweep.avoid->textures.size(), 83u);
@@ -159,23 +250,25 @@ TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
 }
 
 TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
-  // GPT-4 was not asked about rotate_block.
-  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4"); }),
+  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4_study"); }),
+              "answers of gpt4_study: expected some for scenario rotate_block, \"Rotate the block.\"");
+  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4_study"); }),
               "vowel_with_multiple_colors");
-  EXPECT_THROW(ask(scenario("x", "Bring me the moon.")), InputError);
-  EXPECT_THROW(ask(scenario("heart", "Bring me the heart."), "gpt5"), InputError);
+  EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
+  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
+              "expected recorded or one of claude, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
-  EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", Task::sweep)), MethodError);
+  EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", Task::sweep), "gpt4_released"), MethodError);
 
   const Asked heart = scenario("heart", "Bring me the heart.");
-  RecordedLanguageModel model(heart.space, heart.id, "recorded");
+  RecordedLanguageModel model(heart.space, heart.id, "gpt4_released");
   const Question unknown{Question::About::target, Question::Group::texture, "plaid"};
   EXPECT_THROW(model.answer(heart.command, heart.space, {unknown}), MethodError);
 }
 
 TEST(SelectFeatures, CountsOnlyItsOwnQueriesAndWantsEveryAnswer) {
   const Asked heart = scenario("heart", "Bring me the heart.");
-  RecordedLanguageModel model(heart.space, heart.id, "recorded");
+  RecordedLanguageModel model(heart.space, heart.id, "gpt4_released");
   select_features(heart.command, heart.space, model);
   EXPECT_EQ(select_features(heart.command, heart.space, model).cost.lm_queries, 112);
   EXPECT_EQ(model.cost().lm_queries, 224);
@@ -185,7 +278,7 @@ TEST(SelectFeatures, CountsOnlyItsOwnQueriesAndWantsEveryAnswer) {
     std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override {
       return {true};
     }
-  } silent(heart.space, heart.id, "recorded");
+  } silent(heart.space, heart.id, "gpt4_released");
   EXPECT_THROW(select_features(heart.command, heart.space, silent), MethodError);
 }
 
@@ -194,6 +287,20 @@ Selection selection_of(FeatureSet target, Provenance provenance = Provenance::tr
   s.target = std::move(target);
   s.provenance = provenance;
   return s;
+}
+
+TEST(Human, AnswersAsTheMethodDeclares) {
+  const Command command{"words", Task::pick_and_place};
+  const std::vector<ScenarioCommand> commands{{"words", selection_of({{"heart"}, {"red"}})}};
+  const auto who = [&](const char* asks) { return DeclaredHuman(std::make_unique<TruthAsHuman>(commands), asks); };
+  EXPECT_EQ(who("specify").specify(command).target.textures, std::vector<std::string>{"red"});
+  EXPECT_THROW(who("specify").edit(command, {}), MethodError);
+  EXPECT_EQ(who("edit").edit(command, {}).provenance, Provenance::simulated_edit);
+  EXPECT_THROW(who("edit").specify(command), MethodError);
+  EXPECT_SAYS(message_of<MethodError>([&] { who("").specify(command); }), "LGABENCH_METHOD_ASKING(\"specify\", ...)");
+  EXPECT_THROW(who("truth").specify(command), MethodError);
+  EXPECT_EQ(declared_truth(commands, "truth")(command).target.textures, std::vector<std::string>{"red"});
+  EXPECT_SAYS(message_of<MethodError>([&] { declared_truth(commands, "specify")(command); }), "services.truth()");
 }
 
 TEST(Human, SpecifiesTheTruthAndEditsObjectTypesOnly) {

@@ -1,4 +1,6 @@
 // Random numbers, JSON, scenarios, actions: values that everything else stands on.
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +13,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
 
 #include "testing.hpp"
 
@@ -105,6 +108,54 @@ TEST(JsonReader, MalformedFileIsNamedWithItsLine) {
   EXPECT_SAYS(message_of<Error>([&] { read_json(file); }), file.string() + ": cannot be read");
 }
 
+std::string json_refusal(const std::string& text) {
+  return message_of<InputError>([&] { parse_json(text, "f.json"); });
+}
+
+TEST(ParseJson, RefusesWhatNoReaderCouldBear) {
+  EXPECT_EQ(parse_json(R"({"a": [1, -2, 3.5, "x", null, true, {"b": {}}, []]})", "f").dump(),
+            R"({"a":[1,-2,3.5,"x",null,true,{"b":{}},[]]})");
+  EXPECT_EQ(parse_json("7", "f"), 7);
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  EXPECT_EQ(parse_json(nested(100), "f").dump(), nested(100));
+  EXPECT_SAYS(json_refusal(nested(101)), "f.json: /0/0/0");
+  EXPECT_SAYS(json_refusal(nested(101)), ": expected no more than 100 levels");
+  EXPECT_SAYS(json_refusal(std::string(1000000, '[')), "no more than 100 levels");
+  EXPECT_EQ(json_refusal(R"({"a": [0, {"b": 1, "c": 2, "b": 3}]})"),
+            "f.json: /a/1: expected each member once, got a second \"b\"");
+  EXPECT_EQ(json_refusal(R"({"a": 1e999})"), "f.json: /: expected a number within the range of a double");
+  EXPECT_SAYS(json_refusal(std::string(400, '9')), "within the range of a double");
+  EXPECT_EQ(json_refusal("[1,\n2"), "f.json: line 2 (byte 6): expected valid JSON");
+  EXPECT_EQ(json_refusal(""), "f.json: byte 1: expected valid JSON");
+  EXPECT_SAYS(json_refusal("[1] 2"), "expected valid JSON");
+  EXPECT_EQ(json_or_null("[1"), Json());
+  EXPECT_EQ(message_of<InputError>([] { parse_json_lines("{}\n[\n", "f.jsonl"); }),
+            "f.jsonl: line 2: byte 2: expected valid JSON");
+}
+
+TEST(ReadFile, ReadsRegularFilesAlone) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path / "file", link = directory.path / "link", pipe = directory.path / "pipe";
+  write_file(file, "bytes");
+  fs::create_symlink(file, link);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(read_file(link), "bytes");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(link, Links::refused); }), "link: a symbolic link");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(pipe); }), "pipe: cannot be read: not a regular file");
+  EXPECT_SAYS(message_of<InputError>([] { read_file("/dev/zero"); }), "not a regular file");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(directory.path); }), "not a regular file");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(file, Links::followed, 4); }), "expected at most 4");
+  EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }), "a run holds");
+}
+
+TEST(Printable, LeavesNoControlSequence) {
+  EXPECT_EQ(printable("plain, φ̂ – \U0001F600\n\ttext"), "plain, φ̂ – \U0001F600\n\ttext");
+  EXPECT_EQ(printable("\x1b[31m\r\x07\x7f"), "\\x1b[31m\\x0d\\x07\\u007f");
+  EXPECT_EQ(printable("\u009b31m\u202eabc\u2066"), "\\u009b31m\\u202eabc\\u2066");
+  EXPECT_EQ(printable("\xff\xc3(\xed\xa0\x80\xc0\x80\xe2\x82"), "\\xff\\xc3(\\xed\\xa0\\x80\\xc0\\x80\\xe2\\x82");
+  EXPECT_EQ(one_line("a\nb\tc"), "a\\nb\\x09c");
+}
+
 Json heart() { return load_scenario("heart").json; }
 
 std::string refusal(const Json& json) {
@@ -121,8 +172,39 @@ TEST(Scenario, AllShippedOnesAreRead) {
   EXPECT_EQ(s.commands[0].truth.provenance, Provenance::truth);
 }
 
-TEST(Scenario, WarmColoursAreNeverDistractors) {
-  const Scenario s = load_scenario("consonant_with_a_warm_color");
+TEST(Scenario, DemonstrationsCountForEachSeenCommand) {
+  EXPECT_EQ(load_scenario("heart").training_scenes(50), 50);
+  EXPECT_EQ(load_scenario("q2_block").training_scenes(50), 50);
+  for (const char* id : {"q3_fruit", "q3_food", "q3_utensil"}) {
+    const Scenario s = load_scenario(id);
+    EXPECT_EQ(s.training_scenes(50), 100) << id;
+    EXPECT_EQ(s.commands_of("train"), (std::vector<int>{0, 1})) << "in turn";
+  }
+}
+
+TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
+  const auto textures = [](const char* id, Truth truth) {
+    return load_scenario(id, truth).commands[0].truth.target.textures.size();
+  };
+  const struct {
+    const char* id;
+    std::size_t released, printed;
+  } truths[] = {{"red_heart", 5, 4}, {"consonant_with_a_warm_color", 48, 37}, {"vowel_with_multiple_colors", 65, 62}};
+  for (const auto& t : truths) {
+    EXPECT_EQ(textures(t.id, Truth::released), t.released) << t.id;
+    EXPECT_EQ(textures(t.id, Truth::printed), t.printed) << t.id;
+    EXPECT_EQ(load_scenario(t.id, Truth::printed).json.at("truth"), "printed") << "a cell says so";
+    EXPECT_FALSE(load_scenario(t.id, Truth::printed).json.contains("printed"));
+    EXPECT_FALSE(load_scenario(t.id).json.contains("truth"));
+  }
+  EXPECT_EQ(load_scenario("heart", Truth::printed).json, load_scenario("heart").json) << "nothing differs";
+  EXPECT_FALSE(load_scenario("consonant_with_a_warm_color").never_distractor) << "the list holds plain warm colours";
+  EXPECT_EQ(read_truth("printed"), Truth::printed);
+  EXPECT_SAYS(message_of<InputError>([] { read_truth("true"); }), "expected released or printed, got \"true\"");
+}
+
+TEST(Scenario, WarmColoursAreNeverDistractorsOfThePrintedTruth) {
+  const Scenario s = load_scenario("consonant_with_a_warm_color", Truth::printed);
   ASSERT_TRUE(s.never_distractor);
   EXPECT_EQ(s.never_distractor->object_types, s.space.object_types);
   for (const std::string& texture : s.space.textures) {
@@ -143,9 +225,20 @@ TEST(Scenario, RefusesBadInput) {
   json["commands"][0]["truth"]["target"]["textures"] = {"red", "red"};
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
+  json["answers"] = {{"recorded", "gpt4"}};
+  EXPECT_SAYS(refusal(json), "mine.json: /answers/recorded: expected one of: claude, gpt4_released, gpt4_study");
+  json = heart();
+  json["printed"] = {{"task", "rotate"}};
+  EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");
+  json = heart();
   json["task"] = "juggle";
   EXPECT_SAYS(refusal(json), "mine.json: /task: expected pick_and_place, rotate or sweep, got \"juggle\"");
   json = heart();
+  for (const char* name : {"", "a/../../b", "a\n", "a b", "=1"}) {
+    Json named = heart();
+    named["tests"][0]["arm"] = name;
+    EXPECT_SAYS(refusal(named), "/tests/0/arm: expected a name of letters");
+  }
   json["tests"] = Json::array();
   EXPECT_SAYS(refusal(json), "mine.json: /tests: expected at least one arm");
   json = heart();
@@ -175,6 +268,19 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["train"] = {{"target", json["commands"][0]["truth"]["target"]}};
   EXPECT_SAYS(refusal(json), "mine.json: /train: expected \"as_method_asks\": false");
+  json["train"] = {{"barrier_distances_m", {.21, .05}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m/1: expected 0.15 to 0.3, got 0.05");
+  json["train"] = {{"barrier_distances_m", Json::array()}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m: expected at least one");
+  json = heart();
+  json["direction"] = "clockwise";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected no direction for another task than rotate");
+  json = load_scenario("rotate_block").json;
+  json["direction"] = "left";
+  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected clockwise or counter_clockwise, got \"left\"");
+  json["direction"] = "clockwise";
+  json["angle_deg"] = -120;
+  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 0, at most 180, got -120");
   EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
 }
 

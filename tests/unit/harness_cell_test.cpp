@@ -88,7 +88,7 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
 TEST_F(Play, FileReadsBackAsItWasWritten) {
   const auto before = demonstrations(3, 2);
   write_file(path / "d.hdf5", bytes(before));
-  const auto after = read_demonstrations(path / "d.hdf5");
+  const auto after = read_demonstrations(read_file(path / "d.hdf5"), (path / "d.hdf5").string());
   ASSERT_EQ(after.size(), before.size());
   EXPECT_EQ(bytes(after), bytes(before));
   for (std::size_t i = 0; i < after.size(); ++i) {
@@ -118,7 +118,7 @@ TEST_F(Play, ADamagedFileIsRefusedAndNeverACrash) {
         bad[static_cast<std::size_t>(i * 131 + k * 7) % good.size()] = static_cast<char>(i * k);
     write_file(path / "d.hdf5", bad);
     try {
-      read_demonstrations(path / "d.hdf5");
+      read_demonstrations(read_file(path / "d.hdf5"), (path / "d.hdf5").string());
     } catch (const InputError& e) {
       ++refused;
       EXPECT_EQ(std::string(e.what()).find((path / "d.hdf5").string()), 0u) << e.what();
@@ -212,6 +212,36 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
   }
 }
 
+// Says of every second input that it had learned from it.
+class Telling : public Policy {
+ public:
+  Action act(const Observation&, const Instruction&) override {
+    ++acts_;
+    return {{{.5, 0}, {}}, {{.5, 0}, {}}};
+  }
+  std::optional<bool> seen_in_training() const override { return acts_ % 2 == 0; }
+
+ private:
+  int acts_ = 0;
+};
+
+TEST_F(Play, AnEpisodeKeepsWhetherItsInputStoodInTraining) {
+  const std::vector<Instruction> instructions{{"u", {}}};
+  Telling telling;
+  Sometimes silent(0);
+  const auto scenes = tests(*scenario, 3);
+  const auto played = [&](Policy& policy) {
+    return evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+  };
+  auto episodes = played(telling);
+  attribute_failures(*environment, scenario->space, scenes, policy_actor(telling, instructions, "p"), episodes);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(episodes[i].input_seen, i % 2 == 1) << "of the action that counts";
+    EXPECT_EQ(to_json(episodes[i]).at("input_seen"), i % 2 == 1);
+  }
+  for (const Episode& e : played(silent)) EXPECT_FALSE(to_json(e).contains("input_seen"));
+}
+
 TEST_F(Play, WithoutAnAbstractionAnEpisodeIsNotPlayed) {
   auto scenes = tests(*scenario, 4);
   scenes[2].abstraction_empty = true;
@@ -294,7 +324,7 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   const auto demonstrations = demonstrate(*household, shown, {}, {tomato, apple, any});
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(demonstrations[i].instruction.utterance, i % 2 ? apple : tomato);
-    EXPECT_EQ(shown[i].objects.size(), 2u) << "the named one and the pallet";
+    EXPECT_EQ(shown[i].objects.size(), 3u) << "the named one, a distractor and the pallet";
     EXPECT_EQ(shown[i].find(Role::target)->object_type, i % 2 ? "apple" : "tomato");
   }
 }

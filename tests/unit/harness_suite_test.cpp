@@ -27,6 +27,29 @@ Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), p
 
 Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
 
+TEST(Expand, AsksThePeopleThatAMethodDeclares) {
+  Catalogue known = catalogue();
+  known.plugins[1].asks = "edit";
+  Participant edits, specifies;
+  edits.id = "one", specifies.id = "two";
+  for (const char* id : {"heart", "letter"}) {
+    const std::pair<std::string, std::string> command(id, load_scenario(id).commands[0].utterance);
+    edits.answers[command].edited = Selection();
+    specifies.answers[command].specified = Selection();
+  }
+  const std::vector<Cell> cells = expand(
+      load_suite("q1"), small_grid(), {"recorded", Json::object(), true, Truth::released, {edits, specifies}}, known);
+  for (const Cell& cell : cells) {
+    EXPECT_EQ(cell.participant.has_value(), cell.method.id == "b") << cell.title();
+    if (cell.participant) {
+      EXPECT_EQ(cell.participant->id, "one");
+    }
+    EXPECT_EQ(cell.method.asks, cell.method.id == "b" ? "edit" : "");
+    EXPECT_EQ(to_json(cell).at("method").contains("asks"), cell.method.id == "b");
+    EXPECT_EQ(to_json(read_cell(to_json(cell), "cell.json")), to_json(cell));
+  }
+}
+
 TEST(Suite, q1) {
   const Suite suite = load_suite("q1");
   EXPECT_EQ(suite.grid.scenarios.size(), 13u);
@@ -39,7 +62,10 @@ TEST(Suite, q1) {
   EXPECT_FALSE(board.smoke);
   EXPECT_EQ(board.layouts, std::vector<std::string>{"continuous"});
   EXPECT_EQ(board.episodes, 100);
-  EXPECT_EQ(board.seeds.size(), 5u);
+  EXPECT_EQ(board.seeds.size(), 3u);
+  EXPECT_EQ(board.test_scenes, "per_seed");
+  EXPECT_EQ(board.options, suite.grid.options);
+  EXPECT_EQ(to_json(preset_grid(suite, "paper")), to_json(suite.grid)) << "the paper's setting is the suite's own";
   EXPECT_EQ(board.demonstrations.size(), 5u) << "what a preset does not name it takes from the suite";
 }
 
@@ -129,16 +155,93 @@ std::vector<std::string> rows(const std::vector<std::string>& methods, const Jso
   return names;
 }
 
-TEST(Variants, AreNamedByTheOptionsThatDifferFromTheDefaults) {
+TEST(Variants, AreNamedByWhatTellsThemFromOtherRowsOfTheirId) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(rows({"a", "a+loss=squared+epochs=5", "b+rate=0.5+loss=norm", "b+rate=1e+30"}),
             (Names{"a 750", "a+epochs=5+loss=squared 5", "b 750", "b+rate=1e+30 750"}));
-  EXPECT_EQ(rows({"a+rate=1"}), (Names{"a+rate=1.0 750"})) << "a whole number for a fractional option";
+  EXPECT_EQ(rows({"a", "a+rate=1"}), (Names{"a 750", "a+rate=1.0 750"})) << "a whole number for a fractional option";
+  EXPECT_EQ(rows({"a+epochs=5+loss=squared", "b"}), (Names{"a 5", "b 750"})) << "nothing to tell it from";
+  EXPECT_EQ(rows({"a+epochs=5+loss=squared", "a+epochs=6+loss=squared"}), (Names{"a+epochs=5 5", "a+epochs=6 6"}));
+  EXPECT_EQ(rows({"a+epochs=750", "a+epochs=5"}), rows({"a", "a+epochs=5"})) << "however a row is written";
 }
 
 TEST(Variants, TakeSettingsOfTheirIdForWhatTheyDoNotSetThemselves) {
   EXPECT_EQ(rows({"a", "a+epochs=750", "a+loss=x", "b"}, {{"a", {{"epochs", 9}}}}),
-            (std::vector<std::string>{"a+epochs=9 9", "a 750", "a+epochs=9+loss=x 9", "b 750"}));
+            (std::vector<std::string>{"a 9", "a+epochs=750 750", "a+loss=x 9", "b 750"}));
+}
+
+TEST(GridOptions, TheFirstGivenHolds) {
+  const auto epochs = [](const std::string& method, const Json& settings, const Json& options) {
+    Grid grid{{"heart"}, {"cells"}, {"e"}, {method}, {10}, {0}, 5, 7, false};
+    grid.options = options;
+    return expand(load_suite("q1"), grid, {"recorded", settings, false}, catalogue())
+        .front()
+        .method.options.at("epochs")
+        .get<int>();
+  };
+  const auto of = [](const char* id, int n) { return Json{{id, {{"epochs", n}}}}; };
+  const auto both = [&](Json one, const Json& other) {
+    one.update(other);
+    return one;
+  };
+  EXPECT_EQ(epochs("a+epochs=1", both(of("a", 2), of("*", 3)), both(of("a", 4), of("*", 5))), 1);
+  EXPECT_EQ(epochs("a", both(of("a", 2), of("*", 3)), both(of("a", 4), of("*", 5))), 2);
+  EXPECT_EQ(epochs("a", of("*", 3), both(of("a", 4), of("*", 5))), 3);
+  EXPECT_EQ(epochs("a", {}, both(of("a", 4), of("*", 5))), 4);
+  EXPECT_EQ(epochs("b", {}, both(of("a", 4), of("*", 5))), 5);
+  EXPECT_EQ(epochs("a", {}, {}), 750);
+}
+
+// A suite of the test's own, with these options in its preset "p".
+std::string refusal_of_options(const Json& options) {
+  const TemporaryDirectory directory;
+  Json suite = read_json(data_directory() / "suites" / "q1.json");
+  suite["methods"] = {"a", "b+epochs=5"};
+  suite["engines"] = {"e"};
+  suite.erase("options");
+  suite["presets"] = {{"p", {{"options", options}}}};
+  write_file(directory.path / "q1.json", canonical(suite));
+  Catalogue shipped = catalogue();
+  shipped.plugins[0].options.erase("loss");
+  return message_of<InputError>([&] {
+    const Suite own = load_suite((directory.path / "q1.json").string());
+    expand(own, preset_grid(own, "p"), {}, shipped);
+  });
+}
+
+TEST(GridOptions, AreRefusedWithTheirPlace) {
+  EXPECT_EQ(refusal_of_options({{"*", {{"loss", "squared"}}}, {"b", {{"rate", 1}}}}), "")
+      << "a need not have every option in *";
+  EXPECT_SAYS(refusal_of_options({{"c", {{"epochs", 5}}}}),
+              "q1.json: /presets/p/options: unknown member \"c\", expected one of: *, a, b");
+  EXPECT_SAYS(refusal_of_options({{"a", 5}}), "q1.json: /presets/p/options/a: expected an object");
+  EXPECT_SAYS(refusal_of_options({{"a", {{"epochs", {5}}}}}), "q1.json: /presets/p/options/a/epochs: expected a text");
+  EXPECT_SAYS(refusal_of_options({{"a", {{"epoks", 5}}}}), "q1.json: /presets/p/options/a: unknown member \"epoks\"");
+  EXPECT_SAYS(refusal_of_options({{"*", {{"epoks", 5}}}}), "q1.json: /presets/p/options/*: unknown member \"epoks\"");
+  EXPECT_SAYS(refusal_of_options({{"*", {{"epochs", "few"}}}}),
+              "q1.json: /presets/p/options/*/epochs: expected a whole number");
+}
+
+TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
+  Grid grid = small_grid();
+  const std::vector<Cell> shared = expand(load_suite("q1"), grid, {}, catalogue());
+  grid.test_scenes = "per_seed";
+  const std::vector<Cell> own = expand(load_suite("q1"), grid, {}, catalogue());
+  // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + 3 seeds x (random object + oracle))
+  EXPECT_EQ(own.size(), 2u * (2 * 3 * 3 + 3 * 2));
+  EXPECT_EQ(shared.front().scenes_of_seed(), std::nullopt);
+  std::set<std::uint64_t> oracles;
+  for (const Cell& cell : own) {
+    EXPECT_EQ(cell.scenes_of_seed(), cell.training_seed);
+    EXPECT_EQ(key(read_cell(to_json(cell), "test")), key(cell));
+    if (cell.method.id == "oracle") oracles.insert(cell.training_seed);
+  }
+  EXPECT_EQ(oracles, (std::set<std::uint64_t>{0, 1, 2}));
+  Json old = to_json(shared.front());
+  old.erase("test_scenes");
+  EXPECT_EQ(read_cell(old, "test").test_scenes, "shared") << "a cell of 0.1";
+  old["test_scenes"] = "mine";
+  EXPECT_SAYS(message_of<InputError>([&] { read_cell(old, "test"); }), "/test_scenes: expected shared or per_seed");
 }
 
 TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
@@ -146,7 +249,7 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
     return message_of<InputError>([&] { rows(methods); });
   };
   EXPECT_SAYS(refusal({"a", "b", "a+epochs=750"}), "\"a\" and \"a+epochs=750\" are the same row, a;");
-  EXPECT_SAYS(refusal({"a+loss=x+epochs=5", "a+epochs=5+loss=x"}), "the same row, a+epochs=5+loss=x;");
+  EXPECT_SAYS(refusal({"a+loss=x+epochs=5", "a+epochs=5+loss=x"}), "the same row, a;");
   for (const char* malformed : {"a+", "a+5", "a+loss", "a+loss+epochs=5", "a+loss=x+", "a+epochs=5+epochs=6"})
     EXPECT_SAYS(refusal({malformed}), "expected ID+OPTION=VALUE+...");
   EXPECT_SAYS(refusal({"a+epoks=5"}), "epoks");
@@ -156,13 +259,16 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
 
 TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
-  for (const std::string id : {"factorial", "q1_long"}) {
+  for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"}) {
     const Suite suite = load_suite(id);
-    EXPECT_EQ(suite.grid.scenarios, load_suite("q1").grid.scenarios) << id;
-    for (const std::string preset : {"", "smoke", "paper", "leaderboard"}) {
+    if (id[0] != 'q' || id == "q1_long") {
+      EXPECT_EQ(suite.grid.scenarios, load_suite("q1").grid.scenarios) << id;
+    }
+    for (const std::string preset : {"", "smoke", "paper", "paper_text", "leaderboard"}) {
       Grid grid = preset_grid(suite, preset);
       grid.engines = {engine_under_test().id};
-      const std::size_t each = grid.demonstrations.size() * grid.seeds.size() * (grid.methods.size() + 1) + 2;
+      const std::size_t seeds = grid.seeds.size(), sets = grid.test_scenes == "per_seed" ? seeds : 1;
+      const std::size_t each = grid.demonstrations.size() * seeds * (grid.methods.size() + 1) + 2 * sets;
       EXPECT_EQ(expand(suite, grid, {}, shipped).size(), grid.scenarios.size() * each) << id << " " << preset;
     }
   }

@@ -145,7 +145,7 @@ TEST_F(AskedTest, an_answer_that_fails_is_why_the_call_failed) {
 
 TEST_F(AskedTest, a_malformed_question_breaks_the_protocol) {
   EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "ask"}}); }), "expected");
-  EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "person"}, {"how", "guess"}}); }), "specify or edit");
+  EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "person"}, {"how", "guess"}}); }), "specify, edit or truth");
   EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
 }
 

@@ -1,4 +1,5 @@
 // The network and Adam against LibTorch's own modules and optimiser.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <torch/torch.h>
 
@@ -14,27 +15,45 @@ namespace {
 
 namespace nn = torch::nn;
 
+constexpr auto text = Architecture::text, released = Architecture::released, plain = Architecture::plain;
+
+// Of Adam: after batch normalisation of ReLU's outputs rounding grows tenfold every few steps of 1e-3, in PyTorch's
+// single against its double precision alike.
+double learning_rate(Architecture architecture) { return architecture == released ? 1e-4 : 1e-3; }
+
 // The same network from torch's modules, its parameters in the order of ours.
 struct Reference {
   std::vector<nn::Sequential> towers;
-  nn::Linear text{nullptr}, head{nullptr};
-  bool batch_norm;
+  std::vector<nn::Linear> own;  // of each tower in the released code's network with text
+  nn::Linear words{nullptr}, joined{nullptr}, last{nullptr};
 
-  explicit Reference(const NetworkShape& shape) : batch_norm(shape.batch_norm) {
+  explicit Reference(const NetworkShape& shape) {
+    const bool released = shape.architecture == Architecture::released, deep = released && shape.text;
     for (const int channels : shape.channels) {
       nn::Sequential tower;
-      const auto block = [&](int from, int to, int kernel, int stride) {
+      const auto block = [&](int from, int to, int kernel, int stride, bool is_last = false) {
         tower->push_back(nn::Conv2d(nn::Conv2dOptions(from, to, kernel).stride(stride)));
-        if (batch_norm) tower->push_back(nn::BatchNorm2d(to));
-        tower->push_back(nn::ReLU());
+        if (shape.architecture == Architecture::text) tower->push_back(nn::BatchNorm2d(to));
+        if (released && is_last)
+          tower->push_back(nn::LeakyReLU());
+        else
+          tower->push_back(nn::ReLU());
+        if (released) tower->push_back(nn::BatchNorm2d(to));
       };
       block(channels, 32, 8, 4);
       block(32, 64, 4, 2);
-      block(64, 32, 3, 1);
+      block(64, 32, 3, 1, true);
       towers.push_back(tower);
+      if (deep) own.push_back(nn::Linear(160, 100));
     }
-    if (shape.text) text = nn::Linear(384, 100);
-    head = nn::Linear(160 * static_cast<std::int64_t>(towers.size()) + (shape.text ? 100 : 0), 12);
+    const auto count = static_cast<std::int64_t>(towers.size());
+    if (deep) {
+      joined = nn::Linear(100 * count + 384, 100);
+      last = nn::Linear(100, 12);
+    } else {
+      if (shape.text) words = nn::Linear(384, 100);
+      joined = nn::Linear(160 * count + (shape.text ? 100 : 0), 12);
+    }
   }
 
   std::vector<torch::Tensor> parameters() {
@@ -43,8 +62,9 @@ struct Reference {
       all.insert(all.end(), more.begin(), more.end());
     };
     for (auto& tower : towers) add(tower->parameters());
-    if (text) add(text->parameters());
-    add(head->parameters());
+    for (auto& linear : own) add(linear->parameters());
+    for (auto& linear : {words, joined, last})
+      if (linear) add(linear->parameters());
     return all;
   }
 
@@ -55,13 +75,17 @@ struct Reference {
     };
     // Ours has channels last.
     std::vector<torch::Tensor> features;
-    for (std::size_t t = 0; t < towers.size(); ++t)
+    for (std::size_t t = 0; t < towers.size(); ++t) {
       features.push_back(
           towers[t]
               ->forward(tensor(s.pictures[t], {36, 72, shape.channels[t]}).permute({0, 3, 1, 2}).contiguous())
               .flatten(1));
-    if (text) features.push_back(text(tensor(s.text, {384})));
-    return head(torch::cat(features, 1));
+      if (last) features.back() = own[t](features.back());
+    }
+    if (words) features.push_back(words(tensor(s.text, {384})));
+    if (last) features.push_back(tensor(s.text, {384}));
+    const torch::Tensor output = joined(torch::cat(features, 1));
+    return last ? last(torch::relu(output)) : output;
   }
 };
 
@@ -73,7 +97,7 @@ Samples random_samples(const NetworkShape& shape, int rows) {
   for (auto& picture : s.pictures)
     for (float& value : picture) value = static_cast<float>(random.uniform());
   for (std::size_t t = 0; t < shape.channels.size(); ++t)
-    for (int row = 0; row < rows && shape.channels[t] == 1 && !shape.batch_norm; ++row) {
+    for (int row = 0; row < rows && shape.channels[t] == 1 && shape.architecture == Architecture::plain; ++row) {
       const int top = static_cast<int>(random.below(30)), left = static_cast<int>(random.below(60));
       for (int pixel = 0; pixel < input_pixels && row % 4 != 0; ++pixel) {
         const int y = pixel / input_columns - top, x = pixel % input_columns - left;
@@ -83,6 +107,26 @@ Samples random_samples(const NetworkShape& shape, int rows) {
     }
   for (float& value : s.text) value = static_cast<float>(random.gaussian() / 20);
   for (float& value : s.labels) value = static_cast<float>(random.uniform());
+  return s;
+}
+
+// As those, with every picture but for a rectangle like the first; the network is told so.
+Samples mostly_alike(const NetworkShape& shape, int rows) {
+  RandomStream random("alike");
+  Samples s = random_samples(shape, rows);
+  for (std::size_t t = 0; t < shape.channels.size(); ++t) {
+    const std::size_t numbers = s.usual[t].size(), channels = numbers / input_pixels;
+    for (int row = 1; row < rows; ++row) {
+      const int top = static_cast<int>(random.below(20)), left = static_cast<int>(random.below(50));
+      for (std::size_t i = 0; i < numbers; ++i) {
+        const int y = static_cast<int>(i / channels) / input_columns - top,
+                  x = static_cast<int>(i / channels) % input_columns - left;
+        if (y < 0 || y > 14 || x < 0 || x > 20)
+          s.pictures[t][static_cast<std::size_t>(row) * numbers + i] = s.pictures[t][i];
+      }
+    }
+  }
+  s.find_usual();
   return s;
 }
 
@@ -96,7 +140,10 @@ struct Case {
 class Pair {
  public:
   Pair(const NetworkShape& wanted, const Kernels& kernels)
-      : shape(wanted), ours(wanted, 3, kernels), torchs(wanted), optimiser_(torchs.parameters(), 1e-3) {
+      : shape(wanted),
+        ours(wanted, 3, kernels),
+        torchs(wanted),
+        optimiser_(torchs.parameters(), learning_rate(wanted.architecture)) {
     std::vector<float> first = ours.parameters();
     float* begin = first.data();
     for (torch::Tensor& p : torchs.parameters()) {
@@ -138,27 +185,34 @@ TEST_P(Networks, HaveTorchsOutputsLossAndGradients) {
   EXPECT_EQ(pair.ours.parameters().size(), tested.parameters);
 
   // 10 as in training, 3 as where there are few, 25 so that buffers grow.
-  for (const int rows : {10, 3, 25}) {
-    const Samples samples = random_samples(tested.shape, rows);
-    EXPECT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples), 1e-6);
-    const std::vector<float> gradients = pair.ours.gradients();
-    const float* begin = gradients.data();
-    for (const torch::Tensor& p : pair.torchs.parameters()) {
-      const torch::Tensor ours = torch::from_blob(const_cast<float*>(begin), p.sizes());
-      const double scale = p.grad().abs().max().item<double>();
-      // A bias before batch normalisation has gradient 0 but for rounding.
-      EXPECT_LT((ours - p.grad()).abs().max().item<double>(), 1e-5 * scale + 1e-6)
-          << rows << " rows, parameters from " << begin - gradients.data();
-      begin += p.numel();
+  for (const int rows : {10, 3, 25})
+    for (const bool alike : {false, true}) {
+      const Samples samples = (alike ? mostly_alike : random_samples)(tested.shape, rows);
+      EXPECT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples), 1e-6);
+      const std::vector<float> gradients = pair.ours.gradients();
+      const float* begin = gradients.data();
+      for (const torch::Tensor& p : pair.torchs.parameters()) {
+        const torch::Tensor ours = torch::from_blob(const_cast<float*>(begin), p.sizes());
+        const torch::Tensor error = ours - p.grad();
+        const auto what =
+            fmt::format("{} rows{}, parameters from {}", rows, alike ? " mostly alike" : "", begin - gradients.data());
+        if (tested.shape.architecture == plain) {
+          EXPECT_LT(error.abs().max().item<double>(), 1e-5 * p.grad().abs().max().item<double>() + 1e-6) << what;
+        } else {
+          // It enlarges rounding, which may open a ReLU; a bias before it has gradient 0 but for that.
+          EXPECT_LT(error.norm().item<double>(), 5e-3 * p.grad().norm().item<double>() + 1e-4) << what;
+        }
+        begin += p.numel();
+      }
     }
-  }
 
   for (auto& tower : pair.torchs.towers) tower->eval();  // running statistics, which the passes above moved
   const Samples samples = random_samples(tested.shape, 10);
   const torch::Tensor outputs = pair.torchs.forward(tested.shape, samples).contiguous();
   const std::vector<float> predicted = pair.ours.predict(samples);
   ASSERT_EQ(predicted.size(), 120u);
-  for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], outputs.data_ptr<float>()[i], 1e-5);
+  const double tolerance = tested.shape.architecture == plain ? 1e-5 : 1e-4;
+  for (std::size_t i = 0; i < predicted.size(); ++i) EXPECT_NEAR(predicted[i], outputs.data_ptr<float>()[i], tolerance);
 }
 
 TEST_P(Networks, TakeTheRowsThatABatchNames) {
@@ -166,7 +220,7 @@ TEST_P(Networks, TakeTheRowsThatABatchNames) {
   Network network(tested.shape, 3, *kernels);
   const Samples samples = random_samples(tested.shape, 6);
   const double one = network.backward(samples, {4}, Loss::norm), other = network.backward(samples, {1}, Loss::norm);
-  if (!tested.shape.batch_norm) {
+  if (tested.shape.architecture == Architecture::plain) {
     EXPECT_NEAR(network.backward(samples, {1, 4}, Loss::norm), (one + other) / 2, 1e-6);
     const double empty = network.backward(samples, {3}, Loss::norm);  // where there are masks
     EXPECT_NEAR(network.backward(samples, {1, 3}, Loss::norm), (other + empty) / 2, 1e-6);
@@ -181,41 +235,59 @@ TEST_P(Networks, FollowTorchsAdamOverTwentySteps) {
   for (int step = 0; step < 20; ++step) {
     ASSERT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples), 1e-4)
         << step;
-    pair.ours.update(1e-3);
+    pair.ours.update(learning_rate(tested.shape.architecture));
     pair.torchs_update();
   }
 }
 
-// A tower has 32(64c + 1) + 64(512 + 1) + 32(576 + 1) parameters, the text layer 100(384 + 1), the head 12 a feature
-// + 12.
+// A tower has 32(64c + 1) + 64(512 + 1) + 32(576 + 1) parameters and 2(32 + 64 + 32) of batch normalisation, the text
+// layer 100(384 + 1), the head 12 a feature + 12; `released` with text 100(160 + 1) a tower, 100(100 a tower + 385),
+// 1212.
+constexpr std::size_t mask_tower = 53376, rgb_tower = 57472, norms = 256;
 INSTANTIATE_TEST_SUITE_P(
     Shapes, Networks,
     testing::Combine(
-        testing::Values(Case{"mask", {{1}, false, false}, 55308}, Case{"rgb_and_text", {{3}, true, false}, 99104},
-                        Case{"mask_and_rgb", {{1, 3}, false, false}, 53376 + 57472 + 3852},
-                        Case{"rgb_segmentation_and_text", {{3, 1}, true, false}, 57472 + 53376 + 38500 + 5052},
-                        Case{"text", {{}, true, false}, 38500 + 1212},
-                        Case{"batch_norm", {{1}, false, true}, 55308 + 2 * (32 + 64 + 32)}),
+        testing::Values(
+            Case{"plain_mask", {{1}, false, plain}, 55308}, Case{"plain_rgb_and_text", {{3}, true, plain}, 99104},
+            Case{"plain_mask_and_rgb", {{1, 3}, false, plain}, mask_tower + rgb_tower + 3852},
+            Case{"plain_rgb_segmentation_and_text", {{3, 1}, true, plain}, rgb_tower + mask_tower + 38500 + 5052},
+            Case{"plain_text", {{}, true, plain}, 38500 + 1212},
+            Case{"text_mask", {{1}, false, text}, mask_tower + norms + 1932},
+            Case{"text_rgb_and_text", {{3}, true, text}, rgb_tower + norms + 38500 + 3132},
+            Case{"text_mask_and_rgb", {{1, 3}, false, text}, mask_tower + rgb_tower + 2 * norms + 3852},
+            Case{"text_rgb_segmentation_and_text",
+                 {{3, 1}, true, text},
+                 rgb_tower + mask_tower + 2 * norms + 38500 + 5052},
+            Case{"released_mask", {{1}, false, released}, mask_tower + norms + 1932},
+            Case{"released_rgb_and_text", {{3}, true, released}, rgb_tower + norms + 16100 + 48500 + 1212},
+            Case{"released_mask_and_rgb", {{1, 3}, false, released}, mask_tower + rgb_tower + 2 * norms + 3852},
+            Case{"released_rgb_segmentation_and_text",
+                 {{3, 1}, true, released},
+                 rgb_tower + mask_tower + 2 * norms + 2 * 16100 + 58500 + 1212},
+            Case{"released_text", {{}, true, released}, 38500 + 1212}),
         testing::ValuesIn(available_kernels())),
     [](const auto& tested) {
       return std::string(std::get<0>(tested.param).name) + "_" + std::get<1>(tested.param)->name;
     });
 
 TEST(Kernels, WithFusedMultiplyAddGiveTheSameBits) {
-  const NetworkShape shape{{1, 3}, true, false};
-  const Samples samples = random_samples(shape, 10);
-  std::vector<std::vector<float>> trained;
-  for (const Kernels* kernels : available_kernels()) {
-    if (kernels->name == std::string("portable")) continue;
-    Network network(shape, 3, *kernels);
-    for (int step = 0; step < 5; ++step) {
-      network.backward(samples, all_rows(samples), Loss::norm);
-      network.update(1e-3);
+  for (const Architecture architecture : {plain, text, released})
+    for (const bool alike : {false, true}) {
+      const NetworkShape shape{{1, 3}, true, architecture};
+      const Samples samples = (alike ? mostly_alike : random_samples)(shape, 10);
+      std::vector<std::vector<float>> trained;
+      for (const Kernels* kernels : available_kernels()) {
+        if (kernels->name == std::string("portable")) continue;
+        Network network(shape, 3, *kernels);
+        for (int step = 0; step < 5; ++step) {
+          network.backward(samples, all_rows(samples), Loss::norm);
+          network.update(1e-3);
+        }
+        trained.push_back(network.parameters());
+      }
+      if (trained.size() < 2) GTEST_SKIP() << "this processor has one instruction set with fused multiply-add, or none";
+      EXPECT_EQ(trained[0], trained[1]);
     }
-    trained.push_back(network.parameters());
-  }
-  if (trained.size() < 2) GTEST_SKIP() << "this processor has one instruction set with fused multiply-add, or none";
-  EXPECT_EQ(trained[0], trained[1]);
 }
 
 // The formula of make_loss_curves.py.
@@ -243,21 +315,29 @@ std::vector<float> first_parameters(const NetworkShape& shape, std::size_t count
   };
   for (const int channels : shape.channels)
     for (const auto& [out, fan_in] : {std::pair(32, 64 * channels), std::pair(64, 512), std::pair(32, 576)})
-      fill(out, fan_in, shape.batch_norm);
-  if (shape.text) fill(100, 384, false);
-  fill(12, 160 * static_cast<int>(shape.channels.size()) + (shape.text ? 100 : 0), false);
+      fill(out, fan_in, shape.architecture != plain);
+  const int towers = static_cast<int>(shape.channels.size());
+  if (shape.architecture == released && shape.text) {
+    for (int tower = 0; tower < towers; ++tower) fill(100, 160, false);
+    fill(100, 100 * towers + 384, false);
+    fill(12, 100, false);
+  } else {
+    if (shape.text) fill(100, 384, false);
+    fill(12, 160 * towers + (shape.text ? 100 : 0), false);
+  }
   EXPECT_EQ(number, all.end());
   return all;
 }
 
 TEST(Training, HasTheLossCurvesOfPyTorch) {
   const Json document = read_json(LGABENCH_TEST_REFERENCE "/loss_curves.json");
-  ASSERT_EQ(document.at("curves").size(), 12u);
+  ASSERT_EQ(document.at("curves").size(), 18u);
   for (const Json& curve : document.at("curves")) {
     NetworkShape shape;
     shape.channels = curve.at("channels").get<std::vector<int>>();
     shape.text = curve.at("text");
-    shape.batch_norm = curve.at("batch_norm");
+    const std::string network_name = curve.at("network");
+    shape.architecture = network_name == "text" ? text : network_name == "plain" ? plain : released;
     Network network(shape, 0);
     network.set_parameters(first_parameters(shape, network.parameters().size()));
     Samples samples(shape, 40);
@@ -276,9 +356,9 @@ TEST(Training, HasTheLossCurvesOfPyTorch) {
       for (int i = 0; i < 10; ++i) batch.push_back((step * 10 + i) % 40);
       furthest = std::max(furthest,
                           std::abs(network.backward(samples, batch, loss) - expected[static_cast<std::size_t>(step)]));
-      network.update(1e-3);
+      network.update(learning_rate(shape.architecture));
     }
-    EXPECT_LT(furthest, 1e-4) << curve.at("network") << (shape.batch_norm ? ", batch_norm and squared loss" : "");
+    EXPECT_LT(furthest, shape.architecture == released ? 1e-3 : 1e-4) << curve.at("input") << ", " << network_name;
     EXPECT_LT(expected.back(), .9 * expected.front()) << "the curve shows no learning";
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include <lgabench/abstraction/human.hpp>
@@ -102,7 +103,7 @@ TEST(Losses, ArePlainNumbersAndTheNormsSubgradientAtZeroIsZero) {
 }
 
 TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
-  Network network({{1}, false, false}, 11);
+  Network network({{1}, false, Architecture::plain}, 11);
   struct Range {
     int count, fan_in;
   };
@@ -122,17 +123,100 @@ TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
   EXPECT_EQ(value, parameters.end());
 }
 
+// The linear weights of `released`, which stand last: a matrix and its biases, as often as `outs` names one.
+TEST(Network, ReleasedStartsWithOrthonormalLinearLayersWithoutBias) {
+  struct Matrix {
+    int outs, ins;
+  };
+  for (const auto& [shape, matrices] :
+       {std::pair(NetworkShape{{1}, false, Architecture::released}, std::vector<Matrix>{{12, 160}}),
+        std::pair(NetworkShape{{1, 3}, true, Architecture::released},
+                  std::vector<Matrix>{{100, 160}, {100, 160}, {100, 584}, {12, 100}})}) {
+    const std::vector<float> parameters = Network(shape, 11).parameters();
+    EXPECT_EQ(parameters, Network(shape, 11).parameters());
+    EXPECT_NE(parameters, Network(shape, 12).parameters());
+    auto row = parameters.end();
+    for (const auto [outs, ins] : matrices) row -= outs * (ins + 1);
+    for (const auto [outs, ins] : matrices) {
+      double sum = 0;
+      for (int i = 0; i < outs; ++i)
+        for (int j = 0; j <= i; ++j)
+          EXPECT_NEAR(std::inner_product(row + i * ins, row + (i + 1) * ins, row + j * ins, 0.), i == j, 1e-6);
+      for (auto weight = row; weight != row + outs * ins; ++weight) sum += *weight;
+      EXPECT_LT(std::abs(sum), 4 * std::sqrt(outs))
+          << "standard deviation of an orthonormal matrix's sum: root of outs";
+      row += outs * ins;
+      EXPECT_EQ(std::vector<float>(row, row + outs), std::vector<float>(static_cast<std::size_t>(outs)));
+      row += outs;
+    }
+  }
+}
+
+// All samples the same: a variance of 0 in the last convolution, and in channels that are dead.
+TEST(Network, StaysFiniteWhereABatchHasNoVariance) {
+  for (const Architecture architecture : {Architecture::text, Architecture::released}) {
+    const NetworkShape shape{{1}, false, architecture};
+    Network network(shape, 1);
+    std::vector<float> parameters = network.parameters();
+    // All weights 0 leaves every convolution its bias, half of them below 0.
+    for (std::size_t i = 0; i < 2048; ++i) parameters[i] = 0;
+    network.set_parameters(parameters);
+    Samples samples(shape, 10);
+    for (float& label : samples.labels) label = .5f;
+    for (int step = 0; step < 50; ++step) {
+      ASSERT_TRUE(std::isfinite(network.backward(samples, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, Loss::norm))) << step;
+      network.update(1e-3);
+    }
+    for (const float number : network.predict(samples)) EXPECT_TRUE(std::isfinite(number));
+  }
+}
+
+TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
+  Samples samples({{1, 3}}, 7);
+  RandomStream random("usual");
+  for (std::size_t t = 0; t < 2; ++t) {
+    std::vector<float> expected(samples.usual[t].size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expected[i] = static_cast<float>(random.uniform());
+      const std::vector<int> order = random.permutation(7);
+      for (std::size_t row = 0; row < 7; ++row)
+        samples.pictures[t][row * expected.size() + i] =
+            order[row] < 4 ? expected[i] : static_cast<float>(random.uniform());
+    }
+    samples.find_usual();
+    EXPECT_EQ(samples.usual[t], expected);
+  }
+}
+
 TEST(BatchOrder, IsAnotherPermutationInEveryPassAndForEverySeed) {
   std::set<std::vector<int>> orders;
   for (const std::uint64_t seed : {0u, 1u})
     for (int epoch = 1; epoch <= 5; ++epoch) {
-      std::vector<int> order = batch_order(seed, epoch, 50);
-      EXPECT_EQ(order, batch_order(seed, epoch, 50));
+      std::vector<int> order = batch_order(Batches::shuffled, seed, epoch, 50);
+      EXPECT_EQ(order, batch_order(Batches::shuffled, seed, epoch, 50));
       orders.insert(order);
       std::sort(order.begin(), order.end());
       for (int i = 0; i < 50; ++i) EXPECT_EQ(order[static_cast<std::size_t>(i)], i);
     }
   EXPECT_EQ(orders.size(), 10u);
+}
+
+TEST(BatchOrder, DrawnIsUniformWithReplacement) {
+  std::vector<int> counts(50);
+  std::set<std::vector<int>> orders;
+  int different = 0;
+  for (int epoch = 1; epoch <= 200; ++epoch) {
+    const std::vector<int> order = batch_order(Batches::drawn, 3, epoch, 50);
+    ASSERT_EQ(order.size(), 50u);
+    EXPECT_EQ(order, batch_order(Batches::drawn, 3, epoch, 50));
+    EXPECT_NE(order, batch_order(Batches::drawn, 4, epoch, 50));
+    orders.insert(order);
+    for (const int sample : order) ++counts.at(static_cast<std::size_t>(sample));
+    different += static_cast<int>(std::set<int>(order.begin(), order.end()).size());
+  }
+  EXPECT_EQ(orders.size(), 200u);
+  EXPECT_NEAR(different / 200., 50 * (1 - std::pow(.98, 50)), 1);  // 31.8
+  for (const int count : counts) EXPECT_NEAR(count, 200, 60);      // more than four standard deviations
 }
 
 struct Lines : TrainingLog {
@@ -207,11 +291,11 @@ struct Trained {
 
 Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, int epochs, std::uint64_t seed = 0,
               const Json& changes = Json::object()) {
-  Json options = {
-      {"epochs", epochs}, {"batch_size", 10}, {"learning_rate", 1e-3}, {"loss", "norm"}, {"batch_norm", false}};
+  Json options = {{"epochs", epochs}, {"batch_size", 10},      {"learning_rate", 1e-3},
+                  {"loss", "norm"},   {"batches", "shuffled"}, {"network", "text"}};
   options.update(changes);
   const Scenario scenario = load_scenario("red_heart");
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, seed, log};
@@ -266,8 +350,9 @@ TEST(Training, OptionsChangeWhatIsLearned) {
   const PolicyInputs seen{{Picture::mask}};
   const Observation probe = scene(10, 100, 80, 30);
   const ActionVector usual = act(learn(seen, data, 5), probe);
-  for (const Json& change : {Json{{"loss", "squared"}}, Json{{"batch_norm", true}}, Json{{"learning_rate", 2e-3}},
-                             Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
+  for (const Json& change :
+       {Json{{"loss", "squared"}}, Json{{"network", "plain"}}, Json{{"network", "released"}},
+        Json{{"batches", "drawn"}}, Json{{"learning_rate", 2e-3}}, Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
     EXPECT_NE(act(learn(seen, data, 5, 0, change), probe), usual) << change;
 }
 
@@ -319,6 +404,66 @@ TEST(Policies, MaskTheSelectionOfTheirInputsWhereThereIsOne) {
   EXPECT_THROW(trained.policy->act(here, other), MethodError) << "not silently the instruction's own";
 }
 
+TEST(Policies, TellWhetherTheirInputStoodInTraining) {
+  const auto data = demonstrations(10);
+  const Observation shown = data[3].steps[0].observation;
+  Observation star_moved = shown, moved = shown;
+  std::replace(star_moved.ids.begin(), star_moved.ids.end(), std::uint8_t{7}, std::uint8_t{0});
+  std::rotate(moved.ids.begin(), moved.ids.begin() + 7, moved.ids.end());
+  star_moved.rgb[0] ^= 1;
+  for (const char* policy : {"regression", "centroid"}) {
+    const Trained mask = learn({{Picture::mask}}, data, 1, 0, {{"policy", policy}});
+    EXPECT_EQ(mask.policy->seen_in_training(), std::nullopt) << "of no action yet";
+    act(mask, shown);
+    EXPECT_EQ(mask.policy->seen_in_training(), true);
+    act(mask, moved);
+    EXPECT_EQ(mask.policy->seen_in_training(), false);
+    act(mask, star_moved);
+    EXPECT_EQ(mask.policy->seen_in_training(), true) << "the star is not in the mask";
+  }
+  const Trained both = learn({{Picture::mask, Picture::rgb}, Text::utterance}, data, 1);
+  act(both, shown);
+  EXPECT_EQ(both.policy->seen_in_training(), true);
+  act(both, star_moved);
+  EXPECT_EQ(both.policy->seen_in_training(), false) << "another picture";
+  Instruction other = instruction();
+  other.utterance = "Bring me the heart.";
+  both.policy->act(shown, other);
+  EXPECT_EQ(both.policy->seen_in_training(), false) << "another text";
+}
+
+// A second red heart, the first in reading order.
+Observation with_another_heart(Observation o) {
+  o.instances.push_back({9, "heart", "red", 400});
+  for (int y = 0; y < 20; ++y) std::fill_n(o.ids.begin() + y * columns, 20, std::uint8_t{9});
+  return o;
+}
+
+TEST(Policies, MayBeShownTheFirstInstanceAlone) {
+  const auto data = demonstrations(10);
+  const Observation one = scene(30, 100, 80, 30), two = with_another_heart(one);
+  Observation first = two;
+  std::replace(first.ids.begin(), first.ids.end(), std::uint8_t{3}, std::uint8_t{0});
+  for (const char* policy : {"regression", "centroid"}) {
+    const Trained all = learn({{Picture::mask}}, data, 5, 0, {{"policy", policy}});
+    const Trained alone = learn({{Picture::mask}}, data, 5, 0, {{"policy", policy}, {"instances", "first"}});
+    EXPECT_EQ(act(alone, two), act(alone, first)) << policy;
+    EXPECT_NE(act(all, two), act(all, first)) << policy;
+    EXPECT_EQ(act(alone, one), act(all, one)) << policy;
+  }
+}
+
+TEST(Policies, OfCentroidsTakeTheMiddleOfTheMaskAndTrainNothing) {
+  const auto data = demonstrations(10);
+  const Trained centroid = learn({{Picture::mask, Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}});
+  EXPECT_TRUE(centroid.log.empty());
+  const Action action = centroid.policy->act(scene(10, 100, 80, 30), instruction());
+  EXPECT_NEAR(action.pose0.position_m.x, .25 + 30 / 256., 1e-6);
+  EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
+  EXPECT_NEAR(action.pose1.position_m.y, .3, 1e-6);
+  EXPECT_THROW(learn({{Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}}), InputError);
+}
+
 TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Trained trained = learn({{Picture::mask, Picture::rgb}, Text::utterance}, demonstrations(10), 5);
   const Observation probe = scene(10, 100, 80, 30);
@@ -341,11 +486,31 @@ TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {
   EXPECT_EQ(recovery.noise_max, .2);
   EXPECT_EQ(none.targets, Needs::Targets::truth);
   EXPECT_EQ(none.noisy_per_clean, 0);
-  EXPECT_THROW(needs("gcbc_dart", {{"dart", "posthoc"}}), InputError);
+  EXPECT_EQ(needs("gcbc_dart", {{"dart", "posthoc"}}).noisy_per_clean, 0) << "its noise needs no physics";
   EXPECT_EQ(needs("gcbc_seg", Json::object()).targets, Needs::Targets::truth);
   EXPECT_EQ(needs("gcbc_seg", Json::object()).noisy_per_clean, 0);
   EXPECT_EQ(needs("factorial", {{"scenes", "selected"}}).targets, Needs::Targets::selected);
   EXPECT_EQ(needs("factorial", {{"scenes", "truth"}}).targets, Needs::Targets::truth);
+}
+
+TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const auto refusal = [&](const char* id, const Json& overrides) -> std::string {
+    try {
+      resolve_options(catalogue.find("method", id), overrides);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  for (const char* id : {"lga", "lga_hill", "human", "lga_s", "factorial"})
+    EXPECT_EQ(refusal(id, {{"policy", "centroid"}, {"instances", "first"}}), "") << id;
+  for (const char* id : {"lga_l", "gcbc_dart", "gcbc_seg"})
+    EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
+  EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
+  EXPECT_NE(refusal("factorial", {{"policy", "centroid"}, {"input", "rgb"}})
+                .find(R"(one of ["mask","true_mask","object_mask"], which policy=centroid needs, got "rgb")"),
+            std::string::npos);
 }
 
 // With a truth that is not what the language model selects, each input shows itself by what moves the action.
@@ -362,10 +527,10 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
     const char* input;
     bool star, heart;  // whether the action follows it
   };
-  for (const auto& [input, star, heart] :
-       {Case{"mask", false, true}, Case{"true_mask", true, false}, Case{"rgb", true, true}}) {
+  for (const auto& [input, star, heart] : {Case{"mask", false, true}, Case{"true_mask", true, false},
+                                           Case{"object_mask", true, true}, Case{"rgb", true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
-    RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+    RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human({{scenario.commands[0].utterance, blue_stars}});
     Lines log;
     Services services{lm, human, options, 0, log};
@@ -394,7 +559,7 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const Scenario scenario = load_scenario("red_heart");
   const PluginInfo& plugin = catalogue.find("method", GetParam().id);
   const Json options = resolve_options(plugin, {{"epochs", 3}});
-  RecordedLanguageModel lm(scenario.space, scenario.id, "recorded");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
   Services services{lm, human, options, 0, log};
@@ -414,6 +579,51 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
   EXPECT_EQ(action(probe) != action(star_moved), GetParam().star);
   EXPECT_EQ(action(probe) != action(heart_moved), GetParam().heart);
+}
+
+// Of gcbc_dart with this option, on ten demonstrations of one step: batches of ten rows.
+long long steps_of_a_pass(const char* dart, std::uint64_t seed, std::vector<double>* losses = nullptr) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const PluginInfo& plugin = catalogue.find("method", "gcbc_dart");
+  const Scenario scenario = load_scenario("heart");
+  const Json options = resolve_options(plugin, {{"epochs", 1}, {"dart", dart}});
+  RecordedLanguageModel lm(scenario, scenario.recorded);
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  Services services{lm, human, options, seed, log};
+  load_method(plugin)->learn(demonstrations(10), services);
+  if (losses) losses->push_back(log.lines.back().loss);
+  return log.lines.back().steps;
+}
+
+TEST(GcbcDart, PosthocTrainsOnFiveNoisyCopiesBesideEachDemonstration) {
+  std::vector<double> losses;
+  EXPECT_EQ(steps_of_a_pass("none", 0), 1);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(steps_of_a_pass("posthoc", 0, &losses), 6);
+  EXPECT_EQ(losses[0], losses[1]);
+}
+
+// rgb makes LGA's input that of LGA-S: the same actions to the bit.
+TEST(ShippedMethodsOptions, PictureGivesTheMasksMethodsTheInputOfLgaS) {
+  const Catalogue catalogue = scan_plugins({shipped_plugin_directory()});
+  const Scenario scenario = load_scenario("red_heart");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
+  TruthAsHuman human(scenario.commands);
+  Lines log;
+  const Observation probe = scene(10, 100, 80, 30);
+  const auto action = [&](const char* id, Json overrides) {
+    overrides["epochs"] = 3;
+    const PluginInfo& plugin = catalogue.find("method", id);
+    const Json options = resolve_options(plugin, overrides);
+    Services services{lm, human, options, 0, log};
+    return to_vector(load_method(plugin)->learn(demonstrations(10), services)->act(probe, instruction()));
+  };
+  const ActionVector both = action("lga_s", Json::object());
+  for (const char* id : {"lga", "lga_hill", "human"}) {
+    EXPECT_EQ(action(id, {{"picture", "rgb"}}), both) << id;
+    EXPECT_NE(action(id, Json::object()), both) << id;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,

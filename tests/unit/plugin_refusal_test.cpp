@@ -52,12 +52,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"wrong_library", {"standard library \"libc++ ", "(this program: \"libstdc++ "}},
                     Case{"wrong_sanitizer", {"sanitizer \"", "(this program: \""}},
                     Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\" or \"engine\""}},
-                    Case{"short_descriptor", {"descriptor of 104 bytes", "(this program: 4648)"}},
-                    Case{"newer_interface", {"plugin interface 2", ours}},
+                    Case{"short_descriptor", {"descriptor of 104 bytes", "(this program: 4664)"}},
+                    Case{"newer_interface", {"plugin interface 1000", ours}},
                     Case{"older_interface", {"plugin interface 0", ours}},
                     Case{"two_descriptors", {"2 lgabench descriptors, expected one"}},
                     Case{"no_descriptor", {"no lgabench descriptor"}},
                     Case{"bad_options", {"options: /epochs: expected a member \"default\""}},
+                    Case{"bad_asks", {"asks \"everybody\"", "expected \"specify\", \"edit\" or \"truth\""}},
+                    Case{"bad_needs", {"options: /way/needs/plain/see/0: expected a value of option see, got \"rgb\""}},
                     Case{"bad_id", {"id \"../bad id\"", "expected lower-case letters"}}),
     name_of);
 

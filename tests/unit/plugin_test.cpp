@@ -168,8 +168,24 @@ TEST(Options, WrongOnesAreNamedWithWhatIsExpected) {
   EXPECT_SAYS(refusal({{"demonstration", -3}}), "/demonstration: expected a whole number of 0 or more, got -3");
   EXPECT_SAYS(refusal({{"verbose", 1}}), "/verbose: expected true or false, got 1");
   EXPECT_SAYS(refusal({{"mode", nullptr}}), "/mode: expected a text, got null");
-  EXPECT_SAYS(refusal({{"mode", "third"}}), "/mode: expected one of [\"plain\",\"other\"], got \"third\"");
+  EXPECT_SAYS(refusal({{"mode", "third"}}), "/mode: expected one of [\"plain\",\"other\"] (");
+  EXPECT_SAYS(refusal({{"mode", "third"}}), "), got \"third\"");
   EXPECT_SAYS(refusal(Json::array()), "expected an object");
+}
+
+TEST(Options, AValueMayNeedAnotherOptions) {
+  PluginInfo info;
+  info.kind = "method", info.id = "m";
+  info.options = Json::parse(R"({
+    "see": {"default": "mask", "values": ["mask", "all", "rgb"], "help": "", "source": ""},
+    "way": {"default": "plain", "values": ["plain", "centroid"], "help": "", "source": "",
+            "needs": {"centroid": {"see": ["mask", "all"]}}}})");
+  EXPECT_EQ(resolve_options(info, {{"see", "all"}, {"way", "centroid"}})["way"], "centroid");
+  EXPECT_EQ(resolve_options(info, {{"see", "rgb"}})["way"], "plain");
+  EXPECT_SAYS(message_of<InputError>([&] {
+                resolve_options(info, {{"see", "rgb"}, {"way", "centroid"}});
+              }),
+              R"(options of method m: /see: expected one of ["mask","all"], which way=centroid needs, got "rgb")");
 }
 
 TEST(Options, APluginWithoutOptionsSaysSo) {

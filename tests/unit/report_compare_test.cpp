@@ -110,14 +110,74 @@ TEST(Compare, RefusesOtherTests) {
   suite.run["suite"] = "q2";
   suite.add({"lga", 15});
   EXPECT_SAYS(refusal(a, suite), "suite q1 in A, q2 in B");
-  FabricatedRun arms;
-  other = {"lga", 15};
-  other.arms = {{"test", 15}, {"hard", 10}};
-  arms.add(other);
-  EXPECT_SAYS(refusal(a, arms), "heart, layout cells: arms test in A, test, hard in B");
   FabricatedRun nothing;
   nothing.add({"lga", 15, "letter"});
   EXPECT_SAYS(refusal(a, nothing), "no cell finished in both");
+}
+
+TEST(Compare, NamesCellsThatPlayedOtherScenes) {
+  FabricatedRun a, b;
+  Spec other{"lga", 15, "letter"};
+  for (FabricatedRun* run : {&a, &b}) {
+    run->add({"lga", 15});
+    other.first_scene = run == &a ? 0 : 1;
+    run->add(other);
+  }
+  const RunComparison comparison = compared(a, b);
+  ASSERT_EQ(comparison.rows.size(), 1u);
+  EXPECT_EQ(comparison.rows[0].scenarios, 1);
+  ASSERT_EQ(comparison.other_scenes.size(), 1u);
+  EXPECT_EQ(comparison.other_scenes[0].scenario, "letter");
+  EXPECT_EQ(comparison.other_scenes[0].cells, std::vector<std::string>{"lga n=20 seed=0"});
+  EXPECT_SAYS(report::comparison_text(comparison),
+              "letter, layout cells, engine mujoco, arm test: other scenes (scenes 0000000000000000 and "
+              "0000000000000001 at index 0), not compared: lga n=20 seed=0");
+  EXPECT_EQ(comparison.times[0].cells, 1);
+  EXPECT_EQ(comparison.only_a + comparison.only_b, 0);
+}
+
+TEST(Compare, TakesTheArmsOfBothRuns) {
+  FabricatedRun a, b;
+  Spec one{"lga", 15}, more{"lga", 15};
+  one.arms = {{"seen", 15}, {"unseen", 12}};
+  more.arms = {{"seen", 15}, {"seen_varied", 10}, {"unseen", 3}};
+  a.add(one);
+  b.add(more);
+  const RunComparison comparison = compared(a, b);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  EXPECT_EQ(comparison.rows[1].arm, "unseen");
+  EXPECT_NEAR(comparison.rows[1].change.difference, -.45, 1e-12);
+  ASSERT_EQ(comparison.other_scenes.size(), 1u);
+  EXPECT_EQ(comparison.other_scenes[0].arm, "seen_varied");
+  EXPECT_EQ(comparison.other_scenes[0].why, "an arm of B alone");
+}
+
+TEST(Compare, PairsRowsByWhatTheyAreNotByTheirNames) {
+  FabricatedRun old, now;
+  const auto add = [](FabricatedRun& run, const std::string& row, int won, const Json& options) {
+    Spec spec{row, won};
+    spec.options = options;
+    run.add(spec);
+  };
+  add(old, "lga", 18, {{"batch_norm", false}, {"loss", "norm"}});
+  add(old, "lga+batch_norm=true", 6, {{"batch_norm", true}, {"loss", "norm"}});
+  Json today{{"loss", "norm"},     {"batches", "shuffled"},  {"picture", "none"},
+             {"instances", "all"}, {"policy", "regression"}, {"network", "plain"}};
+  add(now, "lga+network=plain", 18, today);
+  today["network"] = "text";
+  add(now, "lga", 6, today);
+  today["batches"] = "drawn";
+  add(now, "lga+batches=drawn", 9, today);
+  const RunComparison comparison = compared(old, now);
+  ASSERT_EQ(comparison.rows.size(), 2u);
+  EXPECT_EQ(comparison.rows[0].method, "lga");
+  EXPECT_EQ(comparison.rows[0].method_a, "lga+batch_norm=true");
+  EXPECT_EQ(comparison.rows[1].method, "lga+network=plain");
+  EXPECT_EQ(comparison.rows[1].method_a, "lga");
+  for (const ComparedRow& row : comparison.rows) EXPECT_EQ(row.change.difference, 0);
+  EXPECT_EQ(comparison.only_a, 0);
+  EXPECT_EQ(comparison.only_b, 1) << "batches=drawn has no row in the old run";
+  EXPECT_SAYS(report::comparison_text(comparison), "LGA network=plain (in A LGA)");
 }
 
 TEST(Compare, CountsWhatOneRunAloneHas) {
@@ -164,6 +224,28 @@ TEST(CompareCells, OutcomesWithinChanceOrNot) {
   EXPECT_SAYS(chance.detail, "arm test: 15 of 20 won there, 11 here (McNemar p = 0.125)");
   EXPECT_SAYS(chance.detail, "from episodes.jsonl line 12");
   EXPECT_EQ(agreement({"lga", 15}, {"lga", 5}, true).agreement, Agreement::differs);
+
+  // Three that turned in each of two cells may be chance in each; six are none.
+  const report::CellAgreement three = agreement({"lga", 15}, {"lga", 12}, true);
+  EXPECT_EQ(three.agreement, Agreement::within_interval);
+  EXPECT_EQ(three.only_recorded, 3);
+  EXPECT_EQ(three.only_recomputed, 0);
+  const std::vector<report::PooledAgreement> one = report::pooled({{"lga", three}, {"oracle", {}}});
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_FALSE(one[0].differs());
+  const std::vector<report::PooledAgreement> six = report::pooled({{"lga", three}, {"lga", three}});
+  ASSERT_EQ(six.size(), 1u);
+  EXPECT_EQ(six[0].cells, 2);
+  EXPECT_NEAR(six[0].p_holm, 2 * std::pow(.5, 6), 1e-12);
+  EXPECT_TRUE(six[0].differs());
+  // A forger may spread them over the rows too.
+  std::vector<std::pair<std::string, report::CellAgreement>> spread;
+  for (const char* row : {"a", "b", "c"}) spread.emplace_back(row, three);
+  const std::vector<report::PooledAgreement> rows = report::pooled(spread);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_FALSE(rows[0].differs());
+  EXPECT_EQ(rows[3].row, "");
+  EXPECT_TRUE(rows[3].differs());
   Spec otherwise{"lga", 15};
   otherwise.failure = "wrong_object";
   EXPECT_EQ(agreement({"lga", 15}, otherwise, true).agreement, Agreement::within_interval);

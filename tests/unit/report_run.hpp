@@ -1,6 +1,7 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ class FabricatedRun : public TemporaryDirectory {
            {"preset", "smoke"},
            {"smoke", true},
            {"cells", Json::array()},
-           {"version", "0.1.0"},
+           {"version", "0.2.0"},
            {"machine", {{"processor", "a processor"}, {"cores", 2}, {"memory_gib", 8.0}, {"system", "Linux"}}},
            {"plugins", {{{"kind", "method"}, {"id", "lga"}, {"version", "0.1"}, {"sha256", std::string(64, 'a')}}}},
            {"build", {{"lgabench-worker", std::string(64, 'b')}}},
@@ -48,9 +49,11 @@ class FabricatedRun : public TemporaryDirectory {
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell stands on
     double human_seconds = 0;                              // of each command
+    int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
+    Json options = Json::object();                         // of the method, beside those in its row's name
 
     std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
     std::vector<std::pair<std::string, bool>> all_commands() const {
@@ -58,6 +61,15 @@ class FabricatedRun : public TemporaryDirectory {
                               : commands;
     }
   };
+
+  static Json options_of(const Spec& s) {
+    Json options = s.options;
+    std::istringstream words(s.method);
+    std::string word;
+    std::getline(words, word, '+');  // the id
+    while (std::getline(words, word, '+')) options[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
+    return options;
+  }
 
   static Json cell_json(const Spec& s) {
     Json commands = Json::array(), tests = Json::array();
@@ -81,7 +93,7 @@ class FabricatedRun : public TemporaryDirectory {
                 {"id", s.method.substr(0, s.method.find('+'))},
                 {"name", s.method},
                 {"version", "0.1"},
-                {"options", Json::object()}}},
+                {"options", options_of(s)}}},
               {"demonstrations", s.demonstrations},
               {"training_seed", s.seed},
               {"scene_seed", 7},
@@ -131,16 +143,16 @@ class FabricatedRun : public TemporaryDirectory {
     for (const Arm& arm : s.all_arms())
       for (std::size_t i = 0; i < 20; ++i) {
         const bool won = static_cast<int>(i) < arm.won;
-        episodes +=
-            canonical({{"arm", arm.name},
-                       {"index", i},
-                       {"command", arm.commands[i % arm.commands.size()]},
-                       {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
-                       {"success", won},
-                       {"failure", won ? "none" : s.failure},
-                       {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
-                       {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}}) +
-            '\n';
+        Json episode{{"arm", arm.name},
+                     {"index", i},
+                     {"command", arm.commands[i % arm.commands.size()]},
+                     {"scene", hex(i + static_cast<std::size_t>(s.first_scene))},
+                     {"success", won},
+                     {"failure", won ? "none" : s.failure},
+                     {"attribution", won || s.attribution.empty() ? Json() : Json(s.attribution)},
+                     {"action", std::isnan(arm.action) ? Json() : Json(std::vector<double>(12, arm.action))}};
+        if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
+        episodes += canonical(episode) + '\n';
       }
     for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
     const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},

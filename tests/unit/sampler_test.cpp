@@ -129,7 +129,7 @@ void check_roles(const Scenario& s, const Scene& scene) {
     ASSERT_EQ(goal->texture, "wooden");
     ASSERT_EQ(goal->yaw_rad, 0);
   }
-  ASSERT_EQ(scene.angle_rad > 0, s.task == Task::rotate);
+  ASSERT_EQ(scene.angle_rad != 0, s.task == Task::rotate);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     ASSERT_EQ(scene.objects[i].instance_id, i + 1);
     ASSERT_TRUE(&scene.objects[i] == goal || scene.objects[i].object_type != "pallet");
@@ -139,6 +139,11 @@ void check_roles(const Scenario& s, const Scene& scene) {
     ASSERT_FALSE(command.truth.avoid && command.truth.avoid->contains(d->object_type, d->texture));
     ASSERT_FALSE(scene.split != "train" && s.never_distractor &&
                  s.never_distractor->contains(d->object_type, d->texture));
+    for (const ScenarioCommand& other : s.commands)
+      if (content.outside_all_commands) {
+        ASSERT_FALSE(other.truth.target.contains(d->object_type, d->texture));
+        ASSERT_FALSE(other.truth.avoid && other.truth.avoid->contains(d->object_type, d->texture));
+      }
     const SceneObject& t = *targets[0];
     ASSERT_TRUE(!content.hard || d->texture == t.texture || d->object_type == t.object_type);
   }
@@ -272,6 +277,33 @@ std::string name_of(const testing::TestParamInfo<std::tuple<std::string, std::st
 INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(every_scenario_and_layout()), name_of);
 INSTANTIATE_TEST_SUITE_P(Q2, PairedScenes, testing::ValuesIn(every_scenario_and_layout("q2_")), name_of);
 
+// The hashes of a scenario's first scenes in every layout, in one: 20 of a test arm, or 50 of training.
+std::string scenes_hash(const Scenario& s, const std::string& arm) {
+  std::string all;
+  for (const std::string& layout : layouts(s.task)) {
+    const SceneRequest request = arm == "train" ? train_request(layout) : test_request(layout, 0, arm);
+    for (int i = 0; i < (arm == "train" ? 50 : 20); ++i) all += hex(sample_scene(s, request, i).hash());
+  }
+  return sha256(all).substr(0, 16);
+}
+
+// The others' scenes: scene_hashes.txt.
+TEST(Sampler, TheReleasedTruthChangesTheScenesOfThreeScenarios) {
+  const struct {
+    const char *id, *tests, *train;  // as version 0.1.0 sampled them, on the truth that the appendix prints
+  } changed[] = {{"consonant_with_a_warm_color", "f0cdd01d70654f5d", "08cda45344ed8b0f"},
+                 {"red_heart", "8d39389854552449", "2df3936b266fda54"},
+                 {"vowel_with_multiple_colors", "3b6528d6c6fd4700", "9589e7cadaa119f9"}};
+  for (const auto& known : changed) {
+    SCOPED_TRACE(known.id);
+    const Scenario printed = load_scenario(known.id, Truth::printed), released = load_scenario(known.id);
+    EXPECT_EQ(scenes_hash(printed, "test"), known.tests);
+    EXPECT_NE(scenes_hash(released, "test"), known.tests);
+    EXPECT_EQ(scenes_hash(printed, "train"), known.train);
+    EXPECT_NE(scenes_hash(released, "train"), known.train);
+  }
+}
+
 TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
   const Scenario s = load_scenario("sweep_block_without_touching_pan");
   for (const std::string& layout : layouts(Task::sweep)) {
@@ -317,6 +349,79 @@ TEST(Sampler, SweepTakesItsObstacleFromTheSelection) {
   wrong = s.commands[0].truth;
   wrong.target.object_types = {"frame"};  // wider than the spatula
   EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
+}
+
+// Suite q3: one named object and one that no command means, whatever the method selects.
+TEST(Sampler, TrainingDistractorsOfSeveralCommandsAreOutsideThemAll) {
+  const std::map<std::string, std::set<std::string>> meant{
+      {"q3_fruit", {"apple", "tomato", "banana", "orange", "lemon", "pear"}},
+      {"q3_food", {"bowl", "container", "pan", "mug", "plate"}},
+      {"q3_utensil", {"block", "small block", "shorter block", "L-shaped block", "fork", "spoon", "knife"}}};
+  for (const auto& [id, types] : meant) {
+    const Scenario s = load_scenario(id);
+    std::set<std::string> distractors;
+    for (int i = 0; i < many; ++i) {
+      const Scene scene = sample_scene(s, train_request("cells"), i);
+      ASSERT_EQ(of_role(scene, Role::distractor).size(), 1u);
+      distractors.insert(scene.find(Role::distractor)->object_type);
+      if (i >= 100) continue;
+      Selection other;
+      other.target = {{"heart"}, {"red"}};
+      other.avoid = FeatureSet{{"mug"}, {"red"}};
+      EXPECT_EQ(sample_scene(s, {"cells", "train", "train", 0, {other, other, other}}, i).hash(), scene.hash());
+    }
+    for (const std::string& type : types) EXPECT_EQ(distractors.count(type), 0u) << type;
+    EXPECT_EQ(distractors.size() + types.size() + 1, s.space.object_types.size()) << "all others but the pallet";
+  }
+}
+
+TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
+  const Scenario s = load_scenario("q3_utensil");
+  const auto distance = [](const Scene& scene, Role role) {
+    return std::abs(scene.find(role)->position_m.y - scene.find(Role::target)->position_m.y);
+  };
+  for (const std::string& layout : layouts(Task::sweep)) {
+    int near = 0;
+    for (int i = 0; i < many; ++i) {
+      const Scene train = sample_scene(s, train_request(layout), i);
+      const bool is_near = distance(train, Role::obstacle) < .2;
+      EXPECT_NEAR(distance(train, Role::obstacle), is_near ? .17 : .25, 1e-12);
+      EXPECT_EQ(train.find(Role::distractor)->position_m.x > .5, train.find(Role::obstacle)->position_m.x < .5);
+      EXPECT_EQ(std::abs(train.find(Role::distractor)->position_m.y), .16);
+      near += is_near;
+
+      const Scene seen = sample_scene(s, test_request(layout, 0, "seen"), i),
+                  varied = sample_scene(s, test_request(layout, 0, "seen_varied"), i);
+      EXPECT_NEAR(distance(seen, Role::obstacle), .21, 1e-12);
+      EXPECT_NEAR(distance(varied, Role::obstacle), distance(varied, Role::obstacle) < .2 ? .17 : .25, 1e-12);
+      EXPECT_NEAR(distance(varied, Role::distractor), distance(varied, Role::obstacle), 1e-12) << "opposite";
+      ASSERT_EQ(seen.objects.size(), varied.objects.size());
+      for (std::size_t k = 0; k < seen.objects.size(); ++k) {  // scene by scene the same but for the distance
+        EXPECT_EQ(seen.objects[k].object_type, varied.objects[k].object_type);
+        EXPECT_EQ(seen.objects[k].texture, varied.objects[k].texture);
+        EXPECT_EQ(seen.objects[k].position_m.x, varied.objects[k].position_m.x);
+        EXPECT_EQ(seen.objects[k].position_m.y > 0, varied.objects[k].position_m.y > 0);
+      }
+    }
+    EXPECT_NEAR(near, many / 2, 250);
+  }
+}
+
+TEST(Sampler, ClockwiseTurnsTheOtherWayAndChangesNothingElse) {
+  const Scenario left = load_scenario("rotate_block");
+  Json json = left.json;
+  EXPECT_EQ(left.angle_deg, 120);
+  json["direction"] = "counter_clockwise";
+  EXPECT_EQ(read_scenario(json, "test").angle_deg, 120);
+  json["direction"] = "clockwise";
+  const Scenario right = read_scenario(json, "test");
+  for (int i = 0; i < 20; ++i) {
+    const Scene a = sample_scene(left, test_request("continuous"), i),
+                b = sample_scene(right, test_request("continuous"), i);
+    EXPECT_GT(a.angle_rad, 0);
+    EXPECT_EQ(b.angle_rad, -a.angle_rad);
+    EXPECT_EQ(to_json(a)["objects"], to_json(b)["objects"]);
+  }
 }
 
 // A Selection that differs from the truth of "heart" in types and textures.
@@ -426,7 +531,7 @@ TEST(Sampler, RefusesWhatItCannotSample) {
 // Published results name scenes by these: a change here makes every earlier run incomparable.
 TEST(Sampler, ScenesNeverChange) {
   const auto hashes = [](const char* scenario, const char* layout) {
-    const Scenario s = load_scenario(scenario);
+    const Scenario s = load_scenario(scenario, Truth::printed);
     std::string all;
     for (const int i : {0, 1, 99}) all += hex(sample_scene(s, test_request(layout), i).hash()) + " ";
     return all + hex(sample_scene(s, train_request(layout, 3), 7).hash());
@@ -449,6 +554,23 @@ TEST(Sampler, SameArgumentsSameBytes) {
   for (int i = 0; i < 50; ++i)
     EXPECT_EQ(canonical(to_json(sample_scene(s, test_request("continuous"), i))),
               backwards[static_cast<std::size_t>(49 - i)]);
+}
+
+// The hash is from a run of 0.1.
+TEST(TestScenes, OfATrainingSeedAreItsOwnAndSharedOnesStay) {
+  const Scenario scenario = load_scenario("heart");
+  SceneRequest request = test_request("cells");
+  const std::uint64_t shared = sample_scene(scenario, request, 0).hash();
+  EXPECT_EQ(hex(shared), "56f4c7ff2daa91c1");
+  std::set<std::uint64_t> hashes{shared};
+  for (const std::uint64_t seed : {0, 1, 2}) {
+    request.training_seed = seed;
+    hashes.insert(sample_scene(scenario, request, 0).hash());
+    EXPECT_EQ(sample_scene(scenario, request, 0).hash(), sample_scene(scenario, request, 0).hash());
+  }
+  EXPECT_EQ(hashes.size(), 4u);
+  request.split = "dev";
+  EXPECT_THROW(sample_scene(scenario, request, 0), InputError) << "test scenes alone";
 }
 
 }  // namespace

@@ -93,8 +93,9 @@ TEST_F(WithoutWeights, TheShippedCommandsAndSelectionsHaveEmbeddings) {
     const Scenario s = load_scenario(id);
     for (std::size_t c = 0; c < s.commands.size(); ++c) {
       std::vector<std::string> sentences{s.commands[c].utterance, selection_text(s.commands[c].truth, s.space)};
-      for (const char* answers : {"recorded", "claude"}) {
-        RecordedLanguageModel model(s.space, s.answers_of, answers);
+      for (const std::string& source : recorded_sources()) {
+        RecordedLanguageModel model(s, source);
+        if (!model.knows(s.command(static_cast<int>(c)))) continue;
         const Selection selection = select_features(s.command(static_cast<int>(c)), s.space, model);
         sentences.push_back(selection_text(selection, s.space));
       }

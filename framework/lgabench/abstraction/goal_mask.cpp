@@ -8,50 +8,78 @@
 namespace lgabench {
 namespace {
 
-enum : std::uint8_t { unlisted = 2 };
+using Table = std::array<std::uint8_t, 256>;  // instance id -> value of its pixels
 
-// Looks every pixel's id up in a table of 0 (drop), 1 (keep) or unlisted.
-void look_up(const Observation& observation, const std::array<std::uint8_t, 256>& kept,
-             std::vector<std::uint8_t>& mask) {
+constexpr std::uint8_t unlisted = 255;
+
+// Looks every pixel's id up.
+void look_up(const Observation& observation, const Table& values, std::vector<std::uint8_t>& mask) {
   constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
   if (observation.ids.size() != pixels)
     throw InputError(fmt::format("observation: ids: expected {} pixels, got {}", pixels, observation.ids.size()));
   mask.resize(pixels);
   std::transform(observation.ids.begin(), observation.ids.end(), mask.begin(),
-                 [&](std::uint8_t id) { return kept[id]; });
+                 [&](std::uint8_t id) { return values[id]; });
   const auto stray = std::find(mask.begin(), mask.end(), unlisted);
   if (stray != mask.end())
     throw InputError(fmt::format("observation: ids: expected an id of the instance table, got {}",
                                  observation.ids[static_cast<std::size_t>(stray - mask.begin())]));
 }
 
+// Drops every instance of the role but the one whose first pixel comes first.
+void keep_first(const Observation& observation, std::uint8_t role, Table& roles) {
+  const auto first =
+      std::find_if(observation.ids.begin(), observation.ids.end(), [&](std::uint8_t id) { return roles[id] == role; });
+  if (first == observation.ids.end()) return;
+  std::replace(roles.begin(), roles.end(), role, std::uint8_t{0});
+  roles[*first] = role;
+}
+
+Table roles_of(const Observation& observation, const Selection& selection, Instances instances) {
+  Table roles;
+  roles.fill(unlisted);
+  roles[0] = 0;
+  for (const Instance& instance : observation.instances)
+    roles[instance.id] = selection.target.contains(instance.object_type, instance.texture) ? target_role
+                         : selection.keeps(instance.object_type, instance.texture)         ? avoid_role
+                                                                                           : 0;
+  if (instances == Instances::first)
+    for (const std::uint8_t role : {target_role, avoid_role}) keep_first(observation, role, roles);
+  return roles;
+}
+
 }  // namespace
 
-void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask) {
-  std::array<std::uint8_t, 256> kept;
-  kept.fill(unlisted);
-  kept[0] = 0;
-  for (const Instance& instance : observation.instances)
-    kept[instance.id] = selection.keeps(instance.object_type, instance.texture);
+void role_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
+               Instances instances) {
+  look_up(observation, roles_of(observation, selection, instances), mask);
+}
+
+void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
+               Instances instances) {
+  Table kept = roles_of(observation, selection, instances);
+  std::replace(kept.begin(), kept.end(), avoid_role, target_role);
   look_up(observation, kept, mask);
 }
 
-std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection) {
+std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection, Instances instances) {
   std::vector<std::uint8_t> mask;
-  goal_mask(observation, selection, mask);
+  goal_mask(observation, selection, mask, instances);
   return mask;
 }
 
-std::vector<std::uint8_t> object_mask(const Observation& observation) {
+std::vector<std::uint8_t> object_mask(const Observation& observation, const std::string& left_out) {
   std::vector<std::uint8_t> mask;
-  object_mask(observation, mask);
+  object_mask(observation, mask, left_out);
   return mask;
 }
 
-void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask) {
-  std::array<std::uint8_t, 256> kept;
+void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask, const std::string& left_out) {
+  Table kept;
   kept.fill(1);
   kept[0] = 0;
+  for (const Instance& instance : observation.instances)
+    if (instance.object_type == left_out) kept[instance.id] = 0;
   look_up(observation, kept, mask);
 }
 

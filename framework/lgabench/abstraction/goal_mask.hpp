@@ -1,6 +1,7 @@
 // Instantiation phi-hat -> s-hat: the Selection as a picture (paper, section 3.1).
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <lgabench/core/observation.hpp>
@@ -8,16 +9,29 @@
 
 namespace lgabench {
 
+/// Which stay of several visible instances that match one role, the target's or the avoided one's.
+enum class Instances {
+  all,
+  first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
+};
+
 /// Observation::rows x columns of 0 and 1, row-major: 1 on the visible pixels of every instance that `selection` keeps.
 /// All 0 where nothing in view is kept.
 /// @throws InputError if the ids are not rows x columns, or name an instance that the table lacks.
-std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection);
+std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection,
+                                    Instances instances = Instances::all);
 
 /// Likewise, into `mask`, which is resized: nothing is allocated where it has the capacity.
-void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask);
+void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
+               Instances instances = Instances::all);
 
-/// 1 on any object: what a segmentation without language gives.
-std::vector<std::uint8_t> object_mask(const Observation& observation);
-void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask);
+/// The goal mask with the roles told apart: 1 on what matches the target, 2 on what matches `avoid` alone.
+void role_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
+               Instances instances = Instances::all);
+constexpr std::uint8_t target_role = 1, avoid_role = 2;
+
+/// 1 on any object: what a segmentation without language gives. `left_out`: an object type that stays 0, "" for none.
+std::vector<std::uint8_t> object_mask(const Observation& observation, const std::string& left_out = "");
+void object_mask(const Observation& observation, std::vector<std::uint8_t>& mask, const std::string& left_out = "");
 
 }  // namespace lgabench

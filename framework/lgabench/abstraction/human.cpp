@@ -26,4 +26,29 @@ Selection TruthAsHuman::edit(const Command& command, const Selection& proposal) 
   return edited;
 }
 
+void DeclaredHuman::expect(const char* asks) const {
+  if (asks_ != asks)
+    throw MethodError(fmt::format(
+        "services.human.{}(): expected a method declared as LGABENCH_METHOD_ASKING(\"{}\", ...)", asks, asks));
+}
+
+Selection DeclaredHuman::specify(const Command& command) {
+  expect("specify");
+  return who_->specify(command);
+}
+
+Selection DeclaredHuman::edit(const Command& command, const Selection& proposal) {
+  expect("edit");
+  return who_->edit(command, proposal);
+}
+
+std::function<Selection(const Command&)> declared_truth(std::vector<ScenarioCommand> commands,
+                                                        const std::string& asks) {
+  return [who = TruthAsHuman(std::move(commands)), declared = asks == "truth"](const Command& command) mutable {
+    if (!declared)
+      throw MethodError("services.truth(): expected a method declared as LGABENCH_METHOD_ASKING(\"truth\", ...)");
+    return who.specify(command);
+  };
+}
+
 }  // namespace lgabench

@@ -1,5 +1,8 @@
 // What a person would select, where no person was asked.
 #pragma once
+#include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include <lgabench/core/language_model.hpp>
@@ -23,5 +26,25 @@ class TruthAsHuman : public HumanAnswers {
 
   std::vector<ScenarioCommand> commands_;
 };
+
+/// Answers in the one way that a method declares, so that the truth behind a stand-in reaches nobody else.
+class DeclaredHuman : public HumanAnswers {
+ public:
+  /// `asks` as in the plugin's descriptor: "specify", "edit", or anything else for neither.
+  DeclaredHuman(std::unique_ptr<HumanAnswers> who, std::string asks) : who_(std::move(who)), asks_(std::move(asks)) {}
+
+  /// These @throw MethodError where the method declares something else.
+  Selection specify(const Command& command) override;
+  Selection edit(const Command& command, const Selection& proposal) override;
+
+ private:
+  void expect(const char* asks) const;
+
+  std::unique_ptr<HumanAnswers> who_;
+  std::string asks_;
+};
+
+/// For Services::truth: the true distributions of a method that asks for the "truth", else what throws MethodError.
+std::function<Selection(const Command&)> declared_truth(std::vector<ScenarioCommand> commands, const std::string& asks);
 
 }  // namespace lgabench

@@ -13,73 +13,67 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-fs::path answers_file(const char* name) { return data_directory() / "answers" / name; }
-
-// What answers there are: the `member` of each entry that is about the space.
-std::string known(const fs::path& file, const char* member, const std::string& space) {
-  const Json document = read_json(file);
-  std::vector<std::string> names;
-  const JsonReader reader(document, file.string());
-  for (const JsonReader& entry : reader.at("answers").elements())
-    if (!entry.has("space") || entry.at("space").string() == space) names.push_back(entry.at(member).string());
-  return fmt::format("{} has: {}", file.filename().string(), fmt::join(names, " | "));
-}
-
 }  // namespace
 
-RecordedLanguageModel::RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string answers)
-    : space_(std::move(space)), scenario_(std::move(scenario)), answers_(std::move(answers)) {
-  if (answers_ != "recorded" && answers_ != "gpt4" && answers_ != "claude")
-    throw InputError(fmt::format("answers: expected recorded, gpt4 or claude, got \"{}\"", answers_));
+std::vector<std::string> recorded_sources() {
+  std::error_code none_to_list;
+  return json_names(data_directory() / "answers", none_to_list);
 }
 
-const RecordedLanguageModel::Recorded& RecordedLanguageModel::find(const std::string& utterance) const {
-  const auto before = found_.find(utterance);
-  if (before != found_.end()) return before->second;
-  std::optional<Recorded> found;
-  if (answers_ != "claude") found = find_gpt4();
-  if (!found && answers_ != "gpt4") found = find_claude(utterance);
-  if (found) return found_.emplace(utterance, *std::move(found)).first->second;
-  const fs::path gpt4 = answers_file("gpt4.json"), claude = answers_file("claude.json");
-  const std::string name = scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_);
-  throw InputError(fmt::format(
-      "answers={}: expected recorded answers for {}\"{}\" in the space {}; {}", answers_, name, utterance, space_.id,
-      answers_ == "gpt4" ? known(gpt4, "scenario", space_.id) : known(claude, "command", space_.id)));
+std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit) {
+  if (answers != "recorded") return answers;
+  return to_edit ? scenario.edited : scenario.recorded;
 }
 
-std::optional<RecordedLanguageModel::Recorded> RecordedLanguageModel::find_gpt4() const {
-  const fs::path file = answers_file("gpt4.json");
+RecordedLanguageModel::RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source)
+    : space_(std::move(space)), scenario_(std::move(scenario)), source_(std::move(source)) {
+  if (const auto sources = recorded_sources(); !contains(sources, source_))
+    throw InputError(
+        fmt::format("answers: expected recorded or one of {}, got \"{}\"", fmt::join(sources, ", "), source_));
+}
+
+void RecordedLanguageModel::read() const {
+  if (read_) return;
+  const fs::path file = data_directory() / "answers" / (source_ + ".json");
   const Json document = read_json(file);
   const JsonReader reader(document, file.string());
-  if (reader.at("space").string() != space_.id) return std::nullopt;
+  model_ = reader.at("model").string();
   for (const JsonReader& entry : reader.at("answers").elements()) {
-    if (entry.at("scenario").string() != scenario_) continue;
-    const Json sets{{"object_types", entry.at("object_types").json()}, {"textures", entry.at("textures").json()}};
-    Recorded recorded{{}, entry.at("utterance").string(), reader.at("model").string()};
-    recorded.yes.target = read_feature_set(JsonReader(sets, file.string(), "/answers: " + scenario_), space_);
-    return recorded;
-  }
-  return std::nullopt;
-}
-
-std::optional<RecordedLanguageModel::Recorded> RecordedLanguageModel::find_claude(const std::string& utterance) const {
-  const fs::path file = answers_file("claude.json");
-  const Json document = read_json(file);
-  const JsonReader reader(document, file.string());
-  for (const JsonReader& entry : reader.at("answers").elements()) {
-    if (entry.at("space").string() != space_.id || entry.at("command").string() != utterance) continue;
-    Recorded recorded{{}, utterance, reader.at("model").string()};
+    if ((entry.has("space") ? entry : reader).at("space").string() != space_.id) continue;
+    Recorded recorded{entry.has("scenario") ? entry.at("scenario").string() : "", entry.at("command").string(), {}};
     recorded.yes.target = read_feature_set(entry.at("target"), space_);
     if (entry.has("avoid")) recorded.yes.avoid = read_feature_set(entry.at("avoid"), space_);
-    return recorded;
+    all_.push_back(std::move(recorded));
   }
-  return std::nullopt;
+  read_ = true;
+}
+
+const RecordedLanguageModel::Recorded* RecordedLanguageModel::find(const std::string& utterance) const {
+  read();
+  for (const Recorded& one : all_)
+    if (!one.scenario.empty() && one.scenario == scenario_) return &one;
+  for (const Recorded& one : all_)
+    if (one.asked_as == utterance) return &one;
+  return nullptr;
+}
+
+std::vector<std::string> RecordedLanguageModel::known() const {
+  read();
+  std::vector<std::string> names;
+  for (const Recorded& one : all_) names.push_back(one.scenario.empty() ? one.asked_as : one.scenario);
+  return names;
+}
+
+const RecordedLanguageModel::Recorded& RecordedLanguageModel::expect(const std::string& utterance) const {
+  if (const Recorded* found = find(utterance)) return *found;
+  throw InputError(fmt::format("answers of {}: expected some for {}\"{}\" in the space {}; there are: {}", source_,
+                               scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance, space_.id,
+                               fmt::join(known(), " | ")));
 }
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,
                                                 const std::vector<Question>& questions) {
-  const Recorded& recorded = find(command.utterance);
-  model_ = recorded.model;
+  const Recorded& recorded = expect(command.utterance);
   std::vector<bool> answers;
   for (const Question& q : questions) {
     const bool is_type = q.group == Question::Group::object_type;
@@ -95,6 +89,6 @@ std::vector<bool> RecordedLanguageModel::answer(const Command& command, const Fe
   return answers;
 }
 
-std::string RecordedLanguageModel::asked_as(const Command& command) const { return find(command.utterance).asked_as; }
+std::string RecordedLanguageModel::asked_as(const Command& command) const { return expect(command.utterance).asked_as; }
 
 }  // namespace lgabench

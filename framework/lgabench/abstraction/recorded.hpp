@@ -1,7 +1,5 @@
 // A language model's published answers, replayed.
 #pragma once
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,21 +7,34 @@
 
 namespace lgabench {
 
-/// Answers from the data directory's answers/: a candidate is answered yes exactly if it is listed there.
-/// Costs one query a question, as the live model did, and no seconds: the paper published none.
+/// Whose answers there are: the data directory's answers/, without their ending.
+std::vector<std::string> recorded_sources();
+
+/// Whose answers `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own, to
+/// be edited by people or used as they are.
+std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit = false);
+
+/// One source's answers: a candidate is answered yes exactly if it is listed there. Costs one query a question, as the
+/// live model did, and no seconds: none were published.
 class RecordedLanguageModel : public LanguageModel {
  public:
-  /// `answers` is "gpt4" (the user study's nine scenarios, found by the scenario's id, often worded differently),
-  /// "claude" (found by the utterance), or "recorded": GPT-4's where it was asked, else Claude's.
-  /// `scenario` is the id that GPT-4's answers are looked up by; "" if there is none.
-  /// @throws InputError for another word. Answers are looked up when they are asked for.
-  RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string answers);
+  /// `scenario` is the id that answers are looked up by before the utterance, as some were asked in other words; "" if
+  /// there is none. @throws InputError where `source` is none of recorded_sources(). Answers are looked up when they
+  /// are asked for.
+  RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source);
+  /// Of the scenario's commands.
+  RecordedLanguageModel(const Scenario& scenario, const std::string& source)
+      : RecordedLanguageModel(scenario.space, scenario.answers_of, source) {}
+
+  /// Whether anything is recorded for the command.
+  bool knows(const Command& command) const { return find(command.utterance) != nullptr; }
+  /// The scenarios, or the commands, that the source answers in this space.
+  std::vector<std::string> known() const;
 
   /// @throws InputError where nothing is recorded for the command: says what is; MethodError for a candidate outside
   /// the space, or for an object to be avoided that the model was not asked about.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
-  /// Of the command asked last.
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override;
   /// Always recorded.
@@ -32,16 +43,18 @@ class RecordedLanguageModel : public LanguageModel {
 
  private:
   struct Recorded {
-    Selection yes;  // the candidates answered yes
-    std::string asked_as, model;
+    std::string scenario, asked_as;  // scenario: "" where the paper has none
+    Selection yes;                   // the candidates answered yes
   };
-  const Recorded& find(const std::string& utterance) const;
-  std::optional<Recorded> find_gpt4() const;
-  std::optional<Recorded> find_claude(const std::string& utterance) const;
+  const Recorded* find(const std::string& utterance) const;
+  const Recorded& expect(const std::string& utterance) const;
+  void read() const;
 
   FeatureSpace space_;
-  std::string scenario_, answers_, model_;
-  mutable std::map<std::string, Recorded> found_;  // by utterance: the files are read once for each
+  std::string scenario_, source_;
+  mutable std::string model_;
+  mutable std::vector<Recorded> all_;  // of the space; read once, by the first question
+  mutable bool read_ = false;
   SelectionCost cost_;
 };
 

@@ -12,6 +12,7 @@
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
@@ -52,7 +53,8 @@ class Pictures {
     const Played& played = cell(request.at("cell").string());
     const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
     const std::string arm = request.at("arm").string();
-    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index);
+    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index,
+                                   played.cell.scenes_of_seed());
     if (hex(scene.hash()) != request.at("scene").string())
       throw InputError("this version samples another scene than the run played");
 
@@ -62,7 +64,8 @@ class Pictures {
         seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
-      const auto mask = goal_mask(perceived, read_distribution(selection, played.scenario.space));
+      const auto mask = goal_mask(perceived, read_distribution(selection.at("distribution"), played.scenario.space),
+                                  selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     return {{"picture", picture_of(seen)},
@@ -126,7 +129,7 @@ void add_pictures(CLI::App& app, int&) {
       "                \"selections\": []}]' | lgabench-worker pictures");
   verb->callback([] {
     const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
-    const Json requests = Json::parse(text, nullptr, false);
+    const Json requests = parse_json(text, "pictures");
     Pictures pictures;
     for (const JsonReader& request : JsonReader(requests, "pictures").elements()) {
       Json line;
@@ -135,7 +138,7 @@ void add_pictures(CLI::App& app, int&) {
       } catch (const Error& e) {
         line = {{"problem", e.what()}};
       }
-      fmt::print("{}\n", canonical(line));
+      to_stdout("{}\n", canonical(line));
     }
   });
 }

@@ -11,6 +11,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 
@@ -18,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, layout = "cells", split = "test", arm, out;
+  std::string scenario, gallery, layout = "cells", split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -52,11 +53,11 @@ void render_gallery(const Arguments& arguments) {
   const Sheet sheet = gallery(arguments.gallery);
   const fs::path file = arguments.out.empty() ? fmt::format("{}.png", arguments.gallery) : arguments.out;
   write_file(file, sheet.png);
-  fmt::print("{}\n\n{}", file.string(), sheet.legend);
+  to_stdout("{}\n\n{}", file.string(), sheet.legend);
 }
 
 void render(const Arguments& arguments) {
-  const Scenario scenario = load_scenario(arguments.scenario);
+  const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const Scene scene = tabletop::sample_scene(
       scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
@@ -74,11 +75,10 @@ void render(const Arguments& arguments) {
   const fs::path file = arguments.out.empty() ? fmt::format("{}-{}.png", scenario.id, arguments.index) : arguments.out;
   write_file(file, panels.picture.png());
 
-  fmt::print("{}\n", file.string());
-  fmt::print("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
+  to_stdout("{}\n", file.string());
+  to_stdout("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
   for (const SceneObject& object : scene.objects)
-    fmt::print("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture,
-               object.object_type);
+    to_stdout("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture, object.object_type);
 }
 
 }  // namespace
@@ -98,6 +98,9 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--split", arguments->split, "train, dev or test")->capture_default_str();
   verb->add_option("--arm", arguments->arm,
                    "One of the scenario's tests (lgabench info SCENARIO), or train; its first");
+  verb->add_option("--truth", arguments->truth, "The scenario's true distributions, where released and printed differ")
+      ->check(CLI::IsMember({"released", "printed"}))
+      ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   verb->footer(

@@ -7,15 +7,17 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_suite.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, answers = "recorded", humans, out, cache, shard = "1/1";
+  std::string suite, preset, answers = "recorded", truth = "released", humans, out, cache, shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
@@ -59,13 +61,13 @@ Grid grid_of(const Arguments& a, const Suite& suite) {
   return grid;
 }
 
-// --set method.option=value
+// --set method.option=value, or *.option=value
 Json options_of(const Words& settings) {
   Json options = Json::object();
   for (const std::string& setting : settings) {
     const std::size_t dot = setting.find('.'), equals = setting.find('=');
     if (dot == std::string::npos || equals == std::string::npos || dot > equals)
-      throw InputError(fmt::format("--set {}: expected method.option=value", setting));
+      throw InputError(fmt::format("--set {}: expected method.option=value or *.option=value", setting));
     options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] =
         option_value(setting.substr(equals + 1));
   }
@@ -97,20 +99,19 @@ std::string resuming_command(const Arguments& a, const fs::path& out) {
 }
 
 void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
-  fmt::print(stderr, "{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused,
-             outcome.failed.size());
-  if (outcome.computed) fmt::print(stderr, "{}\n", outcome.time.text(plan.pool.jobs));
+  to_stderr("{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
+  if (outcome.computed) to_stderr("{}\n", outcome.time.text(plan.pool.jobs));
   if (outcome.elsewhere)
-    fmt::print(stderr, "shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
-               plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
+    to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
+              plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
   for (const FailedCell& cell : outcome.failed)
-    fmt::print(stderr, "failed: {}: {} ({})\n", cell.title, cell.reason, cell.log.string());
+    to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
 int run(const Arguments& a) {
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
-  Variation variation{a.answers, options_of(a.settings), !a.no_reference};
+  Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
@@ -118,6 +119,8 @@ int run(const Arguments& a) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
+  } else {
+    check_recorded(a.answers, grid.scenarios);
   }
   if (!a.humans.empty())
     for (AnswerFile& file : read_participants(a.humans, variation.participants))
@@ -130,8 +133,9 @@ int run(const Arguments& a) {
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
                        {"answers", variation.answers},
+                       {"truth", a.truth},
                        {"participants", participant_hashes(variation.participants)},
-                       {"options", variation.options},
+                       {"set", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
   plan.command = joined(command_line());
@@ -149,14 +153,21 @@ int run(const Arguments& a) {
 
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
-    fmt::print(stderr, "interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
-  if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+  std::string no_report;
+  try {
+    if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+  } catch (const InputError& e) {  // a full disk, or nothing left to report: the counts are told all the same
+    no_report = e.what();
+  }
   print_counts(outcome, plan);
   if (!outcome.failed.empty())
-    fmt::print(stderr, "To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+  if (!no_report.empty()) to_stderr("no report: {}\n", no_report);
   if (outcome.plugin_refused) return plugin_refused;
+  if (!no_report.empty() && outcome.failed.empty()) return usage;
   return outcome.failed.empty() ? ok : cells_failed;
 }
 
@@ -169,21 +180,22 @@ void add_run(CLI::App& app, int& exit) {
     verb->add_option(name, words, help)->delimiter(',')->take_all();
   };
   verb->add_option("suite", a->suite, "A suite's id, or a .json file of one")->required();
-  verb->add_option("--preset", a->preset, "A part of the suite: smoke, paper, leaderboard");
+  verb->add_option("--preset", a->preset,
+                   "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
   list("--methods", a->methods, "Methods, by plugin id; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
   list("--layout", a->layouts, "cells, continuous or released; several with commas");
-  list("--demos", a->demonstrations, "Numbers of demonstrations: 10,20");
+  list("--demos", a->demonstrations, "Numbers of demonstrations of each seen command: 10,20");
   list("--seeds", a->seeds, "Training seeds: 0,1,2 or 0:3");
   verb->add_option("--episodes", a->episodes, "Test scenes of each arm");
   verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
-      ->check(CLI::Range(1.0, 1e7))
+      ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--memory", a->memory_gib,
                    "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
-      ->check(CLI::Range(.1, 1e6));
+      ->check(within(.1, 1e6));
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
@@ -195,25 +207,37 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--limit", a->limit, "Only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
   verb->add_option("--set", a->settings,
-                   "method.option=value, for each of its rows that does not set it; may be given again")
+                   "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; goes before the "
+                   "preset's options, after a row's own; may be given again")
       ->take_all();
   verb->add_option("--answers", a->answers,
-                   "Which language model answered; recorded: GPT-4 where it was asked, else Claude; gpt4, claude: that "
-                   "one alone; cassette:FILE: the replies of a server's model, as lgabench select --suite keeps them")
+                   "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
+                   "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
+                   "as lgabench select --suite keeps them")
       ->check([](const std::string& word) {
-        const bool known =
-            word == "recorded" || word == "gpt4" || word == "claude" || word.rfind(cassette_prefix, 0) == 0;
-        return known ? "" : "expected recorded, gpt4, claude or cassette:FILE, got " + word;
+        const std::vector<std::string> sources = recorded_sources();
+        const bool known = word == "recorded" || word.rfind(cassette_prefix, 0) == 0 ||
+                           std::find(sources.begin(), sources.end(), word) != sources.end();
+        return known ? ""
+                     : fmt::format("expected recorded, {} or cassette:FILE, got {}", fmt::join(sources, ", "), word);
       })
       ->capture_default_str();
+  verb->add_option("--truth", a->truth,
+                   "The true distributions: those that the paper's authors released with their code, or those printed "
+                   "in its appendix, where they differ")
+      ->check(CLI::IsMember({"released", "printed"}))
+      ->capture_default_str();
   verb->add_option("--humans", a->humans,
-                   "A directory of participants' .json files: human and lga_hill then have a cell for each of them");
+                   "A directory of participants' .json files: methods that ask people then have a cell for each");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
-      "An ablation: lgabench run q1 --methods lga,lga+batch_norm=true,lga+loss=squared\n"
+      "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
+      "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
+      "as\n"
+      "lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }

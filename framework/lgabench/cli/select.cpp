@@ -12,20 +12,22 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string command, suite, answers = "recorded", task = "pick_and_place", space = "tabletop", model, cassette;
+  std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
+                              model, cassette;
   int concurrency = 4, max_queries = -1;
   bool json = false;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
 struct Asked {
-  std::string answers_of;
+  std::string answers_of, recorded;  // the scenario's, see there
   FeatureSpace space;
   Command command;
   std::optional<Selection> truth;
@@ -53,10 +55,14 @@ Answerer make_answerer(const Arguments& a) {
     options.model = *models.begin();
   }
   if (live) {
-    answerer.client = std::make_unique<OpenAiClient>(openai_from_environment());
+    OpenAiOptions server = openai_from_environment();
+    server.waiting =
+        options.waiting = [](const std::string& why) { to_stderr("{}{}\n", ::isatty(2) ? "\n" : "", one_line(why)); };
+    answerer.client = std::make_unique<OpenAiClient>(std::move(server));
     options.progress = [](int asked_already, int all) {
-      fmt::print(stderr, ::isatty(2) ? "\rasked {} of {}{}" : "asked {} of {}{}", asked_already, all,
-                 asked_already == all || !::isatty(2) ? "\n" : "");
+      const bool redrawn = ::isatty(2) != 0;
+      put(stderr, fmt::format("{}asked {} of {}{}", redrawn ? "\r" : "", asked_already, all,
+                              asked_already == all || !redrawn ? "\n" : ""));
     };
   }
   answerer.model = std::make_unique<ChatLanguageModel>(*answerer.cassette, answerer.client.get(), options);
@@ -66,22 +72,23 @@ Answerer make_answerer(const Arguments& a) {
 std::vector<Asked> commands_of(const Scenario& scenario) {
   std::vector<Asked> asked;
   for (const ScenarioCommand& c : scenario.commands)
-    asked.push_back({scenario.answers_of, scenario.space, {c.utterance, scenario.task}, c.truth});
+    asked.push_back({scenario.answers_of, scenario.recorded, scenario.space, {c.utterance, scenario.task}, c.truth});
   return asked;
 }
 
 // All commands of the suite, or of the scenario of that id, or the one with that utterance; else the words alone, which
 // have no truth.
 std::vector<Asked> find_commands(const Arguments& arguments) {
+  const Truth truth = read_truth(arguments.truth);
   if (!arguments.suite.empty()) {
     std::vector<Asked> all;
     for (const std::string& id : load_suite(arguments.suite).grid.scenarios)
-      for (Asked& asked : commands_of(load_scenario(id))) all.push_back(std::move(asked));
+      for (Asked& asked : commands_of(load_scenario(id, truth))) all.push_back(std::move(asked));
     return all;
   }
   std::vector<Asked> same_words;
   for (const std::string& id : scenario_ids()) {
-    const Scenario scenario = load_scenario(id);
+    const Scenario scenario = load_scenario(id, truth);
     if (id == arguments.command) return commands_of(scenario);
     for (Asked& asked : commands_of(scenario))
       if (asked.command.utterance == arguments.command) same_words.push_back(std::move(asked));
@@ -90,7 +97,11 @@ std::vector<Asked> find_commands(const Arguments& arguments) {
     if (asked.space.id == arguments.space) return {asked};
   if (!same_words.empty()) return {same_words.front()};
   if (arguments.command.find(' ') == std::string::npos) load_scenario(arguments.command);  // says which there are
-  Asked asked{"", load_feature_space(arguments.space), {arguments.command, Task::pick_and_place}, std::nullopt};
+  Asked asked{"",
+              Scenario().recorded,
+              load_feature_space(arguments.space),
+              {arguments.command, Task::pick_and_place},
+              std::nullopt};
   for (const Task task : {Task::pick_and_place, Task::rotate, Task::sweep})
     if (to_string(task) == arguments.task) asked.command.task = task;
   return {asked};
@@ -111,34 +122,36 @@ std::string describe(const Json& quality) {
 }
 
 void print_set(const char* name, const FeatureSet& set, const FeatureSpace& space, const Json& quality) {
-  fmt::print("{}\n  object types  {}\n", name, list(set.object_types, space.object_types));
-  if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("object_types")));
-  fmt::print("  textures      {}\n", list(set.textures, space.textures));
-  if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("textures")));
+  to_stdout("{}\n  object types  {}\n", name, list(set.object_types, space.object_types));
+  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("object_types")));
+  to_stdout("  textures      {}\n", list(set.textures, space.textures));
+  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
 }
 
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
-  if (!model) model = &recorded.emplace(asked.space, asked.answers_of, arguments.answers);
+  if (!model)
+    model = &recorded.emplace(asked.space, asked.answers_of,
+                              arguments.answers == "recorded" ? asked.recorded : arguments.answers);
   const Selection selection = select_features(asked.command, asked.space, *model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
-    fmt::print("{}\n", canonical({{"utterance", asked.command.utterance},
-                                  {"selection", to_json(selection)},
-                                  {"text", text},
-                                  {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
-                                  {"quality", judged}}));
+    to_stdout("{}\n", canonical({{"utterance", asked.command.utterance},
+                                 {"selection", to_json(selection)},
+                                 {"text", text},
+                                 {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
+                                 {"quality", judged}}));
     return;
   }
-  fmt::print("command     {}\n", asked.command.utterance);
-  if (selection.asked_as != asked.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
-  fmt::print("answers     {} ({})\n", selection.source, to_string(selection.provenance));
-  fmt::print("cost        {} queries", selection.cost.lm_queries);
+  to_stdout("command     {}\n", asked.command.utterance);
+  if (selection.asked_as != asked.command.utterance) to_stdout("asked as    {}\n", selection.asked_as);
+  to_stdout("answers     {} ({})\n", selection.source, to_string(selection.provenance));
+  to_stdout("cost        {} queries", selection.cost.lm_queries);
   if (selection.cost.lm_tokens > 0)
-    fmt::print(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
-  fmt::print("\n");
-  fmt::print("in words    {}\n", text);
+    to_stdout(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
+  to_stdout("\n");
+  to_stdout("in words    {}\n", text);
   print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
   if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
 }
@@ -150,11 +163,19 @@ void add_select(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("select", "Ask which features matter for a command, and print the Selection");
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
-  verb->add_option(
-          "--answers", arguments->answers,
-          "recorded: GPT-4's where it was asked, else Claude's; gpt4, claude: theirs alone; openai: ask a server "
-          "now; cassette: what it said before")
-      ->check(CLI::IsMember({"recorded", "gpt4", "claude", "openai", "cassette"}))
+  verb->add_option("--answers", arguments->answers,
+                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude: theirs; openai: ask a server now; "
+                   "cassette: "
+                   "what it said before")
+      ->check(CLI::IsMember([] {
+        std::vector<std::string> words = recorded_sources();
+        words.insert(words.end(), {"recorded", "openai", "cassette"});
+        return words;
+      }()))
+      ->capture_default_str();
+  verb->add_option("--truth", arguments->truth,
+                   "What the Selection is compared with, where released and printed differ")
+      ->check(CLI::IsMember({"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "Of a command that is no scenario's")
       ->check(CLI::IsMember({"pick_and_place", "rotate", "sweep"}))
@@ -183,7 +204,7 @@ void add_select(CLI::App& app, int&) {
     const Answerer answerer = make_answerer(*arguments);
     bool first = true;
     for (const Asked& asked : find_commands(*arguments)) {
-      if (!first && !arguments->json) fmt::print("\n");
+      if (!first && !arguments->json) to_stdout("\n");
       first = false;
       select(asked, answerer.model.get(), *arguments);
     }

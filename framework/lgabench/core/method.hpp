@@ -4,7 +4,9 @@
 // option or a file is wrong, not the method.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <lgabench/core/action.hpp>
@@ -52,10 +54,12 @@ class TrainingLog {
 /// What the host lends to a method for the length of a call.
 struct Services {
   LanguageModel& lm;
-  HumanAnswers& human;
+  HumanAnswers& human;  // answers as the descriptor asks, see LGABENCH_METHOD_ASKING; else throws MethodError
   const Json& options;  // an object with every option of the descriptor, defaults filled in
   std::uint64_t seed;   // governs initial weights and batch order
   TrainingLog& log;
+  /// A command's true distribution, for a method whose descriptor asks for the truth; for others it throws MethodError.
+  std::function<Selection(const Command&)> truth = {};
 };
 
 /// What was learned. It may outlive its Method and the demonstrations. One thread.
@@ -69,6 +73,9 @@ class Policy {
   /// `instruction` may hold an utterance that was not, and any Selection, an empty one or the true one included.
   /// @returns positions in metres in the frame of Workspace. Not finite: the episode fails as method_error.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
+  /// Whether all that the last act() made its action of was, to the byte, an input that the policy learned from. None
+  /// where it does not tell.
+  virtual std::optional<bool> seen_in_training() const { return std::nullopt; }
 };
 
 /// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default
@@ -84,8 +91,8 @@ class Method {
   /// empty Selection is an answer, and fails it as abstraction_empty if targets are drawn from it. `cost` is what this
   /// call alone cost.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
-  /// Learns from the demonstrations, the cell's number of them, in the order of their scenes. The policy must not refer
-  /// to them afterwards. @returns never null.
+  /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
+  /// scenes. The policy must not refer to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
 };
 

@@ -27,7 +27,19 @@ ScenarioCommand read_command(const JsonReader& reader, Task task, const FeatureS
   return command;
 }
 
-const std::vector<std::string> content_members{"target", "avoid", "distractors", "hard", "later_letters", "choice"};
+// In degrees; positive: counter-clockwise.
+double read_angle(const JsonReader& scenario) {
+  const double angle_deg = scenario.at("angle_deg").number();
+  if (!(angle_deg > 0 && angle_deg <= 180)) scenario.at("angle_deg").fail("above 0, at most 180");
+  if (!scenario.has("direction")) return angle_deg;
+  const std::string direction = scenario.at("direction").string();
+  if (direction != "clockwise" && direction != "counter_clockwise")
+    scenario.at("direction").fail("clockwise or counter_clockwise");
+  return direction == "clockwise" ? -angle_deg : angle_deg;
+}
+
+const std::vector<std::string> content_members{"target", "avoid",         "distractors", "outside_all_commands",
+                                               "hard",   "later_letters", "choice",      "barrier_distances_m"};
 
 // Members of the content that the reader gives, over those of `content`.
 SceneContent read_content(const JsonReader& reader, SceneContent content, const FeatureSpace& space) {
@@ -41,6 +53,7 @@ SceneContent read_content(const JsonReader& reader, SceneContent content, const 
     content.distractors.first = static_cast<int>(range[0].integer(0, most));
     content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
   }
+  if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
   if (reader.has("hard")) content.hard = reader.at("hard").boolean();
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
   if (reader.has("choice")) {
@@ -50,6 +63,16 @@ SceneContent read_content(const JsonReader& reader, SceneContent content, const 
     for (const JsonReader& type : reader.at("choice").elements())
       if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
         type.fail("an object type of the feature space");
+  }
+  if (reader.has("barrier_distances_m")) {
+    constexpr double nearest_m = .15, farthest_m = .3;  // outlines apart, and within the picture beside any target
+    content.barrier_distances_m.clear();
+    for (const JsonReader& distance : reader.at("barrier_distances_m").elements()) {
+      content.barrier_distances_m.push_back(distance.number());
+      if (!(distance.number() >= nearest_m && distance.number() <= farthest_m))
+        distance.fail(fmt::format("{} to {}", nearest_m, farthest_m));
+    }
+    if (content.barrier_distances_m.empty()) reader.at("barrier_distances_m").fail("at least one distance");
   }
   return content;
 }
@@ -66,6 +89,11 @@ Arm read_arm(const JsonReader& reader, const FeatureSpace& space) {
   reader.only(members);
   Arm arm;
   arm.id = reader.at("arm").string();
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  if (arm.id.empty() || arm.id.size() > 64 || !std::all_of(arm.id.begin(), arm.id.end(), plain))
+    reader.at("arm").fail("a name of letters, digits, '_', '-' and '.'");
   if (arm.id == "train") reader.at("arm").fail("another name than train");
   arm.scenes = read_content(reader, {}, space);
   if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();
@@ -90,21 +118,56 @@ SceneContent read_train(const JsonReader& scenario, const FeatureSpace& space) {
   return content;
 }
 
+// Whose answers are the scenario's recorded ones, and which of them are given to people.
+void read_answers(const JsonReader& reader, Scenario& scenario) {
+  reader.only({"recorded", "edited"});
+  std::error_code none_to_list;
+  const std::vector<std::string> known = json_names(data_directory() / "answers", none_to_list);
+  const auto file = [&known](const JsonReader& name) {
+    if (std::find(known.begin(), known.end(), name.string()) == known.end())
+      name.fail(fmt::format("one of: {}", fmt::join(known, ", ")));
+    return name.string();
+  };
+  scenario.recorded = file(reader.at("recorded"));
+  scenario.edited = reader.has("edited") ? file(reader.at("edited")) : scenario.recorded;
+}
+
+// The file's members with the appendix's in place of the released ones.
+Json as_printed(Json json) {
+  const Json printed = json.value("printed", Json());
+  if (printed.is_null()) return json;
+  json.erase("printed");
+  json.update(printed);
+  json["truth"] = "printed";
+  return json;
+}
+
 }  // namespace
+
+Truth read_truth(const std::string& word) {
+  if (word == "released") return Truth::released;
+  if (word == "printed") return Truth::printed;
+  throw InputError(fmt::format("truth: expected released or printed, got \"{}\"", word));
+}
 
 Scenario read_scenario(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
-  reader.only({"id", "environment", "task", "angle_deg", "feature_space", "commands", "answers_of", "never_distractor",
-               "train", "tests", "note"});
+  reader.only({"id", "environment", "task", "angle_deg", "direction", "feature_space", "commands", "answers_of",
+               "answers", "never_distractor", "train", "tests", "truth", "printed", "note"});
+  if (reader.has("printed")) reader.at("printed").only({"commands", "never_distractor", "note"});
   Scenario s;
   s.id = reader.at("id").string();
   s.environment = reader.at("environment").string();
   s.task = read_task(reader.at("task"));
-  if (s.task == Task::rotate) s.angle_deg = reader.at("angle_deg").number();
+  if (s.task == Task::rotate)
+    s.angle_deg = read_angle(reader);
+  else if (reader.has("direction"))
+    reader.at("direction").fail("no direction for another task than rotate");
   s.space = load_feature_space(reader.at("feature_space").string());
   for (const JsonReader& command : reader.at("commands").elements())
     s.commands.push_back(read_command(command, s.task, s.space));
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
+  if (reader.has("answers")) read_answers(reader.at("answers"), s);
   if (reader.has("never_distractor")) s.never_distractor = read_feature_set(reader.at("never_distractor"), s.space);
   s.train = read_train(reader, s.space);
   for (const JsonReader& arm : reader.at("tests").elements()) {
@@ -139,17 +202,22 @@ std::vector<int> Scenario::commands_of(const std::string& name) const {
   return indices;
 }
 
+int Scenario::training_scenes(int demonstrations) const {
+  return demonstrations * static_cast<int>(commands_of("train").size());
+}
+
 std::vector<std::string> scenario_ids() {
   std::error_code none_to_list;
   return json_names(data_directory() / "scenarios", none_to_list);
 }
 
-Scenario load_scenario(const std::string& id) {
+Scenario load_scenario(const std::string& id, Truth truth) {
   const auto known = scenario_ids();
   if (std::find(known.begin(), known.end(), id) == known.end())
     throw InputError(fmt::format("scenario \"{}\": expected one of: {}", id, fmt::join(known, ", ")));
   const fs::path file = data_directory() / "scenarios" / (id + ".json");
-  Scenario s = read_scenario(read_json(file), file.string());
+  const Json json = read_json(file);
+  Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
   if (s.id != id)
     throw InputError(
         fmt::format("{}: /id: expected \"{}\", as the file is named, got \"{}\"", file.string(), id, s.id));

@@ -35,7 +35,8 @@ std::vector<AnswerFile> kept_answers(const fs::path& run) {
   std::vector<AnswerFile> files;
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(run / "answers", none_there))
-    if (!is_temporary(entry.path())) files.push_back({entry.path().filename(), entry.path(), Json::object()});
+    if (!is_temporary(entry.path()) && entry.symlink_status().type() == fs::file_type::regular)
+      files.push_back({entry.path().filename(), entry.path(), Json::object()});
   return files;
 }
 
@@ -62,6 +63,21 @@ CassetteAnswers check_cassette(const fs::path& file, const std::vector<std::stri
   }
   const std::string hash = sha256_file(file);
   return {cassette_prefix + hash, {hash + ".jsonl", file, {{"model", model}}}};
+}
+
+void check_recorded(const std::string& answers, const std::vector<std::string>& scenarios) {
+  std::vector<std::string> lacking, known;
+  for (const std::string& id : scenarios) {
+    const Scenario scenario = load_scenario(id);
+    const RecordedLanguageModel lm(scenario, recorded_source(scenario, answers));
+    const auto knows = [&](const ScenarioCommand& c) { return lm.knows({c.utterance, scenario.task}); };
+    if (std::all_of(scenario.commands.begin(), scenario.commands.end(), knows)) continue;
+    lacking.push_back(id);
+    known = lm.known();
+  }
+  if (!lacking.empty())
+    throw InputError(fmt::format("--answers {}: expected answers for {}; there are those for: {}", answers,
+                                 fmt::join(lacking, ", "), fmt::join(known, " | ")));
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector<Participant>& all) {
@@ -92,13 +108,17 @@ Answers answers_for(const Cell& cell, const Scenario& scenario, const fs::path& 
     answers.lm = std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr,
                                                      ChatOptions{only_model(*answers.cassette, file)});
   } else {
-    answers.lm = std::make_unique<RecordedLanguageModel>(scenario.space, scenario.answers_of, cell.answers);
+    answers.lm = std::make_unique<RecordedLanguageModel>(
+        scenario, recorded_source(scenario, cell.answers, cell.method.asks == "edit"));
   }
+  std::unique_ptr<HumanAnswers> human;
   if (cell.participant)
-    answers.human = std::make_unique<ParticipantAsHuman>(
-        read_participant(kept_file(kept, cell.participant->sha256, ".json")), scenario);
+    human = std::make_unique<ParticipantAsHuman>(read_participant(kept_file(kept, cell.participant->sha256, ".json")),
+                                                 scenario);
   else
-    answers.human = std::make_unique<TruthAsHuman>(scenario.commands);
+    human = std::make_unique<TruthAsHuman>(scenario.commands);
+  answers.human = std::make_unique<DeclaredHuman>(std::move(human), cell.method.asks);
+  answers.truth = declared_truth(scenario.commands, cell.method.asks);
   return answers;
 }
 

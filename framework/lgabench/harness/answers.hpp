@@ -2,6 +2,7 @@
 // named by their SHA-256, so that it can be checked anywhere.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ struct CassetteAnswers {
 /// scenarios: names the first that is missing, and the command line that asks it.
 CassetteAnswers check_cassette(const std::filesystem::path& cassette, const std::vector<std::string>& scenarios);
 
+/// @throws InputError where `answers` (recorded, or one of recorded_sources()) has none for a command of the scenarios:
+/// names those scenarios.
+void check_recorded(const std::string& answers, const std::vector<std::string>& scenarios);
+
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant.
 std::vector<AnswerFile> read_participants(const std::filesystem::path& directory, std::vector<Participant>& all);
@@ -43,6 +48,7 @@ struct Answers {
   std::unique_ptr<Cassette> cassette;  // behind the language model
   std::unique_ptr<LanguageModel> lm;
   std::unique_ptr<HumanAnswers> human;
+  std::function<Selection(const Command&)> truth;
 };
 /// `kept`: the run directory's answers/. @throws InputError for a file that is missing there or has other bytes.
 Answers answers_for(const Cell& cell, const Scenario& scenario, const std::filesystem::path& kept);

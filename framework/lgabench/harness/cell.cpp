@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
+#include <map>
+#include <set>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -46,29 +48,72 @@ Json own_options(const std::string& method) {
   return options;
 }
 
-// The method that a grid writes so: its own options, then those that `settings` gives its id, then defaults.
-Competitor competitor(const std::string& written, const Json& settings, const Catalogue& catalogue) {
-  const PluginInfo& info = catalogue.find("method", written.substr(0, written.find('+')));
-  Json given = settings.value(info.id, Json::object());
-  given.update(own_options(written));
-  Competitor method{"method", info.id, info.id, info.version, resolve_options(info, given)};
-  for (const auto& [option, value] : method.options.items())
-    if (value != info.options.at(option).at("default"))
-      method.name += fmt::format("+{}={}", option, value.is_string() ? value.get<std::string>() : canonical(value));
-  return method;
+// The layer's values for the method: those of its id, then those of "*" for options that it has.
+Json layer_for(const PluginInfo& info, const Json& layer) {
+  const Json any = layer.value("*", Json::object());
+  Json values = Json::object();
+  for (const auto& [option, value] : any.items())
+    if (info.options.contains(option)) values[option] = value;
+  values.update(layer.value(info.id, Json::object()));
+  return values;
 }
 
-std::vector<Competitor> competitors(const Grid& grid, const Json& settings, const Catalogue& catalogue) {
+// Throws for an option in "*" that no plugin has, and for a value that a method of the run does not take.
+void check_layer(const Json& layer, const std::string& file, const std::string& place,
+                 const std::vector<const PluginInfo*>& methods, const Catalogue& catalogue) {
+  const Json any = layer.value("*", Json::object());
+  std::set<std::string> known;
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (plugin.kind == "method")
+      for (const auto& option : plugin.options.items()) known.insert(option.key());
+  JsonReader(any, file, place + "/*").only({known.begin(), known.end()});
+  for (const PluginInfo* info : methods) {
+    const Json of_any = layer_for(*info, {{"*", any}}), own = layer.value(info->id, Json::object());
+    check_options(*info, JsonReader(of_any, file, place + "/*"));
+    check_options(*info, JsonReader(own, file, place + "/" + info->id));
+  }
+}
+
+std::string named(const PluginInfo& info, const Json& options, const Json& usual, const std::set<std::string>& told) {
+  std::string name = info.id;
+  for (const std::string& option : told)
+    if (const Json& value = options.at(option); value != usual.at(option))
+      name += fmt::format("+{}={}", option, value.is_string() ? value.get<std::string>() : canonical(value));
+  return name;
+}
+
+std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const Json& settings,
+                                    const Catalogue& catalogue) {
+  std::vector<const PluginInfo*> infos;
   std::vector<Competitor> methods;
-  for (const std::string& written : grid.methods) {
-    methods.push_back(competitor(written, settings, catalogue));
-    for (std::size_t i = 0; i + 1 < methods.size(); ++i)
-      if (methods[i].name == methods.back().name)
+  std::map<std::string, Json> usual;                  // id -> options of its row without options of its own
+  std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
+  for (const std::string& written : grid.methods)
+    infos.push_back(&catalogue.find("method", written.substr(0, written.find('+'))));
+  check_layer(grid.options, suite.file, grid.options_place, infos, catalogue);
+  check_layer(settings, "--set", "", infos, catalogue);
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const PluginInfo& info = *infos[i];
+    Json given = layer_for(info, grid.options);
+    given.update(layer_for(info, settings));
+    usual[info.id] = check_options(info, JsonReader(given, info.id));
+    given.update(own_options(grid.methods[i]));
+    methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});
+    for (const Competitor& other : methods)
+      if (other.id == info.id)
+        for (const auto& [option, value] : other.options.items())
+          if (value != methods.back().options.at(option)) told[info.id].insert(option);
+  }
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    Competitor& method = methods[i];
+    method.name = named(*infos[i], method.options, usual.at(method.id), told[method.id]);
+    for (std::size_t before = 0; before < i; ++before)
+      if (methods[before].name == method.name)
         throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",
-                                     grid.methods[i], written, methods[i].name));
+                                     grid.methods[before], grid.methods[i], method.name));
   }
   for (const auto& item : settings.items())
-    if (std::none_of(methods.begin(), methods.end(), [&](const Competitor& m) { return m.id == item.key(); }))
+    if (item.key() != "*" && usual.count(item.key()) == 0)
       throw InputError(
           fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
   return methods;
@@ -77,9 +122,9 @@ std::vector<Competitor> competitors(const Grid& grid, const Json& settings, cons
 // Those whose answers the method stands on in this scenario; one that is nobody where it asks no people, or where the
 // truth stands in for them.
 using Answering = std::vector<std::optional<CellParticipant>>;
-Answering participants(const std::string& method, const Scenario& scenario, const std::vector<Participant>& all) {
-  if (all.empty() || (method != "human" && method != "lga_hill")) return {std::nullopt};
-  const auto how = method == "human" ? &Participant::Answer::specified : &Participant::Answer::edited;
+Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {
+  if (all.empty() || (method.asks != "specify" && method.asks != "edit")) return {std::nullopt};
+  const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
     if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
@@ -112,6 +157,10 @@ std::string Cell::title() const {
                      training_seed, participant ? " participant=" + participant->id : "");
 }
 
+std::optional<std::uint64_t> Cell::scenes_of_seed() const {
+  return test_scenes == "per_seed" ? std::optional(training_seed) : std::nullopt;
+}
+
 Json to_json(const Cell& cell) {
   Json json{{"suite", cell.suite},
             {"environment", cell.environment},
@@ -127,10 +176,12 @@ Json to_json(const Cell& cell) {
             {"demonstrations", cell.demonstrations},
             {"training_seed", cell.training_seed},
             {"scene_seed", cell.scene_seed},
+            {"test_scenes", cell.test_scenes},
             {"episodes", cell.episodes},
             {"answers", cell.answers},
             {"data", cell.data},
             {"smoke", cell.smoke}};
+  if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
   return json;
 }
@@ -138,9 +189,9 @@ Json to_json(const Cell& cell) {
 Cell read_cell(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
-               "scene_seed", "episodes", "answers", "participant", "data", "smoke"});
+               "scene_seed", "test_scenes", "episodes", "answers", "participant", "data", "smoke"});
   const JsonReader method = reader.at("method");
-  method.only({"kind", "id", "name", "version", "options"});
+  method.only({"kind", "id", "name", "version", "options", "asks"});
   constexpr long long most = std::numeric_limits<int>::max();
 
   Cell cell;
@@ -152,10 +203,14 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.engine = reader.at("engine").string();
   cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),
                  method.at("version").string(), method.at("options").json()};
+  if (method.has("asks")) cell.method.asks = method.at("asks").string();
   if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = seed_at(reader.at("training_seed"));
   cell.scene_seed = seed_at(reader.at("scene_seed"));
+  if (reader.has("test_scenes")) cell.test_scenes = reader.at("test_scenes").string();
+  if (cell.test_scenes != "shared" && cell.test_scenes != "per_seed")
+    reader.at("test_scenes").fail("shared or per_seed");
   cell.episodes = static_cast<int>(reader.at("episodes").integer(1, most));
   cell.answers = reader.at("answers").string();
   if (reader.has("participant")) {
@@ -178,12 +233,12 @@ Json data_hashes(const Scenario& scenario) {
 }
 
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
-  const std::vector<Competitor> methods = competitors(grid, variation.options, catalogue);
+  const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
   for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
-    const Scenario scenario = with_arms(load_scenario(id), suite);
+    const Scenario scenario = with_arms(load_scenario(id, variation.truth), suite);
     if (scenario.environment != suite.environment)
       throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
                                    scenario.environment, suite.environment));
@@ -192,6 +247,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
     cell.environment = suite.environment;
     cell.scenario = scenario.json;
     cell.scene_seed = grid.scene_seed;
+    cell.test_scenes = grid.test_scenes;
     cell.episodes = grid.episodes;
     cell.answers = variation.answers;
     cell.data = data_hashes(scenario);
@@ -200,11 +256,13 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       cell.method = method;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
-      for (const auto& participant : participants(method.id, scenario, variation.participants)) {
+      for (const auto& participant : participants(method, scenario, variation.participants)) {
         cell.participant = participant;
         cells.push_back(cell);
       }
     };
+    // One that learns nothing plays each set of test scenes once.
+    const std::vector<std::uint64_t> scene_sets = cell.scenes_of_seed() ? grid.seeds : std::vector<std::uint64_t>{0};
     const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
     for (const std::string& layout : grid.layouts) {
       for (const std::string& engine : grid.engines) {
@@ -215,10 +273,9 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
             for (const Competitor& method : methods) add(method, n, seed);
             if (variation.references) add(reference("constant_action"), n, seed);
           }
-        if (variation.references) {
-          add(reference("random_object"), 0, 0);
-          add(reference("oracle"), 0, 0);
-        }
+        if (variation.references)
+          for (const char* row : {"random_object", "oracle"})
+            for (const std::uint64_t seed : scene_sets) add(reference(row), 0, seed);
       }
     }
   }

@@ -17,9 +17,10 @@ namespace lgabench {
 struct Competitor {
   std::string kind = "method";  // or "reference": constant_action, random_object, oracle
   std::string id;
-  std::string name;  // its row's: the id, then "+option=value" for each that differs from the default, sorted by option
+  std::string name;  // its row's: the id, and what tells it from the run's other rows of that id (see expand())
   std::string version;
   Json options = Json::object();  // every option, defaults included
+  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
 
   bool is_reference() const { return kind == "reference"; }
 };
@@ -36,8 +37,9 @@ struct Cell {
   Competitor method;
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
+  std::string test_scenes = "shared";  // as Grid::test_scenes
   int episodes = 0;
-  std::string answers;                         // recorded, gpt4, claude, or "cassette:" and the cassette's SHA-256
+  std::string answers;                         // recorded, one of recorded_sources(), or "cassette:" and its SHA-256
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
@@ -45,10 +47,12 @@ struct Cell {
   std::string scenario_id() const { return scenario.at("id"); }
   /// For people: "lga heart cells n=20 seed=0".
   std::string title() const;
+  /// The training seed where the test scenes are its own.
+  std::optional<std::uint64_t> scenes_of_seed() const;
 };
 
 Json to_json(const Cell& cell);
-/// @throws InputError with `file` and place.
+/// What cells of 0.1 lack takes the value that held then. @throws InputError with `file` and place.
 Cell read_cell(const Json& json, const std::string& file);
 
 /// First 16 digits of the SHA-256 of the canonical JSON: names the cell's directory.
@@ -60,14 +64,18 @@ Json data_hashes(const Scenario& scenario);
 /// What is not on the grid.
 struct Variation {
   std::string answers = "recorded";  // as Cell::answers
-  Json options =
-      Json::object();      // method id -> option -> value, for each row of it that does not set the option itself
-  bool references = true;  // add the reference rows
+  Json options = Json::object();     // as Grid::options, before which they go
+  bool references = true;            // add the reference rows
+  Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
-/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of human or
-/// lga_hill for each one who specified, or edited, all commands of the scenario; for none, where nobody did.
+/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
+/// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
+/// An option's value is the first that is given by: the row itself, the variation for its id, the variation for "*",
+/// the grid for its id, the grid for "*", the plugin's default.
+/// A row is named by its id, followed by "+option=value" (sorted) for each option in which the grid's rows of that id
+/// differ and it has another value than without options of its own.
 /// @throws PluginError for an unknown method or engine, InputError for an unknown option, for a method that is not
 /// written ID+OPTION=VALUE+..., for two that name one row, and for one that no participant answered at all.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);

@@ -168,11 +168,11 @@ class MethodCheck {
   // The Selection, and how many questions were asked of services.lm.
   std::pair<Selection, int> select(const std::string& what, Method& method, const Scenario& scenario,
                                    const Command& command, bool always_no) {
-    RecordedLanguageModel recorded(scenario.space, scenario.answers_of, "recorded");
+    RecordedLanguageModel recorded(scenario, recorded_source(scenario, "recorded", plugin_.asks == "edit"));
     CountingModel lm(recorded, always_no);
-    TruthAsHuman human(scenario.commands);
+    DeclaredHuman human(std::make_unique<TruthAsHuman>(scenario.commands), plugin_.asks);
     Lines log;
-    Services services{lm, human, options_, seed, log};
+    Services services{lm, human, options_, seed, log, declared_truth(scenario.commands, plugin_.asks)};
     Selection selection = call(what, [&] { return method.select(command, scenario.space, services); });
     return {std::move(selection), lm.asked};
   }
@@ -190,10 +190,10 @@ class MethodCheck {
     for (std::size_t i = 0; i < shown.size(); ++i)
       shown[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
 
-    RecordedLanguageModel lm(bench.scenario.space, bench.scenario.answers_of, "recorded");
-    TruthAsHuman human(bench.scenario.commands);
+    RecordedLanguageModel lm(bench.scenario, recorded_source(bench.scenario, "recorded", plugin_.asks == "edit"));
+    DeclaredHuman human(std::make_unique<TruthAsHuman>(bench.scenario.commands), plugin_.asks);
     Lines log;
-    Services services{lm, human, options_, seed, log};
+    Services services{lm, human, options_, seed, log, declared_truth(bench.scenario.commands, plugin_.asks)};
     auto policy = call("learn", [&] { return method.learn(shown, services); });
     if (!policy) throw MethodError("learn() returned no policy");
     use.training += log.text;

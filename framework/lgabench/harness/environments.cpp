@@ -28,9 +28,9 @@ Scene training_scene(const Scenario& scenario, const std::string& layout, const 
 }
 
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
-                 int index) {
+                 int index, std::optional<std::uint64_t> training_seed) {
   expect_tabletop(scenario);
-  return tabletop::sample_scene(scenario, {layout, "test", arm, scene_seed}, index);
+  return tabletop::sample_scene(scenario, {layout, "test", arm, scene_seed, {}, training_seed}, index);
 }
 
 }  // namespace lgabench

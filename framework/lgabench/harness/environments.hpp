@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,8 @@ std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::uni
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index);
 
-/// Test scene `index` of an arm: whatever was selected or trained on.
+/// Test scene `index` of an arm, whatever was selected or trained on; with a training seed its own, else shared by all.
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
-                 int index);
+                 int index, std::optional<std::uint64_t> training_seed = std::nullopt);
 
 }  // namespace lgabench

@@ -4,6 +4,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -23,16 +24,17 @@ Action random_object(const Environment& environment, const Scene& scene, const O
 
 Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
-  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, std::nullopt, ""};
+  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, {}, "", {}};
   if (test.abstraction_empty) return episode;
   const Observation observation =
       imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
   try {
-    const Action action = actor(environment, scene, observation);
-    episode.failure = environment.step(action).failure;  // refuses an action that is not finite
-    episode.action = to_vector(action);
+    const Move move = actor(environment, scene, observation);
+    episode.failure = environment.step(move.action).failure;  // refuses an action that is not finite
+    episode.action = to_vector(move.action);
+    episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {
-    fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+    to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
     episode.failure = Failure::method_error;
   }
   return episode;
@@ -45,14 +47,16 @@ RandomStream perception_stream(const Scene& scene) {
 }
 
 Json to_json(const Episode& e) {
-  return {{"arm", e.arm},
-          {"index", e.index},
-          {"command", e.command},
-          {"scene", hex(e.scene)},
-          {"success", e.failure == Failure::none},
-          {"failure", to_string(e.failure)},
-          {"action", e.action ? Json(*e.action) : Json(nullptr)},
-          {"attribution", e.attribution.empty() ? Json(nullptr) : Json(e.attribution)}};
+  Json json{{"arm", e.arm},
+            {"index", e.index},
+            {"command", e.command},
+            {"scene", hex(e.scene)},
+            {"success", e.failure == Failure::none},
+            {"failure", to_string(e.failure)},
+            {"action", e.action ? Json(*e.action) : Json(nullptr)},
+            {"attribution", e.attribution.empty() ? Json(nullptr) : Json(e.attribution)}};
+  if (e.input_seen) json["input_seen"] = *e.input_seen;
+  return json;
 }
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
@@ -60,7 +64,8 @@ Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions,
     try {
       return guarded(plugin_id, [&] {
         policy.reset();
-        return policy.act(observation, instructions.at(static_cast<std::size_t>(scene.command)));
+        const Action action = policy.act(observation, instructions.at(static_cast<std::size_t>(scene.command)));
+        return Move(action, policy.seen_in_training());
       });
     } catch (const InputError& e) {  // at this point only the method can be at fault
       throw MethodError(e.what());

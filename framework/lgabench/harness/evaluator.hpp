@@ -20,6 +20,7 @@ struct Episode {
   Failure failure = Failure::none;
   std::optional<ActionVector> action;  // none where the actor gave none
   std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
+  std::optional<bool> input_seen;      // Policy::seen_in_training() of the action
 };
 
 /// A line of episodes.jsonl.
@@ -36,8 +37,15 @@ struct TestScene {
 /// that less of it makes.
 RandomStream perception_stream(const Scene& scene);
 
+/// What an actor does, and what it says of the input that made it do so.
+struct Move {
+  Move(const Action& does, std::optional<bool> seen = std::nullopt) : action(does), input_seen(seen) {}
+  Action action;
+  std::optional<bool> input_seen;  // as in Policy::seen_in_training()
+};
+
 /// Chooses the one action of an episode. @throws MethodError where it cannot.
-using Actor = std::function<Action(const Environment& environment, const Scene& scene, const Observation& observation)>;
+using Actor = std::function<Move(const Environment& environment, const Scene& scene, const Observation& observation)>;
 
 /// A policy as an actor: it sees the observation and the instruction for the scene's command, nothing else. What it
 /// throws, an InputError included, is a MethodError. Holds references. `instructions`: one a command of the scenario.

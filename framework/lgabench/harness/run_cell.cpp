@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
@@ -73,8 +74,13 @@ class TrainingLines : public TrainingLog {
 // The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
   if (job.method)
-    return std::make_unique<HostedMethod>(
-        HostJob{*job.method, job.cell.method.options, job.cell.training_seed, job.scratch});
+    return std::make_unique<HostedMethod>(HostJob{*job.method,
+                                                  job.cell.method.options,
+                                                  job.cell.training_seed,
+                                                  job.scratch,
+                                                  job.confined,
+                                                  {job.directory.parent_path().parent_path(), job.cache, job.answers},
+                                                  job.memory_bytes});
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
@@ -85,8 +91,19 @@ DemonstrationCache demonstration_cache(const CellJob& job) {
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 
-// A plugin may return any name; only those of the space can be shown, counted and written.
-void expect_within(const FeatureSpace& space, const Selection& selection) {
+// A plugin may return anything; only names of the space can be shown and counted, only finite costs added up.
+void expect_usable(const FeatureSpace& space, const Selection& selection) {
+  constexpr std::size_t longest = 2000;
+  const auto& [queries, tokens, lm_seconds, human_seconds] = selection.cost;
+  if (queries < 0 || tokens < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
+      !std::isfinite(lm_seconds + human_seconds))
+    throw MethodError(
+        fmt::format("selection: /cost: expected finite numbers, none below 0, got {} queries, {} tokens, "
+                    "{} s of a model and {} s of people",
+                    queries, tokens, lm_seconds, human_seconds));
+  for (const std::string* words : {&selection.source, &selection.asked_as})
+    if (words->size() > longest || one_line(*words) != *words)
+      throw MethodError(fmt::format("selection: /source and /asked_as: expected a line of at most {} bytes", longest));
   const auto check = [&space](const FeatureSet& set) {
     try {
       const Json json = to_json(set);
@@ -103,8 +120,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests)
     for (int i = 0; i < cell.episodes; ++i)
-      scenes.push_back(
-          {test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i), {arm.label_noise, arm.missed_segment}});
+      scenes.push_back({test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed()),
+                        {arm.label_noise, arm.missed_segment}});
   return scenes;
 }
 
@@ -139,7 +156,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const std::unique_ptr<Method> method = make_method(job);
   const Answers answers = answers_for(cell, scenario, job.answers);
   TrainingLines training(phases);
-  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training};
+  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
   Needs needs;
   std::vector<Instruction> instructions;
   if (method) needs = guarded(id, [&] { return method->needs(services.options); });
@@ -147,7 +164,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     const Command command = scenario.command(static_cast<int>(c));
     Selection selection;
     if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
-    expect_within(scenario.space, selection);
+    expect_usable(scenario.space, selection);
     instructions.push_back({command.utterance, std::move(selection)});
   }
   const bool on_selected = method && needs.targets == Needs::Targets::selected;
@@ -165,7 +182,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
   std::vector<Scene> scenes;
   if (learns)
-    for (int i = 0; i < cell.demonstrations; ++i)
+    for (int i = 0; i < scenario.training_scenes(cell.demonstrations); ++i)
       scenes.push_back(training_scene(scenario, cell.layout, selections, cell.training_seed, i));
 
   // 3 demonstrate: the oracle shows it.

@@ -28,6 +28,9 @@ CellState cell_state(const fs::path& directory, const std::string& key, const Js
 /// Which setting of two run.json differs first; data and versions may differ where no setting does.
 std::string difference(const Json& there, const Json& wanted);
 
+/// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
+bool same_cells(const std::string& version, const std::string& other);
+
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other
@@ -48,8 +51,8 @@ class RunDirectory {
 
   const fs::path& path() const { return path_; }
 
-  /// Where the cell is, or will be.
-  fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
+  /// Where the cell is, or will be. @throws InputError for what is no key: it could lead anywhere.
+  fs::path cell(const std::string& key) const;
   CellState state(const std::string& key, const Json& build) const { return cell_state(cell(key), key, build); }
 
   /// A new empty directory for a worker to write into; a later start removes it unless kept.
@@ -57,6 +60,8 @@ class RunDirectory {
   /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic (in place of an
   /// earlier attempt only where the file system can exchange two names).
   void keep(const std::string& key) const;
+  /// fsync of what was kept since.
+  void sync() const;
 
  private:
   fs::path hidden(const std::string& key, const char* what) const;

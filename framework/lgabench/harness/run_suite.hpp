@@ -14,6 +14,7 @@
 namespace lgabench {
 
 struct RunPlan {
+  bool confined = true;  // methods' processes, see host/confine.hpp
   std::vector<Cell> cells;    // of the whole run
   Shard shard;                // the part of them that is played here
   Json request;               // the settings that led to the cells, for run.json

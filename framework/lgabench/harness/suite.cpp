@@ -36,15 +36,33 @@ std::vector<std::string> names(const JsonReader& list, const std::vector<std::st
   });
 }
 
-const std::vector<std::string> grid_members{"scenarios", "layouts",  "engines",    "methods", "demonstrations",
-                                            "seeds",     "episodes", "scene_seed", "smoke"};
+const std::vector<std::string> grid_members{"scenarios",      "layouts", "engines",  "methods",
+                                            "demonstrations", "seeds",   "episodes", "scene_seed",
+                                            "test_scenes",    "smoke",   "options"};
+const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options"};
+
+// Method id or "*" -> option -> value, as far as it can be checked without plugins.
+Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
+  std::vector<std::string> known{"*"};
+  for (const std::string& method : methods) known.push_back(method.substr(0, method.find('+')));
+  options.only(known);
+  for (const auto& method : options.json().items()) {
+    const JsonReader values = options.at(method.key());
+    if (!values.json().is_object()) values.fail("an object");
+    for (const auto& option : values.json().items())
+      if (option.value().is_structured() || option.value().is_null())
+        values.at(option.key()).fail("a text, a number, true or false");
+  }
+  return options.json();
+}
 
 }  // namespace
 
 Json to_json(const Grid& grid) {
   return {{"scenarios", grid.scenarios}, {"layouts", grid.layouts},       {"engines", grid.engines},
           {"methods", grid.methods},     {"seeds", grid.seeds},           {"demonstrations", grid.demonstrations},
-          {"episodes", grid.episodes},   {"scene_seed", grid.scene_seed}, {"smoke", grid.smoke}};
+          {"episodes", grid.episodes},   {"scene_seed", grid.scene_seed}, {"test_scenes", grid.test_scenes},
+          {"smoke", grid.smoke},         {"options", grid.options}};
 }
 
 Grid apply(const JsonReader& overrides, Grid grid) {
@@ -63,6 +81,15 @@ Grid apply(const JsonReader& overrides, Grid grid) {
   if (overrides.has("episodes")) grid.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
   if (overrides.has("scene_seed"))
     grid.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
+  if (overrides.has("test_scenes")) {
+    grid.test_scenes = overrides.at("test_scenes").string();
+    if (grid.test_scenes != "shared" && grid.test_scenes != "per_seed")
+      overrides.at("test_scenes").fail("shared or per_seed");
+  }
+  if (overrides.has("options")) {
+    grid.options = options_of(overrides.at("options"), grid.methods);
+    grid.options_place = overrides.at("options").place();
+  }
   if (overrides.has("smoke")) grid.smoke = overrides.at("smoke").boolean();
   return grid;
 }
@@ -88,7 +115,8 @@ Suite load_suite(const std::string& id) {
   suite.environment = reader.at("environment").string();
   Json own = Json::object();  // the suite's own grid: all of it must be there
   for (const std::string& member : grid_members)
-    if (member == "smoke" ? reader.has(member) : true) own[member] = reader.at(member).json();
+    if (reader.has(member) || std::count(may_be_absent.begin(), may_be_absent.end(), member) == 0)
+      own[member] = reader.at(member).json();
   suite.grid = apply(JsonReader(own, suite.file), Grid{});
   if (reader.has("arms"))
     for (const JsonReader& arm : reader.at("arms").elements()) {

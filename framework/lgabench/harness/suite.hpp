@@ -12,19 +12,23 @@ namespace lgabench {
 /// gives some of them and keeps the rest.
 struct Grid {
   std::vector<std::string> scenarios, layouts, engines;
-  std::vector<std::string> methods;  // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
-  std::vector<int> demonstrations;   // clean demonstrations a policy learns from
-  std::vector<std::uint64_t> seeds;  // training seeds
-  int episodes = 0;                  // test scenes of each arm
-  std::uint64_t scene_seed = 0;      // of the test scenes
-  bool smoke = false;                // stamped as not for the leaderboard
+  std::vector<std::string> methods;    // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
+  std::vector<int> demonstrations;     // clean demonstrations a policy learns from
+  std::vector<std::uint64_t> seeds;    // training seeds
+  int episodes = 0;                    // test scenes of each arm
+  std::uint64_t scene_seed = 0;        // of the test scenes
+  bool smoke = false;                  // stamped as not for the leaderboard
+  std::string test_scenes = "shared";  // by every training seed; or per_seed: each seed plays its own
+  /// Method id, or "*" for each method that has the option -> option -> value.
+  Json options = Json::object();
+  std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 
 Json to_json(const Grid& grid);
 
 /// `base` with the members that `overrides` gives, each checked.
 /// @throws InputError for an unknown member, scenario or layout, a list that is empty or names something twice, a
-/// number out of range.
+/// number out of range, options of what is no method of the grid. Options themselves are checked by expand().
 Grid apply(const JsonReader& overrides, Grid base);
 
 struct Suite {

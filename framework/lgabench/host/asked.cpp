@@ -96,12 +96,13 @@ Json Asked::answer_questions(const JsonReader& reader) {
 Json Asked::ask_person(const JsonReader& reader) {
   const auto [how, command, proposal] = protocol::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
-    if (word != "specify" && word != "edit") reader.at("how").fail("specify or edit");
+    if (word != "specify" && word != "edit" && word != "truth") reader.at("how").fail("specify, edit or truth");
     return std::tuple(word, protocol::read_command(reader.at("command")),
                       word == "edit" ? protocol::read_selection(reader.at("proposal")) : Selection());
   });
-  const Selection answered =
-      how == "edit" ? services_.human.edit(command, account(proposal)) : services_.human.specify(command);
+  const Selection answered = how == "edit"    ? services_.human.edit(command, account(proposal))
+                             : how == "truth" ? services_.truth(command)
+                                              : services_.human.specify(command);
   keep(answered);
   return {{"type", "person"}, {"selection", protocol::told(answered)}};
 }

@@ -34,16 +34,11 @@ void check_size(const char* what, std::uint32_t bytes, std::uint32_t most) {
 }
 
 Json parse_header(const std::string& text) {
-  static constexpr int deepest = 16;
-  const auto shallow = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) malformed(fmt::format("a header of more than {} levels", deepest));
-    return true;
-  };
   Json header;
   try {
-    header = Json::parse(text, shallow);
-  } catch (const Json::exception&) {
-    malformed("the header is no JSON");
+    header = parse_json(text, "header");
+  } catch (const InputError& e) {
+    malformed(e.what());
   }
   if (!header.is_object() || !header.contains("type") || !header["type"].is_string())
     malformed("the header is no object with a \"type\"");

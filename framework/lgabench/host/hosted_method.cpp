@@ -132,12 +132,19 @@ class HostedPolicy : public Policy {
                                         {"instruction", protocol::to_json(instruction)},
                                         {"instances", protocol::instances_json(observation)}},
                                        "action");
-    return session_->read([&] { return protocol::read_action(frame.payload); });
+    return session_->read([&] {
+      const JsonReader reader(frame.header, "action");
+      seen_.reset();
+      if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
+      return protocol::read_action(frame.payload);
+    });
   }
+  std::optional<bool> seen_in_training() const override { return seen_; }
 
  private:
   std::shared_ptr<HostSession> session_;
   bool reset_ = false;
+  std::optional<bool> seen_;
 };
 
 double number_of(const std::string& payload) {

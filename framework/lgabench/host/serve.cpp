@@ -76,6 +76,9 @@ class RemoteHuman : public HumanAnswers {
                    {"command", protocol::to_json(command)},
                    {"proposal", distribution_json(proposal)}});
   }
+  Selection truth(const Command& command) {
+    return person({{"type", "person"}, {"how", "truth"}, {"command", protocol::to_json(command)}});
+  }
 
  private:
   Selection person(const Json& question) {
@@ -130,7 +133,8 @@ class Host {
 
   void answer(const Frame& frame) {
     const JsonReader reader(frame.header, frame.type());
-    Services services{model_, human_, options_, seed_, log_};
+    Services services{model_, human_, options_,
+                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); }};
     if (frame.type() == "needs") {
       Json needs = protocol::to_json(call([&] { return method_->needs(options_); }));
       needs["type"] = "needs";
@@ -153,7 +157,9 @@ class Host {
         if (reader.at("reset").boolean()) policy_->reset();
         return policy_->act(observation, instruction);
       });
-      channel_.send({{"type", "action"}}, protocol::to_bytes(action));
+      Json reply{{"type", "action"}};
+      if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
+      channel_.send(reply, protocol::to_bytes(action));
     } else {
       throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
     }

@@ -1,70 +1,57 @@
 #include <lgabench/learning/batch_norm.hpp>
 
 #include <cmath>
+#include <numeric>
 
 namespace lgabench {
 
 constexpr double epsilon = 1e-5, momentum = .1;
 
-BatchNorm::BatchNorm(int channels)
+BatchNorm::BatchNorm(int channels, Parameters& parameters, const Kernels& kernels)
     : channels_(channels),
-      running_mean_(static_cast<std::size_t>(channels), 0),
-      running_variance_(static_cast<std::size_t>(channels), 1),
-      inverse_deviation_(static_cast<std::size_t>(channels)) {}
+      parameters_(parameters),
+      kernels_(kernels),
+      scale_(parameters.take(channels)),
+      shift_(parameters.take(channels)),
+      running_mean_(size(channels), 0),
+      running_variance_(size(channels), 1),
+      mean_(size(channels)),
+      squares_(size(channels)),
+      inverse_deviation_(size(channels)),
+      factor_(size(channels)) {
+  std::vector<std::size_t> places(size(channels));
+  std::iota(places.begin(), places.end(), scale_);
+  parameters.uniform(places, 1, 1);
+  std::iota(places.begin(), places.end(), shift_);
+  parameters.uniform(places, 0, 0);
+}
 
-void BatchNorm::train(float* values, int positions, const float* scale, const float* shift) {
-  normalised_.resize(static_cast<std::size_t>(positions) * static_cast<std::size_t>(channels_));
-  for (int c = 0; c < channels_; ++c) {
-    double sum = 0, squares = 0;
-    for (int i = 0; i < positions; ++i) sum += values[i * channels_ + c];
-    const double mean = sum / positions;
-    for (int i = 0; i < positions; ++i) {
-      const double distance = values[i * channels_ + c] - mean;
-      squares += distance * distance;
-    }
-    const double inverse = 1 / std::sqrt(squares / positions + epsilon);
-    for (int i = 0; i < positions; ++i) {
-      const int at = i * channels_ + c;
-      normalised_[static_cast<std::size_t>(at)] = static_cast<float>((values[at] - mean) * inverse);
-      values[at] = normalised_[static_cast<std::size_t>(at)] * scale[c] + shift[c];
-    }
-    const auto k = static_cast<std::size_t>(c);
-    inverse_deviation_[k] = static_cast<float>(inverse);
-    running_mean_[k] = static_cast<float>((1 - momentum) * running_mean_[k] + momentum * mean);
+void BatchNorm::train(const float* values, int positions, float* out, bool relu) {
+  kernels_.moments(values, positions, channels_, mean_.data(), squares_.data());
+  const float* const scale = parameters_[scale_];
+  for (std::size_t c = 0; c < mean_.size(); ++c) {
+    const double squares = squares_[c];
+    inverse_deviation_[c] = static_cast<float>(1 / std::sqrt(squares / positions + epsilon));
+    factor_[c] = inverse_deviation_[c] * scale[c];
+    running_mean_[c] = static_cast<float>((1 - momentum) * running_mean_[c] + momentum * mean_[c]);
     // The running variance is the unbiased one.
-    running_variance_[k] =
-        static_cast<float>((1 - momentum) * running_variance_[k] + momentum * squares / (positions - 1));
+    running_variance_[c] =
+        static_cast<float>((1 - momentum) * running_variance_[c] + momentum * squares / (positions - 1));
   }
+  kernels_.normalise(values, mean_.data(), factor_.data(), parameters_[shift_], out, positions, channels_, relu);
 }
 
-void BatchNorm::apply(float* values, int positions, const float* scale, const float* shift) const {
-  for (int i = 0; i < positions; ++i)
-    for (int c = 0; c < channels_; ++c) {
-      const auto k = static_cast<std::size_t>(c);
-      float& value = values[i * channels_ + c];
-      value = (value - running_mean_[k]) / std::sqrt(running_variance_[k] + static_cast<float>(epsilon)) * scale[c] +
-              shift[c];
-    }
+void BatchNorm::apply(const float* values, int positions, float* out, bool relu) {
+  const float* const scale = parameters_[scale_];
+  for (std::size_t c = 0; c < factor_.size(); ++c)
+    factor_[c] = static_cast<float>(scale[c] / std::sqrt(running_variance_[c] + epsilon));
+  kernels_.normalise(values, running_mean_.data(), factor_.data(), parameters_[shift_], out, positions, channels_,
+                     relu);
 }
 
-void BatchNorm::backward(float* gradient, int positions, const float* scale, float* scale_gradient,
-                         float* shift_gradient) {
-  for (int c = 0; c < channels_; ++c) {
-    double sum = 0, along = 0;
-    for (int i = 0; i < positions; ++i) {
-      const int at = i * channels_ + c;
-      sum += gradient[at];
-      along += double{gradient[at]} * normalised_[static_cast<std::size_t>(at)];
-    }
-    shift_gradient[c] = static_cast<float>(sum);
-    scale_gradient[c] = static_cast<float>(along);
-    const double factor = double{scale[c]} * inverse_deviation_[static_cast<std::size_t>(c)] / positions;
-    for (int i = 0; i < positions; ++i) {
-      const int at = i * channels_ + c;
-      gradient[at] = static_cast<float>(
-          factor * (positions * double{gradient[at]} - sum - normalised_[static_cast<std::size_t>(at)] * along));
-    }
-  }
+void BatchNorm::backward(const float* values, const float* out, int positions, float* gradient) {
+  kernels_.norm_gradient(values, mean_.data(), inverse_deviation_.data(), parameters_[scale_], out, gradient, positions,
+                         channels_, parameters_.gradient(scale_), parameters_.gradient(shift_));
 }
 
 }  // namespace lgabench

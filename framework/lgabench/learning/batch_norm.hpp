@@ -3,25 +3,31 @@
 #pragma once
 #include <vector>
 
+#include <lgabench/learning/parameters.hpp>
+
 namespace lgabench {
 
 /// Of one convolution's outputs, `positions` x channels. The arrays given are the caller's.
 class BatchNorm {
  public:
-  explicit BatchNorm(int channels);
+  /// Takes its scale (1 at first) and shift (0). @pre both outlive this.
+  BatchNorm(int channels, Parameters& parameters, const Kernels& kernels);
 
-  /// In place, with the batch's own statistics, which move the running ones.
-  void train(float* values, int positions, const float* scale, const float* shift);
-  /// In place, with the running statistics.
-  void apply(float* values, int positions, const float* scale, const float* shift) const;
-  /// Of the last train(): replaces d loss / d output by d loss / d input, in place.
-  void backward(float* gradient, int positions, const float* scale, float* scale_gradient, float* shift_gradient);
+  /// With the batch's own statistics, which move the running ones; negative numbers replaced by 0 if `relu`.
+  void train(const float* values, int positions, float* out, bool relu);
+  /// Likewise with the running statistics.
+  void apply(const float* values, int positions, float* out, bool relu);
+  /// Of the last train(): replaces d loss / d out by d loss / d value, in place; `out` where train() had a ReLU, else
+  /// null.
+  void backward(const float* values, const float* out, int positions, float* gradient);
 
  private:
   int channels_;
+  Parameters& parameters_;
+  const Kernels& kernels_;
+  std::size_t scale_, shift_;
   std::vector<float> running_mean_, running_variance_;
-  std::vector<float> normalised_;         // of the last train(), positions x channels
-  std::vector<float> inverse_deviation_;  // likewise, by channel
+  std::vector<float> mean_, squares_, inverse_deviation_, factor_;  // of the last call
 };
 
 }  // namespace lgabench

@@ -31,6 +31,16 @@ struct Kernels {
   void (*relu_gradient)(const float* out, float* gradient, std::size_t count);
   /// Sums `rows` x `channels` numbers over rows; channels is at least 16.
   void (*sum_rows)(const float* values, float* sums, int rows, int channels);
+  /// Mean of each channel over `rows`, and the sum of its squared distances from it; channels as above.
+  void (*moments)(const float* values, int rows, int channels, float* mean, float* squares);
+  /// out = (values - mean) * factor + shift of each channel, its negative numbers replaced by 0 if `relu`.
+  void (*normalise)(const float* values, const float* mean, const float* factor, const float* shift, float* out,
+                    int rows, int channels, bool relu);
+  /// Back through out = (values - mean) * inverse * scale + shift, where mean and inverse are the values' own; `out` is
+  /// null, or what a ReLU made of it. Replaces d loss / d out by d loss / d values.
+  void (*norm_gradient)(const float* values, const float* mean, const float* inverse, const float* scale,
+                        const float* out, float* gradient, int rows, int channels, float* scale_gradient,
+                        float* shift_gradient);
   /// Adam in place (Kingma and Ba 2015, algorithm 1).
   void (*adam)(const AdamCoefficients& c, const float* gradients, float* mean, float* variance, float* parameters,
                std::size_t count);

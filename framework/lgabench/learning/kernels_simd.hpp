@@ -145,6 +145,107 @@ void sum_rows(const float* values, float* sums, int rows, int channels) {
   });
 }
 
+// A gradient, as the ReLU whose outputs are `out` lets it through.
+template <bool Relu>
+LGABENCH_INLINE inline Vector opened(const float* gradient, const float* out) {
+  const Vector zero = {};
+  const Vector value = load(gradient);
+  if constexpr (Relu) return load(out) > zero ? value : zero;
+  return value;
+}
+
+// Sums of each channel over rows, of m vectors number by number: term(row, v) gives one. Four sums, each of every
+// fourth row, hide the latency of an addition and round less than one.
+template <int m, class Term>
+LGABENCH_INLINE inline void sum_terms(Vector (&sum)[m], int rows, const Term& term) {
+  constexpr int strands = 4;
+  Vector strand[strands][m] = {};
+  int r = 0;
+  for (; r + strands <= rows; r += strands)
+    for (int s = 0; s < strands; ++s)
+      for (int v = 0; v < m; ++v) strand[s][v] += term(r + s, v);
+  for (int s = 0; r < rows; ++r, ++s)
+    for (int v = 0; v < m; ++v) strand[s][v] += term(r, v);
+  for (int v = 0; v < m; ++v) sum[v] = (strand[0][v] + strand[1][v]) + (strand[2][v] + strand[3][v]);
+}
+
+void moments(const float* values, int rows, int channels, float* mean, float* squares) {
+  for_vectors(channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+    constexpr int m = decltype(vectors)::value;
+    const float* const first = values + channel;
+    Vector sum[m], centre[m];
+    sum_terms<m>(sum, rows, [&](int r, int v) LGABENCH_INLINE { return load(first + r * channels + v * lanes); });
+    for (int v = 0; v < m; ++v) {
+      centre[v] = sum[v] / static_cast<float>(rows);
+      store(mean + channel + v * lanes, centre[v]);
+    }
+    sum_terms<m>(sum, rows, [&](int r, int v) LGABENCH_INLINE {
+      const Vector distance = load(first + r * channels + v * lanes) - centre[v];
+      return distance * distance;
+    });
+    for (int v = 0; v < m; ++v) store(squares + channel + v * lanes, sum[v]);
+  });
+}
+
+void normalise(const float* values, const float* mean, const float* factor, const float* shift, float* out, int rows,
+               int channels, bool relu) {
+  for_vectors(channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+    constexpr int m = decltype(vectors)::value;
+    Vector centre[m], by[m], plus[m];
+    for (int v = 0; v < m; ++v) {
+      centre[v] = load(mean + channel + v * lanes);
+      by[v] = load(factor + channel + v * lanes);
+      plus[v] = load(shift + channel + v * lanes);
+    }
+    for (int r = 0; r < rows; ++r)
+      for (int v = 0; v < m; ++v) {
+        const int at = r * channels + channel + v * lanes;
+        const Vector zero = {};
+        const Vector value = (load(values + at) - centre[v]) * by[v] + plus[v];
+        store(out + at, relu ? (value > zero ? value : zero) : value);
+      }
+  });
+}
+
+template <bool Relu>
+LGABENCH_INLINE inline void norm_gradient_of(const float* values, const float* mean, const float* inverse,
+                                             const float* scale, const float* out, float* gradient, int rows,
+                                             int channels, float* scale_gradient, float* shift_gradient) {
+  for_vectors(channels, [&](auto vectors, int channel) LGABENCH_INLINE {
+    constexpr int m = decltype(vectors)::value;
+    Vector centre[m], sum[m], along[m], less[m], slope[m], factor[m];
+    for (int v = 0; v < m; ++v) centre[v] = load(mean + channel + v * lanes);
+    const auto let_through = [&](int r, int v) LGABENCH_INLINE {
+      const int at = r * channels + channel + v * lanes;
+      return opened<Relu>(gradient + at, out + at);
+    };
+    const auto distance = [&](int r, int v)
+                              LGABENCH_INLINE { return load(values + r * channels + channel + v * lanes) - centre[v]; };
+    sum_terms<m>(sum, rows, let_through);
+    sum_terms<m>(along, rows, [&](int r, int v) LGABENCH_INLINE { return let_through(r, v) * distance(r, v); });
+    for (int v = 0; v < m; ++v) {
+      const int c = channel + v * lanes;
+      const Vector shrink = load(inverse + c);
+      store(shift_gradient + c, sum[v]);
+      store(scale_gradient + c, along[v] * shrink);
+      less[v] = sum[v] / static_cast<float>(rows);
+      slope[v] = along[v] * shrink * shrink / static_cast<float>(rows);
+      factor[v] = load(scale + c) * shrink;
+    }
+    for (int r = 0; r < rows; ++r)
+      for (int v = 0; v < m; ++v) {
+        const Vector change = let_through(r, v) - less[v] - distance(r, v) * slope[v];
+        store(gradient + r * channels + channel + v * lanes, factor[v] * change);
+      }
+  });
+}
+
+void norm_gradient(const float* values, const float* mean, const float* inverse, const float* scale, const float* out,
+                   float* gradient, int rows, int channels, float* scale_gradient, float* shift_gradient) {
+  (out ? norm_gradient_of<true> : norm_gradient_of<false>)(values, mean, inverse, scale, out, gradient, rows, channels,
+                                                           scale_gradient, shift_gradient);
+}
+
 void adam(const AdamCoefficients& c, const float* __restrict gradients, float* __restrict mean,
           float* __restrict variance, float* __restrict parameters, std::size_t count) {
   const auto [b1, b2, epsilon, c1, c2, rate, root] = c;
@@ -157,7 +258,8 @@ void adam(const AdamCoefficients& c, const float* __restrict gradients, float* _
 }
 
 constexpr Kernels kernels_of(const char* name) {
-  return {name, forward, weight_gradient, input_gradient, relu_gradient, sum_rows, adam};
+  return {name,     forward, weight_gradient, input_gradient, relu_gradient,
+          sum_rows, moments, normalise,       norm_gradient,  adam};
 }
 
 }  // namespace

@@ -18,19 +18,31 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
-/// Outputs of a linear layer are padded with zeros to whole vectors: 100 text features to 112, 12 actions to 16.
-constexpr int text_features = 100, padded_text_features = 112, padded_action = 16;
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, 12 actions to 16.
+constexpr int hidden_features = 100, padded_hidden = 112, padded_action = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
-enum LayerKind { mask_convolution, rgb_convolution, convolution2, convolution3, text_linear, tower_head, text_head };
+enum LayerKind {
+  mask_convolution,
+  rgb_convolution,
+  convolution2,
+  convolution3,
+  text_linear,
+  tower_head,
+  text_head,
+  tower_linear,
+  features_linear
+};
 
 constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {36, 72, 3, 8, 4, 32},
                             {8, 17, 32, 4, 2, 64},
                             {3, 7, 64, 3, 1, 32},
-                            {1, 0, 384, 1, 1, padded_text_features},
+                            {1, 0, 384, 1, 1, padded_hidden},
                             {1, 0, 160, 1, 1, padded_action},
-                            {1, 0, padded_text_features, 1, 1, padded_action}};
+                            {1, 0, padded_hidden, 1, 1, padded_action},
+                            {1, 0, 160, 1, 1, padded_hidden},
+                            {1, 0, padded_hidden, 1, 1, padded_hidden}};
 constexpr int most_channels = 64;  // of a convolution's output
 
 }  // namespace lgabench

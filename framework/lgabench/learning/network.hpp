@@ -1,54 +1,34 @@
 // The policy network of the paper's appendix, and its gradients, without a framework: shapes are fixed, buffers are
 // kept, and a step allocates nothing. Tests hold it against LibTorch.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include <lgabench/learning/inputs.hpp>
 #include <lgabench/learning/kernels.hpp>
 #include <lgabench/learning/loss.hpp>
+#include <lgabench/learning/samples.hpp>
 
 namespace lgabench {
-
-/// One tower for each picture: Conv 8x8/4 to 32, 4x4/2 to 64, 3x3/1 to 32 channels, each followed by ReLU, flattened to
-/// 160; a text of 384 numbers goes through a linear layer to 100; a last linear layer maps all of it to the action.
-struct NetworkShape {
-  std::vector<int> channels;  // of each tower's picture: 1 or 3
-  bool text = false;
-  bool batch_norm = false;  // before each ReLU, as the appendix has it
-};
-
-/// Numbers of a sentence embedding.
-constexpr int text_size = 384;
-
-/// Rows of input and label, each array row-major.
-struct Samples {
-  /// All zeros.
-  explicit Samples(const NetworkShape& shape, int count);
-
-  int rows;
-  std::vector<std::vector<float>> pictures;  // for each tower rows x 36 x 72 x channels
-  std::vector<float> text;                   // rows x 384, or empty
-  std::vector<float> labels;                 // rows x 12
-};
 
 /// One thread at a time. Flushes subnormal numbers to zero in the constructing thread.
 class Network {
  public:
-  /// Weights and biases uniform within 1/sqrt(fan in), as PyTorch's default, and a function of the seed alone.
+  /// Weights and biases uniform within 1/sqrt(fan in), as PyTorch's default; linear layers of `released` with
+  /// orthogonal weights and biases of 0. A function of the seed alone. @throws InputError for a picture that has
+  /// neither 1 nor 3 channels.
   Network(const NetworkShape& shape, std::uint64_t seed, const Kernels& kernels = *available_kernels().front());
   ~Network();
   Network(const Network&) = delete;
   Network& operator=(const Network&) = delete;
 
   /// All trainable numbers, in the order and the layout that PyTorch gives them: for each tower and convolution weight
-  /// (out, in, row, column), bias and, with batch normalisation, scale and shift; then the text's and the last layer.
+  /// (out, in, row, column), bias and, with batch normalisation, scale and shift; then the layers of single inputs (the
+  /// text's; `released` the towers'), the one that joins them, and `released` with text the last.
   std::vector<float> parameters() const;
   /// Likewise. @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);
-  /// Of the last backward(), likewise.
+  /// Of the last backward(), likewise. That of a bias before batch normalisation is 0.
   std::vector<float> gradients() const;
 
   /// Outputs for each row, rows x 12, valid until the next call. With batch normalisation the running statistics are

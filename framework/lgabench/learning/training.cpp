@@ -8,8 +8,14 @@
 #include <lgabench/core/random.hpp>
 
 namespace lgabench {
-std::vector<int> batch_order(std::uint64_t seed, int epoch, int samples) {
-  return RandomStream(fmt::format("learning/order/{}/{}", seed, epoch)).permutation(samples);
+
+std::vector<int> batch_order(Batches batches, std::uint64_t seed, int epoch, int samples) {
+  if (batches == Batches::shuffled)
+    return RandomStream(fmt::format("learning/order/{}/{}", seed, epoch)).permutation(samples);
+  RandomStream random(fmt::format("learning/drawn/{}/{}", seed, epoch));
+  std::vector<int> drawn(static_cast<std::size_t>(samples));
+  for (int& sample : drawn) sample = static_cast<int>(random.below(static_cast<std::uint32_t>(samples)));
+  return drawn;
 }
 
 void train(Network& network, const Samples& samples, const TrainingOptions& options, std::uint64_t seed,
@@ -19,7 +25,7 @@ void train(Network& network, const Samples& samples, const TrainingOptions& opti
   std::vector<int> batch(static_cast<std::size_t>(batch_rows));
   long long steps = 0;
   for (int epoch = 1; epoch <= options.epochs; ++epoch) {
-    const std::vector<int> order = batch_order(seed, epoch, samples.rows);
+    const std::vector<int> order = batch_order(options.batches, seed, epoch, samples.rows);
     double total = 0;
     for (int b = 0; b < batches; ++b) {
       std::copy_n(order.begin() + b * batch_rows, batch_rows, batch.begin());

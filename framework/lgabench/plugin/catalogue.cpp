@@ -14,7 +14,7 @@ namespace lgabench {
 Json to_json(const PluginInfo& plugin) {
   return {{"file", plugin.file.string()}, {"kind", plugin.kind},       {"id", plugin.id},
           {"version", plugin.version},    {"summary", plugin.summary}, {"fingerprint", plugin.fingerprint},
-          {"options", plugin.options},    {"sha256", plugin.sha256}};
+          {"asks", plugin.asks},          {"options", plugin.options}, {"sha256", plugin.sha256}};
 }
 
 const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id) const {

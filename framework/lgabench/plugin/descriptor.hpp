@@ -16,14 +16,15 @@ struct PluginDescriptor {
   char magic[16];
   std::uint32_t struct_size, abi;
   char kind[16];     // "method" or "engine"
+  char asks[16];     // whom a method asks beside the language model: "specify", "edit", "truth", or ""
   char id[64];       // lower-case letters, digits, underscores; starts with a letter
   char version[32];  // the plugin's own
   char summary[160];
   char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
-  char
-      options_json[4096];  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n}, ...}
+  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n, "needs": {...}}, ...}
+  char options_json[4096];
 };
-static_assert(sizeof(PluginDescriptor) == 4648, "the descriptor has no padding");
+static_assert(sizeof(PluginDescriptor) == 4664, "the descriptor has no padding");
 
 /// Exported as `lga_plugin_v1`. The host owns what create() returns: a Method* or PhysicsWorld* as void*.
 struct PluginEntry {
@@ -32,13 +33,14 @@ struct PluginEntry {
 };
 
 /// Fills a descriptor at compile time; a text that is too long does not compile.
-template <std::size_t Kind, std::size_t Id, std::size_t Version, std::size_t Summary, std::size_t Fingerprint,
-          std::size_t Options>
-constexpr PluginDescriptor describe_plugin(const char (&kind)[Kind], const char (&id)[Id],
+template <std::size_t Kind, std::size_t Asks, std::size_t Id, std::size_t Version, std::size_t Summary,
+          std::size_t Fingerprint, std::size_t Options>
+constexpr PluginDescriptor describe_plugin(const char (&kind)[Kind], const char (&asks)[Asks], const char (&id)[Id],
                                            const char (&version)[Version], const char (&summary)[Summary],
                                            const char (&fingerprint)[Fingerprint],
                                            const char (&options_json)[Options]) {
   static_assert(Kind <= sizeof(PluginDescriptor::kind), "plugin kind: at most 15 bytes");
+  static_assert(Asks <= sizeof(PluginDescriptor::asks), "plugin asks: at most 15 bytes");
   static_assert(Id <= sizeof(PluginDescriptor::id), "plugin id: at most 63 bytes");
   static_assert(Version <= sizeof(PluginDescriptor::version), "plugin version: at most 31 bytes");
   static_assert(Summary <= sizeof(PluginDescriptor::summary), "plugin summary: at most 159 bytes");
@@ -49,6 +51,7 @@ constexpr PluginDescriptor describe_plugin(const char (&kind)[Kind], const char 
   d.struct_size = sizeof(PluginDescriptor);
   d.abi = LGABENCH_PLUGIN_ABI;
   for (std::size_t i = 0; i < Kind; ++i) d.kind[i] = kind[i];
+  for (std::size_t i = 0; i < Asks; ++i) d.asks[i] = asks[i];
   for (std::size_t i = 0; i < Id; ++i) d.id[i] = id[i];
   for (std::size_t i = 0; i < Version; ++i) d.version[i] = version[i];
   for (std::size_t i = 0; i < Summary; ++i) d.summary[i] = summary[i];

@@ -17,8 +17,9 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  Json options;        // {name: {"default", "help", "source", "values"?, "min"?}}
+  Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
+  std::string asks{};  // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
 };
 
 /// Every member, under its name.
@@ -63,7 +64,10 @@ Json option_value(const std::string& word);
 
 /// Every option of the plugin: those of `overrides` (an object), defaults for the rest. A whole number given for an
 /// option with a fractional default becomes fractional.
-/// @throws InputError for an unknown option, a value of another type than the default's or not among its values.
+/// @throws InputError for an unknown option, a value of another type than the default's or not among its values, and
+/// for one whose needs of other options are not met.
 Json resolve_options(const PluginInfo& plugin, const Json& overrides);
+/// Likewise of an object that need not be all that is given: its options one by one, without their needs.
+Json check_options(const PluginInfo& plugin, const JsonReader& given);
 
 }  // namespace lgabench

@@ -15,16 +15,19 @@ const char* type_of(const Json& value) {
   return "a number";
 }
 
+bool contains(const Json& values, const Json& value) {
+  return std::find(values.begin(), values.end(), value) != values.end();
+}
+
 }  // namespace
 
 Json option_value(const std::string& word) {
-  Json value = Json::parse(word, nullptr, false);
+  const Json value = json_or_null(word);
   return value.is_number() || value.is_boolean() ? value : Json(word);
 }
 
-Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
-  const std::string owner = fmt::format("options of {} {}", plugin.kind, plugin.id);
-  const JsonReader given(overrides, owner);
+Json check_options(const PluginInfo& plugin, const JsonReader& given) {
+  const Json& overrides = given.json();
   std::vector<std::string> known;
   for (const auto& option : plugin.options.items()) known.push_back(option.key());
   if (known.empty() && overrides.is_object() && !overrides.empty()) given.fail("none: it has no options");
@@ -40,12 +43,28 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
     if (!same_type) given.at(name).fail(type_of(usual));
     if (option.contains("values")) {
       const Json& values = option.at("values");
-      if (std::find(values.begin(), values.end(), value) == values.end())
-        given.at(name).fail("one of " + canonical(values));
+      if (!contains(values, value))
+        given.at(name).fail(fmt::format("one of {} ({})", canonical(values), option.at("help").get<std::string>()));
     }
     if (option.contains("min") && value.get<double>() < option.at("min").get<double>())
       given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));
     resolved[name] = std::move(value);
+  }
+  return resolved;
+}
+
+Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
+  const JsonReader given(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id));
+  Json resolved = check_options(plugin, given);
+  for (const auto& [name, option] : plugin.options.items()) {
+    const Json& value = resolved[name];
+    if (!option.contains("needs") || !value.is_string()) continue;
+    const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
+    for (const auto& [other, values] : needs.items())
+      if (!contains(values, resolved[other]))
+        JsonReader(resolved, given.file())
+            .at(other)
+            .fail(fmt::format("one of {}, which {}={} needs", canonical(values), name, value.get<std::string>()));
   }
   return resolved;
 }

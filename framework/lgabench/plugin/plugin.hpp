@@ -6,7 +6,8 @@
 //     "epochs": {"default": 750, "help": "passes over the demonstrations", "source": "paper, appendix"}})")
 //
 // An option's default fixes its type (text, number, whole number, boolean); "values", if given, lists all it may be;
-// "min" the least a number may be.
+// "min" the least a number may be; "needs", of an option with "values", which other options a value goes with:
+// {"value": {"other option": [its values]}}. Anything else is refused before a cell runs.
 #pragma once
 #include <type_traits>
 
@@ -17,18 +18,24 @@
 
 /// A method: `Class` derives from lgabench::Method and has a default constructor. Once in a library.
 #define LGABENCH_METHOD(id, version, summary, Class, options_json) \
-  LGABENCH_PLUGIN_("method", id, version, summary, ::lgabench::Method, Class, options_json)
+  LGABENCH_METHOD_ASKING("", id, version, summary, Class, options_json)
+
+/// A method that asks more than the language model. `asks` is "specify" or "edit": people, as HumanAnswers says; with
+/// `lgabench run --humans` it has a cell for each of them, and a method that edits starts from the recorded answers
+/// that people were given to edit. Or "truth": Services::truth, for a diagnosis that is nobody's entry.
+#define LGABENCH_METHOD_ASKING(asks, id, version, summary, Class, options_json) \
+  LGABENCH_PLUGIN_("method", asks, id, version, summary, ::lgabench::Method, Class, options_json)
 
 /// An engine: `Class` derives from lgabench::PhysicsWorld and has a default constructor. Once in a library.
 #define LGABENCH_ENGINE(id, version, summary, Class) \
-  LGABENCH_PLUGIN_("engine", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
+  LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
 
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
-#define LGABENCH_PLUGIN_(kind, id, version, summary, Interface, Class, options_json)                           \
+#define LGABENCH_PLUGIN_(kind, asks, id, version, summary, Interface, Class, options_json)                     \
   static_assert(std::is_base_of<Interface, Class>::value, #Class " must derive from " #Interface);             \
   namespace {                                                                                                  \
   [[gnu::section(".lgabench"), gnu::used]] constexpr ::lgabench::PluginDescriptor lgabench_plugin_descriptor = \
-      ::lgabench::describe_plugin(kind, id, version, summary, LGABENCH_FINGERPRINT, options_json);             \
+      ::lgabench::describe_plugin(kind, asks, id, version, summary, LGABENCH_FINGERPRINT, options_json);       \
   void* lgabench_plugin_create() { return static_cast<Interface*>(new Class); }                                \
   }                                                                                                            \
   extern "C" {                                                                                                 \

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 
@@ -22,6 +23,16 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+#if defined(__x86_64__)
+constexpr int own_machine = EM_X86_64;
+#elif defined(__aarch64__)
+constexpr int own_machine = EM_AARCH64;
+#elif defined(__riscv)
+constexpr int own_machine = EM_RISCV;
+#elif defined(__powerpc64__)
+constexpr int own_machine = EM_PPC64;
+#endif
+
 struct Range {
   std::size_t offset, size;
 };
@@ -35,6 +46,9 @@ std::vector<Range> loaded_ranges(std::string_view bytes) {
   const auto elf = value_at<Elf64_Ehdr>(bytes, 0);
   if (elf.e_ident[EI_CLASS] != ELFCLASS64 || elf.e_type != ET_DYN)
     throw PluginError("not a shared library: an ELF file of another kind");
+
+  if (elf.e_machine != own_machine)
+    throw PluginError(fmt::format("built for ELF machine {} (this program: {})", elf.e_machine, own_machine));
 
   const auto check_end = [&bytes](std::uint64_t offset, std::uint64_t size, const char* what) {
     if (offset > bytes.size() || size > bytes.size() - offset)
@@ -96,19 +110,32 @@ bool is_name(const std::string& id) {
          std::all_of(id.begin(), id.end(), [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+bool offers(const Json& option, const Json& value) {
+  const Json values = option.is_object() ? option.value("values", Json()) : Json();
+  return values.is_array() && std::find(values.begin(), values.end(), value) != values.end();
+}
+
+// {"value": {"other option": [values of that one]}}: each is to be one that the option has.
+void check_needs(const JsonReader& option, const Json& options) {
+  const JsonReader needs = option.at("needs");
+  if (!needs.json().is_object()) needs.fail("an object");
+  for (const auto& [value, others] : needs.json().items()) {
+    if (!offers(option.json(), value)) needs.fail(fmt::format("one of the option's values, got \"{}\"", value));
+    if (!others.is_object()) needs.at(value).fail("an object");
+    for (const auto& [other, allowed] : others.items())
+      for (const JsonReader& one : needs.at(value).at(other).elements())
+        if (!offers(options.value(other, Json()), one.json())) one.fail(fmt::format("a value of option {}", other));
+  }
+}
+
 // Complaints of InputError's kind are the plugin's fault here.
 Json read_options(const std::string& options_json) {
-  Json options;
   try {
-    options = Json::parse(options_json);
-  } catch (const Json::parse_error& e) {
-    throw PluginError(fmt::format("options: byte {}: expected valid JSON", e.byte));
-  }
-  try {
+    Json options = parse_json(options_json, "options");
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
-      reader.only({"default", "help", "source", "values", "min"});
+      reader.only({"default", "help", "source", "values", "min", "needs"});
       const Json& usual = reader.at("default").json();
       if (usual.is_structured() || usual.is_null()) reader.at("default").fail("a text, number or boolean");
       reader.at("help").string();
@@ -120,11 +147,12 @@ Json read_options(const std::string& options_json) {
       }
       if (reader.has("min") && (!usual.is_number() || usual.get<double>() < reader.at("min").number()))
         reader.at("min").fail("a number, not above a default that is one");
+      if (reader.has("needs")) check_needs(reader, options);
     }
+    return options;
   } catch (const InputError& e) {
     throw PluginError(e.what());
   }
-  return options;
 }
 
 }  // namespace
@@ -173,6 +201,12 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.kind = text(d.kind, "kind");
   if (plugin.kind != "method" && plugin.kind != "engine")
     throw PluginError(fmt::format("descriptor: kind \"{}\", expected \"method\" or \"engine\"", plugin.kind));
+  plugin.asks = text(d.asks, "asks");
+  constexpr std::array<const char*, 4> known{"", "specify", "edit", "truth"};
+  if (std::find(known.begin(), known.end(), plugin.asks) == known.end() ||
+      (plugin.kind == "engine" && !plugin.asks.empty()))
+    throw PluginError(fmt::format(
+        "descriptor: asks \"{}\", expected \"specify\", \"edit\" or \"truth\" of a method, or \"\"", plugin.asks));
   plugin.id = text(d.id, "id");
   if (!is_name(plugin.id))
     throw PluginError(

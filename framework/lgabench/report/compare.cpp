@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/old_runs.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -15,10 +16,12 @@ constexpr double refuse_up_to = 0.05;
 
 struct CellPair {
   const CellResult *a, *b;
+  std::vector<std::string> arms{};  // in which both played the same scenes
 };
 
 auto measures(const CellResult& c) {
-  return std::tuple(c.layout, c.engine, c.scenario, c.method, c.demonstrations, c.training_seed, c.participant);
+  return std::tuple(c.layout, c.engine, c.scenario, c.id, canonical(meaning_of(c.options)),
+                    c.demonstrations * c.demonstrated_commands, c.training_seed, c.participant);
 }
 
 // Cells that finished in both runs; the others are counted.
@@ -42,14 +45,35 @@ std::vector<CellPair> pair_cells(const RunResults& a, const RunResults& b, RunCo
   return pairs;
 }
 
-void expect_same_tests(const CellPair& pair) {
-  const CellResult &a = *pair.a, &b = *pair.b;
-  const auto refuse = [&a](const std::string& what) {
-    throw InputError(fmt::format("the runs cannot be compared: {}, layout {}: {}", a.scenario, a.layout, what));
-  };
-  if (a.arms != b.arms) refuse(fmt::format("arms {} in A, {} in B", fmt::join(a.arms, ", "), fmt::join(b.arms, ", ")));
-  if (a.episodes_per_arm != b.episodes_per_arm)
-    refuse(fmt::format("{} episodes an arm in A, {} in B", a.episodes_per_arm, b.episodes_per_arm));
+// Finds the arms in which each pair played the same scenes; keeps pairs that have one, and says which cells have
+// others.
+std::vector<CellPair> pair_arms(const std::vector<CellPair>& cells, RunComparison& comparison) {
+  std::vector<CellPair> pairs;
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, OtherScenes> others;
+  for (CellPair pair : cells) {
+    const CellResult &a = *pair.a, &b = *pair.b;
+    if (a.episodes_per_arm != b.episodes_per_arm)
+      throw InputError(fmt::format("the runs cannot be compared: {}, layout {}: {} episodes an arm in A, {} in B",
+                                   a.scenario, a.layout, a.episodes_per_arm, b.episodes_per_arm));
+    const auto differ = [&](const std::string& arm, const std::string& why) {
+      OtherScenes& other = others[{b.layout, b.engine, b.scenario, arm}];
+      if (other.cells.empty()) other = {b.layout, b.engine, b.scenario, arm, why, {}};
+      other.cells.push_back(fmt::format("{} n={} seed={}{}", b.method, b.demonstrations, b.training_seed,
+                                        b.participant.empty() ? "" : " participant=" + b.participant));
+    };
+    for (const std::string& arm : a.arms)
+      if (b.episodes.count(arm) == 0)
+        differ(arm, "an arm of A alone");
+      else if (const std::string why = why_unpaired(a, b, arm); !why.empty())
+        differ(arm, why);
+      else
+        pair.arms.push_back(arm);
+    for (const std::string& arm : b.arms)
+      if (a.episodes.count(arm) == 0) differ(arm, "an arm of B alone");
+    if (!pair.arms.empty()) pairs.push_back(std::move(pair));
+  }
+  for (auto& item : others) comparison.other_scenes.push_back(std::move(item.second));
+  return pairs;
 }
 
 using RowPlace = std::tuple<std::string, std::string, std::size_t, std::string, int, std::string, int>;
@@ -63,15 +87,15 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
   };
   std::map<RowPlace, Draft> drafts;
   for (const CellPair& pair : pairs) {
-    expect_same_tests(pair);
-    const CellResult& a = *pair.a;
-    for (std::size_t arm = 0; arm < a.arms.size(); ++arm) {
-      Draft& draft = drafts[{a.layout, a.engine, arm, a.kind, display_rank(a.method), a.method, a.demonstrations}];
+    const CellResult &a = *pair.a, &b = *pair.b;
+    for (const std::string& arm : pair.arms) {
+      const auto place = static_cast<std::size_t>(std::find(a.arms.begin(), a.arms.end(), arm) - a.arms.begin());
+      Draft& draft = drafts[{a.layout, a.engine, place, a.kind, display_rank(b.method), b.method, a.demonstrations}];
       ComparedRow& row = draft.row;
-      row.layout = a.layout, row.engine = a.engine, row.method = a.method, row.kind = a.kind;
-      row.arm = a.arms[arm];
+      row.layout = a.layout, row.engine = a.engine, row.method = b.method, row.method_a = a.method, row.kind = a.kind;
+      row.arm = arm;
       row.demonstrations = a.demonstrations;
-      const PolicyPair policies = pair_policies(a, *pair.b, a.arms[arm]);
+      const PolicyPair policies = pair_policies(a, b, arm);
       draft.policies.add(a.scenario, policies, a.participant);
       draft.p.push_back(mcnemar(policies.only_first, policies.only_second));
       draft.direction.push_back(policies.only_second - policies.only_first);
@@ -102,7 +126,7 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
 std::vector<ComparedTime> compare_times(const std::vector<CellPair>& pairs) {
   std::map<std::tuple<std::string, std::string, int, std::string>, std::vector<CellPair>> methods;
   for (const CellPair& pair : pairs)
-    methods[{pair.a->layout, pair.a->engine, display_rank(pair.a->method), pair.a->method}].push_back(pair);
+    methods[{pair.b->layout, pair.b->engine, display_rank(pair.b->method), pair.b->method}].push_back(pair);
   std::vector<ComparedTime> times;
   std::vector<double> p;
   for (const auto& [place, cells] : methods)
@@ -146,11 +170,18 @@ RunComparison compare_runs(const RunResults& a, const RunResults& b) {
     throw InputError(fmt::format("the runs cannot be compared: suite {} in A, {} in B", a.suite, b.suite));
   RunComparison comparison;
   comparison.suite = a.suite;
-  const std::vector<CellPair> pairs = pair_cells(a, b, comparison);
+  const std::vector<CellPair> pairs = pair_arms(pair_cells(a, b, comparison), comparison);
+  if (pairs.empty() && !comparison.other_scenes.empty()) {
+    const OtherScenes& first = comparison.other_scenes.front();
+    throw InputError(
+        fmt::format("the runs cannot be compared: no cell played the same scenes in both; {}, layout {}, "
+                    "arm {}: {}",
+                    first.scenario, first.layout, first.arm, first.why));
+  }
   if (pairs.empty() && comparison.failed_a + comparison.failed_b == 0)
     throw InputError(
-        "the runs cannot be compared: no cell finished in both (scenario, layout, engine, method, demonstrations, "
-        "training seed)");
+        "the runs cannot be compared: no cell finished in both (scenario, layout, engine, method and its options, "
+        "demonstrations, training seed)");
   comparison.rows = compare_rows(pairs);
   comparison.times = compare_times(pairs);
   return comparison;

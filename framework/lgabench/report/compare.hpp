@@ -10,7 +10,8 @@ namespace lgabench::report {
 
 /// Success of a row in run A and in run B, on the mean over the scenarios that both hold.
 struct ComparedRow {
-  std::string layout, engine, method, kind, arm;
+  std::string layout, engine, method, kind, arm;  // method: the row's name in B
+  std::string method_a;                           // and in A
   int demonstrations = 0;
   double success_a = 0, success_b = 0;
   Change change;      // B minus A
@@ -33,21 +34,28 @@ struct ComparedTime {
   double p_holm = 1;  // over all rows and phases
 };
 
+/// Cells that measure the same and did not play the same: not compared in that arm.
+struct OtherScenes {
+  std::string layout, engine, scenario, arm, why;  // why: of the first pair
+  std::vector<std::string> cells;                  // "lga n=20 seed=0", in B's names
+};
+
 struct RunComparison {
   std::string suite;
   std::vector<ComparedRow> rows;    // by layout, engine, arm, kind, method, demonstrations
   std::vector<ComparedTime> times;  // by layout, engine, method; phases in their order
-  int only_a = 0, only_b = 0;       // finished cells that measure what the other run does not
-  int failed_a = 0, failed_b = 0;   // cells that finished in the other run alone
+  std::vector<OtherScenes> other_scenes;
+  int only_a = 0, only_b = 0;      // finished cells that measure what the other run does not
+  int failed_a = 0, failed_b = 0;  // cells that finished in the other run alone
 
   /// Some row is worse in B beyond chance, or a cell that finished in A failed in B.
   bool regressed() const;
 };
 
-/// Pairs cells by what they measure: scenario, layout, engine, row, demonstrations, training seed; their episodes by
-/// arm and index. Deterministic.
-/// @throws InputError, in one line that says what differs, for runs of other suites, episodes, arms, scenes or
-/// commands, and for runs that have no cell in common.
+/// Pairs cells by what they measure: scenario, layout, engine, method and its options (whatever its row is named, see
+/// old_runs.hpp), demonstrations, training seed; their episodes by arm and index. Deterministic.
+/// @throws InputError, in one line that says what differs, for runs of other suites or episodes, and for runs that have
+/// no arm of a cell with the same scenes and commands in common.
 RunComparison compare_runs(const RunResults& a, const RunResults& b);
 
 /// Every member, under its name; and tables for a terminal.

@@ -29,6 +29,12 @@ class Columns {
   std::vector<std::vector<std::string>> rows_;
 };
 
+// The row's name, with the one it has in A where that is another.
+std::string row_name(const ComparedRow& row) {
+  return display_name(row.method) +
+         (row.method == row.method_a ? "" : fmt::format(" (in A {})", display_name(row.method_a)));
+}
+
 std::string verdict(const ComparedRow& row) {
   return row.worse() ? "worse" : row.better() ? "better" : row.total.same_actions ? "same actions" : "";
 }
@@ -49,6 +55,7 @@ Json to_json(const RunComparison& comparison) {
     rows.push_back({{"layout", r.layout},
                     {"engine", r.engine},
                     {"method", r.method},
+                    {"method_a", r.method_a},
                     {"method_kind", r.kind},
                     {"arm", r.arm},
                     {"demonstrations", r.demonstrations},
@@ -80,8 +87,17 @@ Json to_json(const RunComparison& comparison) {
                      {"interval", t.cells < 2 ? Json(nullptr) : interval_json(t.change.interval)},
                      {"p", t.change.p},
                      {"p_holm", t.p_holm}});
+  Json others = Json::array();
+  for (const OtherScenes& o : comparison.other_scenes)
+    others.push_back({{"layout", o.layout},
+                      {"engine", o.engine},
+                      {"scenario", o.scenario},
+                      {"arm", o.arm},
+                      {"why", o.why},
+                      {"cells", o.cells}});
   return {{"suite", comparison.suite},
           {"rows", rows},
+          {"other_scenes", others},
           {"times", times},
           {"regressed", comparison.regressed()},
           {"only_a", comparison.only_a},
@@ -97,7 +113,7 @@ std::string comparison_text(const RunComparison& comparison) {
     Columns rows;
     rows.add({"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p", "cells worse/better", ""});
     for (const ComparedRow& r : comparison.rows)
-      rows.add({display_name(r.method), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
+      rows.add({row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
                 fmt::format("{:.2f}", r.success_a), fmt::format("{:.2f}", r.success_b), change_text(r.change),
                 p_text(r.p_holm), fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), verdict(r)});
     text += rows.text() +
@@ -110,6 +126,9 @@ std::string comparison_text(const RunComparison& comparison) {
                  p_text(t.p_holm), std::to_string(t.cells)});
     text += times.text() + '\n';
   }
+  for (const OtherScenes& o : comparison.other_scenes)
+    text += fmt::format("{}, layout {}, engine {}, arm {}: other scenes ({}), not compared: {}\n", o.scenario, o.layout,
+                        o.engine, o.arm, o.why, fmt::join(o.cells, "; "));
   for (const auto& [n, what] : {std::pair(comparison.only_a, "in A alone: not compared"),
                                 {comparison.only_b, "in B alone: not compared"},
                                 {comparison.failed_a, "failed in A and finished in B"},

@@ -131,12 +131,13 @@ std::string curves_script(const std::string& suite, const Table& table, const st
     for (const int n : columns) {
       if (const Row* row = table.find(arm, mean_scenario, methods[i], n); row && row->success)
         ours += fmt::format("{:.6g} {} {} {}\n", n + shift, *row->success, row->interval.low, row->interval.high);
-      if (const auto rate = paper.find(mean_scenario, name, n)) theirs += fmt::format("{} {}\n", n, *rate);
+      if (const auto rate = paper.find(mean_scenario, name, n))
+        theirs += fmt::format("{} {} {}\n", n, *rate, paper.error(mean_scenario, name, n).value_or(0));
     }
     script.add(ours, fmt::format("with yerrorlines lw 2 pt {} ps 0.9 lc rgb '{}' title {}", 5 + i % 5 * 2, color,
                                  quoted(name)));
-    script.add(theirs,
-               fmt::format("with lines lw 1.6 dt (6,4) lc rgb '{}' title {}", color, quoted(name + ", the paper")));
+    script.add(theirs, fmt::format("with yerrorlines lw 1.6 dt (6,4) pt 0 lc rgb '{}' title {}", color,
+                                   quoted(name + ", the paper")));
   }
   for (const std::string& id : table.references(mean_scenario)) {
     std::string levels;
@@ -185,7 +186,7 @@ std::string bars_script(const std::string& suite, const Table& table) {
   for (std::size_t arm = 0; arm < table.arms.size(); ++arm)
     ticks += fmt::format("{}{} {}", arm == 0 ? "" : ", ", quoted(table.arms[arm]), arm);
   return script.text("set errorbars 0.7 front lw 1.4 lc rgb '#222222'\n" +
-                     settings(title(suite, table, fmt::format(", {} demonstrations", n)), "arm", -0.6,
+                     settings(title(suite, table, ", " + table.demonstrations_text(n)), "arm", -0.6,
                               static_cast<double>(table.arms.size()) - 0.4, 0, ticks));
 }
 

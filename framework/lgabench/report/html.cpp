@@ -8,6 +8,7 @@
 
 #include <lgabench/report/html_parts.hpp>
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/settings.hpp>
 
 namespace lgabench::report {
 namespace html_parts {
@@ -114,6 +115,7 @@ std::string what_was_run(const RunResults& run, const Summary& summary, const Pi
     for (const auto& item : cell.episodes) episodes += item.second.size();
   card(episodes, "episodes played");
   text += "</ul><ul class=notes>";
+  for (const std::string& line : settings(run)) text += fmt::format("<li>{}</li>", escaped(line));
   for (const std::string& note : notes(run, summary)) text += fmt::format("<li>{}</li>", escaped(note));
   for (const std::string& line : sources(summary)) text += fmt::format("<li>{}</li>", escaped(line));
   if (const std::string note = pictures_note(pictures); !note.empty())

@@ -23,8 +23,8 @@ Json pixel(double x_m, double y_m) {
 }
 
 std::string title_of(const Table& table, const Row& row) {
-  return fmt::format("{}, {}, {} demonstrations, arm {}, {}", display_name(row.method), table.title(row.scenario),
-                     row.demonstrations, row.arm, table.title());
+  return fmt::format("{}, {}, {}, arm {}, {}", display_name(row.method), table.title(row.scenario),
+                     table.demonstrations_text(row.demonstrations), row.arm, table.title());
 }
 
 // The rows that each (cell, arm) counts in: its scenario's and the mean's.
@@ -54,7 +54,9 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
       // What follows the scene's hash in the names of pictures.masks.
-      masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", command.selection)));
+      masks.push_back(command.quality.is_null()
+                          ? Json()
+                          : Json(mask_key("", command.selection, cell.options.value("instances", "all"))));
     }
     Json played = Json::array();
     for (const std::string& arm : cell.arms) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <iterator>
+#include <string_view>
 
 namespace lgabench::report {
 namespace {
@@ -65,6 +66,13 @@ std::string provenance_words(const std::string& provenance) {
   if (provenance == "simulated_edit") return "simulated edit: no human data";
   if (provenance == "human") return "people's answers";
   return "";
+}
+
+bool worded_otherwise(const std::string& asked_as, const std::string& utterance) {
+  const auto words = [](std::string_view text) {
+    return !text.empty() && text.back() == '.' ? text.substr(0, text.size() - 1) : text;
+  };
+  return words(asked_as) != words(utterance);
 }
 
 }  // namespace lgabench::report

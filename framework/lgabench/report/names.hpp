@@ -21,4 +21,7 @@ std::string display_color(const std::string& method, std::size_t index);
 /// A Selection's provenance in words for a reader, e.g. "true φ̂: an upper bound, no human data"; "" for none.
 std::string provenance_words(const std::string& provenance);
 
+/// Whether two wordings differ by more than a final full stop.
+bool worded_otherwise(const std::string& asked_as, const std::string& utterance);
+
 }  // namespace lgabench::report

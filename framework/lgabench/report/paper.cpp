@@ -23,9 +23,14 @@ void read_curves(const JsonReader& figure, PaperValues& values) {
   const auto demonstrations = figure.at("demonstrations").elements();
   for (const auto& item : figure.json().items()) {
     if (item.key() == "demonstrations") continue;
-    const std::vector<double> means = rates(figure.at(item.key()).at("mean"), demonstrations.size());
-    for (std::size_t i = 0; i < means.size(); ++i)
-      values.rates[mean_scenario][item.key()][static_cast<int>(demonstrations[i].integer(1, 1000000))] = means[i];
+    const JsonReader curve = figure.at(item.key());
+    const std::vector<double> means = rates(curve.at("mean"), demonstrations.size());
+    const std::vector<double> errors = rates(curve.at("err"), demonstrations.size());
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      const auto n = static_cast<int>(demonstrations[i].integer(1, 1000000));
+      values.rates[mean_scenario][item.key()][n] = means[i];
+      values.errors[mean_scenario][item.key()][n] = errors[i];
+    }
   }
 }
 
@@ -39,16 +44,26 @@ void read_bars(const JsonReader& figure, const std::vector<std::string>& ids, Pa
   }
 }
 
-}  // namespace
-
-std::optional<double> PaperValues::find(const std::string& scenario, const std::string& method,
-                                        int demonstrations) const {
+std::optional<double> find_in(const PaperValues::Rates& rates, const std::string& scenario, const std::string& method,
+                              int demonstrations) {
   const auto methods = rates.find(scenario);
   if (methods == rates.end()) return std::nullopt;
   const auto values = methods->second.find(method);
   if (values == methods->second.end()) return std::nullopt;
   const auto value = values->second.find(demonstrations);
   return value == values->second.end() ? std::nullopt : std::optional(value->second);
+}
+
+}  // namespace
+
+std::optional<double> PaperValues::find(const std::string& scenario, const std::string& method,
+                                        int demonstrations) const {
+  return find_in(rates, scenario, method, demonstrations);
+}
+
+std::optional<double> PaperValues::error(const std::string& scenario, const std::string& method,
+                                         int demonstrations) const {
+  return find_in(errors, scenario, method, demonstrations);
 }
 
 PaperValues paper_values(const std::string& suite) {

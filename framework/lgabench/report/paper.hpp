@@ -10,9 +10,11 @@ namespace lgabench::report {
 struct PaperValues {
   std::string figure;  // e.g. "3a"; empty where there is none
   // Scenario (mean_scenario: the mean over the paper's own) -> method's display name -> demonstrations -> rate.
-  std::map<std::string, std::map<std::string, std::map<int, double>>> rates;
+  using Rates = std::map<std::string, std::map<std::string, std::map<int, double>>>;
+  Rates rates, errors;  // errors: half the length of the error bar, where the figure has one
 
   std::optional<double> find(const std::string& scenario, const std::string& method, int demonstrations) const;
+  std::optional<double> error(const std::string& scenario, const std::string& method, int demonstrations) const;
 };
 
 /// From the installed paper/reference_results.json: for suite q1 figure 3a, a mean over scenarios; for q2 and q3

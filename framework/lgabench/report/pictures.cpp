@@ -23,10 +23,11 @@ struct Request {
   std::vector<std::string> ends{};  // end_key of the scene itself, then of each engine that is asked for
 };
 
-Json distribution(const Json& selection) {
-  Json out{{"target", selection.at("target")}};
-  if (selection.contains("avoid")) out["avoid"] = selection.at("avoid");
-  return out;
+// All that a goal mask depends on beside the scene.
+Json what_is_kept(const Json& selection, const std::string& instances) {
+  Json distribution{{"target", selection.at("target")}};
+  if (selection.contains("avoid")) distribution["avoid"] = selection.at("avoid");
+  return {{"distribution", distribution}, {"instances", instances}};
 }
 
 // A request for each scene in which a method failed, by index, then as the cells are ordered.
@@ -50,10 +51,10 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const CommandResult& command = cell.commands[episode.command];
         if (command.quality.is_null()) continue;
         Request& request = all[known->second];
-        const std::string key = mask_key(episode.scene, command.selection);
+        const std::string key = mask_key(episode.scene, command.selection, cell.options.value("instances", "all"));
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
-        request.json["selections"].push_back(distribution(command.selection));
+        request.json["selections"].push_back(what_is_kept(command.selection, cell.options.value("instances", "all")));
       }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -110,8 +111,8 @@ std::string run_worker(const std::string& input, std::string& output) {
 
 }  // namespace
 
-std::string mask_key(const std::string& scene, const Json& selection) {
-  return scene + "/" + sha256(canonical(distribution(selection))).substr(0, 8);
+std::string mask_key(const std::string& scene, const Json& selection, const std::string& instances) {
+  return scene + "/" + sha256(canonical(what_is_kept(selection, instances))).substr(0, 8);
 }
 
 std::string end_key(const Disagreement& d, const std::string& engine) {
@@ -133,7 +134,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
   std::size_t begin = 0;
   for (const Request& request : requests) {
     const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-    const Json drawn = Json::parse(lines.substr(begin, end - begin), nullptr, false);
+    const Json drawn = json_or_null(lines.substr(begin, end - begin));
     begin = std::min(end + 1, lines.size());
     if (!drawn.is_object() || !drawn.contains("picture")) {
       if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";

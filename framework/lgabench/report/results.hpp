@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,16 +29,21 @@ struct PlayedEpisode {
   std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
   std::string scene;           // the scene's hash, 16 hexadecimal digits
   std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
+  std::optional<bool> input_seen;  // its input stood in training; none where the policy does not tell
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string id;                                           // of the plugin, or of the reference row
+  Json options = Json::object();                            // of the method, all of them
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::string participant;  // whose answers it stands on; empty where nobody was asked
+  std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
+  int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
   bool failed = false;
   std::string fault, reason;                                   // where it failed; fault: plugin or host
   std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
@@ -63,8 +69,8 @@ std::vector<std::string> failure_words();
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
 
-/// What a failure may be laid to, in a fixed order: a failed episode that the same policy wins with the true mask is
-/// the abstraction's, any other the policy's.
+/// What a failure may be attributed to, in a fixed order: a failed episode that the same policy wins with the true mask
+/// is the abstraction's, any other the policy's.
 constexpr std::array<const char*, 2> attributions{"abstraction", "policy"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.

@@ -25,21 +25,25 @@ struct Shift {
 struct Row {
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
-  int seeds = 0, episodes = 0, successes = 0;
-  int participants = 0;           // whose answers the row stands on; 0 where nobody was asked
+  int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
+  int participants = 0;                                    // whose answers the row stands on; 0 where nobody was asked
   std::optional<double> success;  // mean over scenarios of the mean over training seeds (participants, where there are
                                   // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
-  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures laid to each
-  std::optional<Shift> shift;  // none in the first arm, nor where the arms give different commands
-  int n_error = 0;             // episodes not played: the engine or the host failed
+  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each
+  std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
+  int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
+  int n_error = 0;                       // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
   Json phi;  // a list: provenance, cost, quality of what was selected for each of the arm's commands; null in mean rows
 
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }
   bool marked(const std::string& mark) const;
+  std::optional<double> seen_share() const {
+    return inputs_told > 0 ? std::optional(static_cast<double>(inputs_seen) / inputs_told) : std::nullopt;
+  }
   int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
 };
 
@@ -48,10 +52,13 @@ struct Row {
 struct Table {
   std::string layout, engine;
   std::vector<std::string> arms;
+  int demonstrated_commands = 1;  // of each scenario, each with as many demonstrations; 0 where scenarios differ
   std::vector<Row> rows;
 
   std::vector<std::string> scenarios() const;  // in order, the mean last
   std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none
+  /// "50 demonstrations", or where several commands were demonstrated "demonstrations: 50 per command, 100 in all".
+  std::string demonstrations_text(int n) const;
   /// The row, nullptr where there is none. A reference row that learns nothing (demonstrations 0) stands in every
   /// number of demonstrations.
   const Row* find(const std::string& arm, const std::string& scenario, const std::string& method,

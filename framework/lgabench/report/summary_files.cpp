@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
@@ -29,6 +30,7 @@ Json to_json(const Summary& summary) {
                       {"arm", row.arm},
                       {"seeds", row.seeds},
                       {"participants", row.participants},
+                      {"scenes", row.scenes},
                       {"episodes", row.episodes},
                       {"successes", row.successes},
                       {"success", row.success ? Json(*row.success) : Json()},
@@ -37,6 +39,7 @@ Json to_json(const Summary& summary) {
                       {"shift", shift_json(row.shift)},
                       {"failures", row.failures},
                       {"attribution", row.attribution},
+                      {"inputs_seen", row.seen_share() ? Json(*row.seen_share()) : Json()},
                       {"n_error", row.n_error},
                       {"marks", row.marks},
                       {"phi", row.phi}});
@@ -46,7 +49,9 @@ Json to_json(const Summary& summary) {
 }
 
 std::string to_csv(const Summary& summary) {
-  const auto quoted = [](const std::string& text) {  // RFC 4180
+  const auto quoted = [](const std::string& name) {  // RFC 4180, and nothing that a spreadsheet takes for a formula
+    std::string text = one_line(name);
+    if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string inside = text;
     for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2) inside.insert(at, 1, '"');
@@ -56,22 +61,24 @@ std::string to_csv(const Summary& summary) {
 
   const std::vector<std::string> words = failure_words();
   std::string csv = fmt::format(
-      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,success,low,"
+      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,scenes,episodes,successes,"
+      "success,low,"
       "high,"
-      "against,difference,difference_low,difference_high,same_actions,n_error,marks,{},{}\n",
+      "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,{},{}\n",
       fmt::join(attributions, ","), fmt::join(words, ","));
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
       const bool known = row.success.has_value();
       const bool shifted = row.shift.has_value();
       const Shift shift = row.shift.value_or(Shift());
-      csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
-                         quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations,
-                         quoted(row.arm), row.seeds, row.participants, row.episodes, row.successes,
-                         number(known, row.success.value_or(0)), number(known, row.interval.low),
-                         number(known, row.interval.high), quoted(shift.against), number(shifted, shift.difference),
-                         number(shifted, shift.interval.low), number(shifted, shift.interval.high),
-                         shifted ? canonical(shift.same_actions) : "", row.n_error, fmt::join(row.marks, " "));
+      csv += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
+          quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations, quoted(row.arm),
+          row.seeds, row.participants, row.scenes, row.episodes, row.successes, number(known, row.success.value_or(0)),
+          number(known, row.interval.low), number(known, row.interval.high), quoted(shift.against),
+          number(shifted, shift.difference), number(shifted, shift.interval.low), number(shifted, shift.interval.high),
+          shifted ? canonical(shift.same_actions) : "",
+          number(row.seen_share().has_value(), row.seen_share().value_or(0)), row.n_error, fmt::join(row.marks, " "));
       for (const char* to : attributions) csv += fmt::format(",{}", row.attribution.at(to));
       for (const std::string& word : words) {
         const auto it = row.failures.find(word);

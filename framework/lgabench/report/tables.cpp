@@ -30,12 +30,13 @@ std::vector<View> views(const Table& table) {
   std::vector<View> all;
   const std::vector<int> demonstrations = table.demonstrations();
   if (table.arms.size() == 1) {
-    View& view = all.emplace_back(View{"demonstrations", {}, {}});
+    const char* corner = table.demonstrated_commands == 1 ? "demonstrations" : "demonstrations per command";
+    View& view = all.emplace_back(View{corner, {}, {}});
     for (const int n : demonstrations) view.columns.push_back({std::to_string(n), table.arms.front(), n});
     return all;
   }
   for (const int n : demonstrations) {
-    View& view = all.emplace_back(View{fmt::format("{} demonstrations", n), {}, {}});
+    View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
     for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
@@ -43,10 +44,16 @@ std::vector<View> views(const Table& table) {
   return all;
 }
 
+std::string marks_text(const Row& row) {
+  std::string text;
+  for (const Mark& mark : table_marks)
+    if (row.marked(mark.word)) text += mark.sign;
+  return text;
+}
+
 std::string success_text(const Row* row) {
   if (!row) return "";
-  const std::string marks = fmt::format("{}{}{}", row->marked("baseline_not_learned") ? "†" : "",
-                                        row->marked("incomplete") ? "‡" : "", acts_the_same(*row) ? " =" : "");
+  const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
   if (!row->success) return "–" + marks;
   return fmt::format("{:.2f} [{:.2f}, {:.2f}]{}", *row->success, row->interval.low, row->interval.high, marks);
 }
@@ -62,15 +69,27 @@ std::string shift_text(const Row* row) {
                      hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
 }
 
+std::string seen_text(const Row* row) {
+  if (!row) return "";
+  const std::optional<double> share = row->seen_share();
+  return share ? fmt::format("{:.2f}", *share) : "–";
+}
+
+bool any_seen(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
-  bool not_learned = false, incomplete = false;
+  std::set<std::string> marked;
   std::set<std::string> same_as;              // arms
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
   std::set<std::string> models;               // behind cassettes
+  std::set<std::string> edited;               // methods whose Selections began as a language model's
+  for (const CellResult& cell : run.cells)
+    if (cell.asks == "edit") edited.insert(cell.method);
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
-      not_learned = not_learned || row.marked("baseline_not_learned");
-      incomplete = incomplete || row.marked("incomplete");
+      marked.insert(row.marks.begin(), row.marks.end());
       if (acts_the_same(row)) same_as.insert(row.shift->against);
       for (const Json& phi : row.phi) {
         const std::string provenance = phi.at("provenance");
@@ -78,9 +97,8 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
-        people[row.method] =
-            fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
-                        row.method.rfind("lga_hill", 0) == 0 ? ", who edited a language model's φ̂" : "");
+        people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                         edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
@@ -89,9 +107,8 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
                                 run.json.at("cells").size()));
   if (run.foreign > 0)
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
-  if (not_learned)
-    lines.emplace_back("† baseline not learned: below the best constant action with as many demonstrations.");
-  if (incomplete) lines.emplace_back("‡ incomplete: a cell failed, or the mean lacks a scenario.");
+  for (const Mark& mark : table_marks)
+    if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : same_as)
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));

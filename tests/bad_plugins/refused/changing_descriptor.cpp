@@ -6,7 +6,7 @@
 namespace {
 
 lgabench::PluginDescriptor descriptor =
-    lgabench::describe_plugin("method", "changing_descriptor", "0.1", "modest", LGABENCH_FINGERPRINT, "{}");
+    lgabench::describe_plugin("method", "", "changing_descriptor", "0.1", "modest", LGABENCH_FINGERPRINT, "{}");
 const char* const changed = std::strcpy(descriptor.summary, "the best");
 void* create() { return nullptr; }
 

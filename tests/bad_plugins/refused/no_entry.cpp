@@ -4,6 +4,6 @@
 namespace {
 
 [[gnu::used]] constexpr lgabench::PluginDescriptor lone_descriptor =
-    lgabench::describe_plugin("method", "no_entry", "0.1", "exports no entry", LGABENCH_FINGERPRINT, "{}");
+    lgabench::describe_plugin("method", "", "no_entry", "0.1", "exports no entry", LGABENCH_FINGERPRINT, "{}");
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 namespace {
 
-[[gnu::section(".lgabench")]] constexpr lgabench::PluginDescriptor descriptor =
-    lgabench::describe_plugin("method", "null_factory", "0.1", "its factory makes nothing", LGABENCH_FINGERPRINT, "{}");
+[[gnu::section(".lgabench")]] constexpr lgabench::PluginDescriptor descriptor = lgabench::describe_plugin(
+    "method", "", "null_factory", "0.1", "its factory makes nothing", LGABENCH_FINGERPRINT, "{}");
 void* create() { return nullptr; }
 
 }  // namespace

@@ -4,7 +4,7 @@
 namespace {
 
 [[gnu::used]] constexpr lgabench::PluginDescriptor second_descriptor =
-    lgabench::describe_plugin("method", "second", "0.1", "the other one", LGABENCH_FINGERPRINT, "{}");
+    lgabench::describe_plugin("method", "", "second", "0.1", "the other one", LGABENCH_FINGERPRINT, "{}");
 
 }  // namespace
 

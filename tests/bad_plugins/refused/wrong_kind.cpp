@@ -3,7 +3,7 @@
 
 namespace {
 
-[[gnu::section(".lgabench"), gnu::used]] constexpr lgabench::PluginDescriptor descriptor =
-    lgabench::describe_plugin("sampler", "wrong_kind", "0.1", "no method and no engine", LGABENCH_FINGERPRINT, "{}");
+[[gnu::section(".lgabench"), gnu::used]] constexpr lgabench::PluginDescriptor descriptor = lgabench::describe_plugin(
+    "sampler", "", "wrong_kind", "0.1", "no method and no engine", LGABENCH_FINGERPRINT, "{}");
 
 }  // namespace

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Prints the sentences whose embeddings are committed, one a line: every shipped command, and in words every Selection
-that recorded answers give for one, and its truth.
+that recorded answers give for one, and its truths.
 
     sentences.py build/release/bin/lgabench > sentences.txt      (then make_embeddings.py)
 """
@@ -15,10 +15,11 @@ def main():
 
     sentences = set()
     for scenario in json.loads(ask("list"))["scenarios"]:
-        for answers in ("recorded", "claude"):
-            for line in ask("select", scenario["id"], "--answers", answers).splitlines():
-                selected = json.loads(line)
-                sentences |= {selected["utterance"], selected["text"], selected["true_text"]}
+        for answers in ("recorded", "gpt4_released", "gpt4_study", "claude"):
+            for truth in ("released", "printed"):
+                for line in ask("select", scenario["id"], "--answers", answers, "--truth", truth).splitlines():
+                    selected = json.loads(line)
+                    sentences |= {selected["utterance"], selected["text"], selected["true_text"]}
     print("\n".join(sorted(sentences)))
 
 

@@ -1,0 +1,102 @@
+#include <lgabench/learning/head.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lgabench {
+
+Head::Head(const NetworkShape& shape, Parameters& parameters, const Kernels& kernels)
+    : architecture_(shape.architecture), parameters_(parameters), kernels_(kernels) {
+  const bool deep = architecture_ == Architecture::released && shape.text;
+  inputs_.resize(shape.channels.size() + (shape.text ? 1 : 0));
+  const auto is_text = [&](std::size_t i) { return i == shape.channels.size(); };
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    if (deep == is_text(i)) continue;  // the towers have one, or the text has
+    Input& input = inputs_[i];
+    input.own.emplace(is_text(i) ? text_linear : tower_linear, parameters, kernels);
+    input.own_bias = parameters.take(padded_hidden);
+    name({&*input.own}, hidden_features, input.own_bias);
+  }
+  std::vector<const Linear*> shares;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const LayerKind kind = deep ? (is_text(i) ? text_linear : features_linear) : is_text(i) ? text_head : tower_head;
+    shares.push_back(&inputs_[i].share.emplace(kind, parameters, kernels));
+  }
+  joined_bias_ = parameters.take(deep ? padded_hidden : padded_action);
+  name(shares, deep ? hidden_features : action_size, joined_bias_);
+  if (!deep) return;
+  last_.emplace(text_head, parameters, kernels);
+  last_bias_ = parameters.take(padded_action);
+  name({&*last_}, action_size, last_bias_);
+}
+
+void Head::name(const std::vector<const Linear*>& side_by_side, int outs, std::size_t bias) {
+  std::vector<std::size_t> weights, biases;
+  for (int out = 0; out < outs; ++out) {
+    for (const Linear* linear : side_by_side) {
+      const std::vector<std::size_t> places = linear->places(out);
+      weights.insert(weights.end(), places.begin(), places.end());
+    }
+    biases.push_back(bias + size(out));
+  }
+  const int fan_in = static_cast<int>(weights.size()) / outs;
+  const double bound = 1 / std::sqrt(fan_in);
+  if (architecture_ == Architecture::released) {
+    parameters_.orthogonal(weights, outs, fan_in);
+    parameters_.uniform(biases, 0, 0);
+  } else {
+    parameters_.uniform(weights, -bound, bound);
+    parameters_.uniform(biases, -bound, bound);
+  }
+}
+
+void Head::make_room(int rows) {
+  for (Input& input : inputs_)
+    if (input.own)
+      for (Numbers* array : {&input.made, &input.gradients}) *array = Numbers(size(rows * padded_hidden));
+  for (Numbers* array : {&joined_, &part_, &joined_gradients_, &outputs_}) *array = Numbers(size(rows * padded_hidden));
+}
+
+const float* Head::forward(const std::vector<const float*>& inputs, int rows) {
+  static const float no_bias[padded_hidden] = {};
+  rows_ = rows;
+  const int width = last_ ? padded_hidden : padded_action;
+  for (int row = 0; row < rows; ++row) std::copy_n(parameters_[joined_bias_], width, joined_ + row * width);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    Input& input = inputs_[i];
+    const float* in = inputs[i];
+    if (input.own) {
+      input.own->forward(in, parameters_[input.own_bias], input.made, rows);
+      in = input.made;
+    }
+    input.share->forward(in, no_bias, part_, rows);
+    for (int k = 0; k < rows * width; ++k) joined_[k] += part_[k];
+  }
+  if (!last_) return joined_;
+  for (int k = 0; k < rows * width; ++k) joined_[k] = std::max(joined_[k], 0.f);
+  last_->forward(joined_, parameters_[last_bias_], outputs_, rows);
+  return outputs_;
+}
+
+void Head::backward(const std::vector<const float*>& inputs, const float* gradient,
+                    const std::vector<float*>& input_gradients) {
+  if (last_) {
+    kernels_.sum_rows(gradient, parameters_.gradient(last_bias_), rows_, padded_action);
+    last_->backward(joined_, gradient, joined_gradients_, rows_);
+    kernels_.relu_gradient(joined_, joined_gradients_, size(rows_ * padded_hidden));
+    gradient = joined_gradients_;
+  }
+  kernels_.sum_rows(gradient, parameters_.gradient(joined_bias_), rows_, last_ ? padded_hidden : padded_action);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    Input& input = inputs_[i];
+    if (!input.own) {
+      input.share->backward(inputs[i], gradient, input_gradients[i], rows_);
+      continue;
+    }
+    input.share->backward(input.made, gradient, input.gradients, rows_);
+    kernels_.sum_rows(input.gradients, parameters_.gradient(input.own_bias), rows_, padded_hidden);
+    input.own->backward(inputs[i], input.gradients, input_gradients[i], rows_);
+  }
+}
+
+}  // namespace lgabench

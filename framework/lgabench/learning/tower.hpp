@@ -1,0 +1,68 @@
+// The three convolutions through which a network sees a picture. Private to learning/.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include <lgabench/learning/batch_norm.hpp>
+#include <lgabench/learning/first_convolution.hpp>
+#include <lgabench/learning/parameters.hpp>
+#include <lgabench/learning/samples.hpp>
+#include <lgabench/learning/zeros.hpp>
+
+namespace lgabench {
+
+/// Numbers of a tower's output.
+constexpr int tower_features = 160;
+
+/// One thread at a time; a call allocates nothing where make_room() was for as many rows.
+class Tower {
+ public:
+  /// Takes its parameters: of each convolution weight (out, in, row, column) and bias, uniform within 1/sqrt(fan in) as
+  /// PyTorch's default, and with batch normalisation scale and shift. @pre both references outlive this.
+  /// @throws InputError if `channels` is neither 1 nor 3.
+  Tower(int channels, Architecture architecture, Parameters& parameters, const Kernels& kernels);
+  /// For batches of up to `rows`.
+  void make_room(int rows);
+
+  /// Features of the pictures, rows x 160, channels last: valid until the next call. What the pictures share with
+  /// `usual` (Samples) costs less.
+  const float* forward(const std::vector<const float*>& pictures, const float* usual, bool training);
+  /// Where to write the gradient of the features before backward().
+  float* feature_gradients() { return convolutions_.back().gradients; }
+  /// Leaves the gradients of the parameters of the last forward() in training, whose pictures are still there.
+  void backward(const std::vector<const float*>& pictures);
+
+ private:
+  struct Convolution {
+    Layer layer;
+    std::size_t weights, bias;
+    Channels in, out;     // all
+    Channels live = out;  // what is kept of the outputs: the others are 0 in all of this batch
+    std::optional<BatchNorm> norm{};
+    Numbers values{};                // what is normalised, as the outputs
+    Numbers outputs{}, gradients{};  // batch x out rows x out columns x live channels
+
+    int positions(int rows) const { return rows * layer.out_rows() * layer.out_columns(); }
+  };
+
+  const Channels& inputs(std::size_t i) const { return i > 0 ? convolutions_[i - 1].live : convolutions_[0].in; }
+  Layer live_layer(std::size_t i) const;  // convolution number `i` between the channels that are left
+  bool is_last(std::size_t i) const { return i + 1 == convolutions_.size(); }
+  const float* input(std::size_t i, const std::vector<const float*>& pictures, int row) const;
+  void add_convolution(const Layer& layer);
+  void convolve(std::size_t i, const std::vector<const float*>& pictures, float* out);
+  void drop_closed_channels(std::size_t i);
+  void backward(std::size_t i, const std::vector<const float*>& pictures);
+
+  const Architecture architecture_;
+  Parameters& parameters_;
+  const Kernels& kernels_;
+  std::vector<Convolution> convolutions_;
+  std::optional<FirstConvolution> first_;
+  bool mostly_usual_ = false;
+  int rows_ = 0;                  // of the last batch
+  Numbers narrow_, transposed_;   // one layer's weights or their gradient
+  std::vector<const float*> in_;  // pictures that a convolution sees
+};
+
+}  // namespace lgabench

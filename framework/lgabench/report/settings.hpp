@@ -1,0 +1,15 @@
+// How a run was set, beyond what its tables say.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/report/results.hpp>
+
+namespace lgabench::report {
+
+/// A line each: the preset, rows whose options differ from their plugins' defaults (rows with the same ones together),
+/// test scenes that each training seed has to itself, rows that are no reading of the paper or of its code, rows that
+/// are one method under two names. For the head of a report.
+std::vector<std::string> settings(const RunResults& run);
+
+}  // namespace lgabench::report

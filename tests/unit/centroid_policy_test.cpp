@@ -1,0 +1,161 @@
+// The centroid rule on pictures of roles made by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/learning/centroid_policy.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int rows = Observation::rows, columns = Observation::columns;
+constexpr double pixel = 1.0 / columns;  // m
+
+using Roles = std::vector<std::uint8_t>;
+
+Roles nothing() { return Roles(std::size_t{rows} * columns); }
+
+// A square of 16 pixels, its middle on the corner between four of them.
+Roles& paint(Roles& roles, Vec2 middle, std::uint8_t role, int half_height = 8, int half_width = 8) {
+  const int row = static_cast<int>(std::lround((middle.x - Workspace::x_min) / pixel));
+  const int column = static_cast<int>(std::lround((middle.y - Workspace::y_min) / pixel));
+  for (int r = row - half_height; r < row + half_height; ++r)
+    for (int c = column - half_width; c < column + half_width; ++c)
+      roles[static_cast<std::size_t>(r * columns + c)] = role;
+  return roles;
+}
+
+Roles target_at(Vec2 middle) {
+  Roles roles = nothing();
+  return paint(roles, middle, target_role);
+}
+
+// The object's middle on a corner of pixels.
+Vec2 place(int row, int column) { return {Workspace::x_min + row * pixel, Workspace::y_min + column * pixel}; }
+
+void expect_at(Vec2 actual, Vec2 expected, double tolerance = 1e-6) {
+  EXPECT_NEAR(actual.x, expected.x, tolerance);
+  EXPECT_NEAR(actual.y, expected.y, tolerance);
+}
+
+const Vec2 here = place(40, 60), there = place(90, 200), elsewhere = place(64, 128), goal{.5, .3};
+
+Action bring(Vec2 from) { return {{from, {}}, {goal, {}}}; }
+
+TEST(CentroidRule, TakesTheMiddleAndBringsItToTheDemonstratedPlace) {
+  CentroidRule rule;
+  for (const Vec2 at : {here, there}) rule.add(target_at(at), bring(at + Vec2{.01, 0}));  // off the middle, on the mask
+  rule.fit();
+  const Action action = rule.act(target_at(elsewhere));
+  expect_at(action.pose0.position_m, elsewhere);
+  expect_at(action.pose1.position_m, goal);
+}
+
+TEST(CentroidRule, KeepsEachCoordinateInTheFrameInWhichItVariesLess) {
+  CentroidRule rule;  // pose1: x beside the object, y on the table
+  for (const Vec2 at : {here, there}) rule.add(target_at(at), {{at, {}}, {{at.x + .07, .25}, from_yaw(2)}});
+  rule.fit();
+  const Action action = rule.act(target_at(elsewhere));
+  expect_at(action.pose1.position_m, {elsewhere.x + .07, .25});
+  EXPECT_NEAR(yaw_of(action.pose1.rotation), 2, 1e-6);
+}
+
+TEST(CentroidRule, OfOneDemonstrationOrEqualOnesFollowsTheTargetWhereThePoseLiesOnIt) {
+  for (const int copies : {1, 5}) {
+    CentroidRule bringing, turning;
+    for (int i = 0; i < copies; ++i) {
+      bringing.add(target_at(here), bring(here));
+      turning.add(target_at(here), {{here, {}}, {here, from_yaw(2)}});
+    }
+    bringing.fit();
+    turning.fit();
+    expect_at(bringing.act(target_at(there)).pose0.position_m, there);
+    expect_at(bringing.act(target_at(there)).pose1.position_m, goal);
+    expect_at(turning.act(target_at(there)).pose1.position_m, there);
+  }
+}
+
+TEST(CentroidRule, WithoutAnythingToTakeDoesTheMeanDemonstratedAction) {
+  CentroidRule rule;
+  rule.add(target_at(here), bring(here));
+  rule.add(target_at(there), bring(there));
+  rule.fit();
+  Roles only_avoided = nothing();
+  paint(only_avoided, elsewhere, avoid_role);
+  for (const Roles& roles : {nothing(), only_avoided}) {
+    expect_at(rule.act(roles).pose0.position_m, .5 * (here + there));
+    expect_at(rule.act(roles).pose1.position_m, goal);
+  }
+}
+
+TEST(CentroidRule, ThatNeverSawATargetDoesTheMeanDemonstratedActionToo) {
+  CentroidRule rule;
+  rule.add(nothing(), bring(here));
+  rule.fit();
+  expect_at(rule.act(target_at(there)).pose0.position_m, here);
+  CentroidRule untaught;
+  EXPECT_THROW(untaught.fit(), MethodError);
+  EXPECT_THROW(untaught.add({1, 2, 3}, bring(here)), InputError);
+}
+
+TEST(CentroidRule, OfSeveralPiecesTakesTheLargestAndLearnsFromTheOneThatWasTaken) {
+  CentroidRule rule;
+  for (const Vec2 at : {here, there}) {
+    Roles roles = target_at(at);
+    rule.add(paint(roles, elsewhere, target_role, 12, 12), {{at, {}}, {at + Vec2{.05, 0}, {}}});
+  }
+  rule.fit();
+  Roles roles = target_at(here);
+  paint(roles, there, target_role, 9, 9);
+  const Action action = rule.act(roles);
+  expect_at(action.pose0.position_m, there);
+  expect_at(action.pose1.position_m, there + Vec2{.05, 0});
+}
+
+TEST(CentroidRule, TakesHoldOfMaterialWhereTheMiddleIsEmpty) {
+  CentroidRule rule;
+  rule.add(target_at(here), bring(here));
+  rule.fit();
+  Roles ring = nothing();
+  paint(paint(ring, elsewhere, target_role, 16, 16), elsewhere, 0, 8, 8);
+  const Vec2 taken = rule.act(ring).pose0.position_m;
+  const double away = std::max(std::abs(taken.x - elsewhere.x), std::abs(taken.y - elsewhere.y));
+  EXPECT_GT(away, 10 * pixel) << "two pixels inside the inner edge";
+  EXPECT_LT(away, 11 * pixel) << "and no farther";
+  Roles thin = nothing();
+  paint(paint(thin, elsewhere, target_role, 16, 16), elsewhere, 0, 15, 15);  // no pixel has two on every side
+  EXPECT_NEAR(norm(rule.act(thin).pose0.position_m - elsewhere), 15.5 * pixel, pixel);
+}
+
+// A push away from the obstacle at `side` of the target, from .1 m behind it to the strip on the other side.
+struct Sweep {
+  Roles roles;
+  Action label;
+};
+Sweep sweep(Vec2 at, int side, double tilt = 0) {
+  Roles roles = target_at(at);
+  paint(roles, at + Vec2{0, side * .2}, avoid_role);
+  return {roles, {{{at.x, at.y + side * .1}, {}}, {{at.x + tilt, -side * .4}, {}}}};
+}
+
+TEST(CentroidRule, SweepsAsTheDemonstrationsWithTheObstacleOnThatSideDid) {
+  CentroidRule rule;
+  for (const Vec2 at : {place(40, 110), place(60, 128), place(85, 150)})
+    for (const int side : {1, -1}) {
+      const auto [roles, label] = sweep(at, side);
+      rule.add(roles, label);
+    }
+  const auto [roles, label] = sweep(place(40, 120), 1, .2);  // one turned the object: a group, but the smaller
+  rule.add(roles, label);
+  rule.fit();
+  for (const int side : {1, -1}) {
+    const Sweep test = sweep(place(80, 140), side);
+    const Action action = rule.act(test.roles);
+    expect_at(action.pose0.position_m, test.label.pose0.position_m);
+    expect_at(action.pose1.position_m, test.label.pose1.position_m);
+  }
+}
+
+}  // namespace
+}  // namespace lgabench
