@@ -28,7 +28,7 @@ class Case(unittest.TestCase):
     def setUp(self):
         self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
-        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
+        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), TMPDIR=str(self.dir))
 
     def call(self, *arguments, expect=0, **more):
         done = subprocess.run(command_line(*arguments), capture_output=True, text=True, env=self.environment,

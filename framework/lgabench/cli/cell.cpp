@@ -1,4 +1,6 @@
 // lgabench-worker cell: one cell, described on stdin. `lgabench run` starts it; by hand: lgabench-worker cell <job.json
+#include <sys/prctl.h>
+
 #include <lgabench/cli/job.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_cell.hpp>
@@ -7,6 +9,7 @@ namespace lgabench::cli {
 namespace {
 
 void run(const JsonReader& reader, const Messages& messages) {
+  ::prctl(PR_SET_DUMPABLE, 0);  // no method's process reads scenes out of this one's memory
   CellJob job{read_cell(reader.at("cell").json(), "job: /cell"),
               job_plugin(reader.at("engine")),
               std::nullopt,

@@ -23,7 +23,7 @@ struct Arguments {
   std::optional<int> episodes;
   int jobs = 0, limit = 0;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
-  bool resume = false, fresh = false, no_reference = false, json = false;
+  bool unconfined = false, resume = false, fresh = false, no_reference = false, json = false;
 };
 
 // 0,1,2 or 0:3 (without its end). What is no number stays a word: the reader then says what it expected there.
@@ -150,6 +150,7 @@ int run(const Arguments& a) {
   plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   plan.pool.timeout_s = a.timeout_s;
   plan.pool.memory_gib = a.memory_gib;
+  plan.confined = !a.unconfined;
 
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
@@ -229,6 +230,8 @@ void add_run(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--humans", a->humans,
                    "A directory of participants' .json files: methods that ask people then have a cell for each");
+  verb->add_flag("--unconfined", a->unconfined,
+                 "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(

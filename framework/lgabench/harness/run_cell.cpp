@@ -87,7 +87,7 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
 
 DemonstrationCache demonstration_cache(const CellJob& job) {
   Json builds = job.build;
-  for (const char* no_part_in_it : {"method", "liblgabench_learning.so"}) builds.erase(no_part_in_it);
+  for (const char* no_part_in_it : {"method", "lgabench-method", "liblgabench_learning.so"}) builds.erase(no_part_in_it);
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 

@@ -18,9 +18,9 @@ struct CellJob {
   std::filesystem::path cache;       // of demonstrations
   std::filesystem::path answers;     // files of answers that the cell names (see answers.hpp)
   std::filesystem::path scratch;     // empty, of the method's process
+  Json build;                        // of build_hashes()
   bool confined = true;              // the method's process, see host/confine.hpp
   long long memory_bytes = 0;        // of it; 0: no limit
-  Json build;                        // of build_hashes()
 };
 
 /// Says what the cell is doing: a phase (select, sample, demonstrate, learn, evaluate) and a count within it.

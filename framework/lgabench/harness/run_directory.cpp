@@ -100,7 +100,8 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
-    Json hashes{{"lgabench-worker", sha256_file(bin / "lgabench-worker")}};
+    Json hashes;
+    for (const char* name : {"lgabench-worker", "lgabench-method"}) hashes[name] = sha256_file(bin / name);
     for (const char* name : {"liblgabench_core.so", "liblgabench_tabletop.so", "liblgabench_learning.so"})
       hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
     return hashes;

@@ -17,6 +17,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/progress.hpp>
+#include <lgabench/host/confine.hpp>
 
 namespace lgabench {
 namespace {
@@ -73,6 +74,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"build", programs},
           {"version", LGABENCH_VERSION},
           {"command", plan.command},
+          {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
           {"answers", answers},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",

@@ -14,7 +14,6 @@
 namespace lgabench {
 
 struct RunPlan {
-  bool confined = true;  // methods' processes, see host/confine.hpp
   std::vector<Cell> cells;    // of the whole run
   Shard shard;                // the part of them that is played here
   Json request;               // the settings that led to the cells, for run.json
@@ -24,6 +23,7 @@ struct RunPlan {
   std::vector<AnswerFile> answers{};  // that the cells name
   Existing existing = Existing::same;
   PoolOptions pool;
+  bool confined = true;  // methods' processes, see host/confine.hpp
 };
 
 struct FailedCell {
