@@ -51,6 +51,20 @@ def _versions(tree):
     return versions
 
 
+def _siblings(file, tree, seen):
+    """Modules beside the file that it, or one of them, imports: their hashes are part of what a cell depends on."""
+    hashes = {}
+    for module in sorted(_imports(tree)):
+        beside = file.parent / f"{module}.py"
+        if module in seen or not beside.is_file() or beside.resolve() == file.resolve():
+            continue
+        seen.add(module)
+        source = beside.read_bytes()
+        hashes[beside.name] = hashlib.sha256(source).hexdigest()
+        hashes.update(_siblings(beside, ast.parse(source, str(beside)), seen))
+    return hashes
+
+
 def _text(found, name, default, file):
     value = found.get(name, default)
     if not isinstance(value, str):
@@ -81,10 +95,11 @@ def describe(written):
     paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
     if sys.prefix != sys.base_prefix:
         paths |= {sys.prefix}
+    if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
+        paths |= {sys.base_prefix + "/lib"}
     return {"file": str(file.resolve()), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
-            "sha256": hashlib.sha256(source).hexdigest(), "versions": _versions(tree),
-            "interpreter": sys.executable, "reads": sorted(paths | {sys.base_prefix + "/lib"}
-                                                          if sys.base_prefix not in ("/usr", "/usr/local") else paths)}
+            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file, tree, set())},
+            "interpreter": sys.executable, "reads": sorted(paths)}

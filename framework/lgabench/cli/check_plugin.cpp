@@ -6,18 +6,19 @@
 #include <array>
 #include <memory>
 
-#include <lgabench/core/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/check.hpp>
 #include <lgabench/harness/worker_pool.hpp>
+#include <lgabench/host/python_method.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  fs::path file;
+  std::string file, python = "python3";
   std::vector<std::string> settings;
   double timeout_s = 600;
   bool json = false;
@@ -100,15 +101,17 @@ int check_plugin(const Arguments& a) {
   CheckReport report;
   PluginInfo plugin;
   try {
-    plugin = read_plugin(a.file);
+    plugin = is_python_method(a.file) ? describe_python(a.file, a.python) : read_plugin(a.file);
     report = check(plugin, scan_plugins(plugin_directories()), a);
   } catch (const PluginError& e) {
-    report.problem("descriptor", e.what(), "build it with lgabench_add_plugin() from this very lgabench's package");
+    report.problem("descriptor", e.what(),
+                   is_python_method(a.file) ? "see docs/add-a-method-in-python.md"
+                                            : "build it with lgabench_add_plugin() from this very lgabench's package");
   }
   const bool good = !has_problem(report);
   if (a.json) {
     Json json = to_json(report);
-    json["file"] = a.file.string();
+    json["file"] = a.file;
     json["plugin"] =
         plugin.id.empty() ? Json() : Json{{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}};
     json["good"] = good;
@@ -128,7 +131,10 @@ void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb =
       app.add_subcommand("check-plugin", "Look for what is wrong with a plugin, and say what to do about it");
-  verb->add_option("file", a->file, "The plugin's library")->required()->type_name("FILE.so");
+  verb->add_option("file", a->file, "The plugin's library, or a method in Python")
+      ->required()
+      ->type_name("FILE.so or FILE.py:Class");
+  verb->add_option("--python", a->python, "The interpreter of a method in Python")->capture_default_str();
   verb->add_option("--set", a->settings, "option=value of the plugin; may be given again")->allow_extra_args(false);
   verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
       ->check(within(1, 1e6))

@@ -11,6 +11,7 @@
 #include <new>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::cli {
@@ -47,7 +48,16 @@ void Messages::send(const Json& message) const {
 }
 
 PluginInfo job_plugin(const JsonReader& reader) {
-  PluginInfo info = read_plugin(reader.at("file").string());
+  PluginInfo info;
+  if (reader.has("python")) {
+    info.file = reader.at("file").string();
+    info.kind = "method";
+    info.id = reader.at("id").string();
+    info.sha256 = sha256_file(info.file);
+    info.python = reader.at("python").json();
+  } else {
+    info = read_plugin(reader.at("file").string());
+  }
   if (info.sha256 != reader.at("sha256").string())
     throw PluginError(fmt::format("{}: changed since the run began", info.file.string()));
   return info;

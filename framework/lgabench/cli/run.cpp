@@ -12,12 +12,14 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_suite.hpp>
+#include <lgabench/host/python_method.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, answers = "recorded", truth = "released", humans, out, cache, shard = "1/1";
+  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache,
+                             shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
@@ -108,11 +110,29 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
     to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
-int run(const Arguments& a) {
+// Adds the methods in Python to the catalogue and names them by their ids.
+void find_python_methods(Arguments& a, Catalogue& catalogue) {
+  for (std::string& word : a.methods) {
+    if (!is_python_method(word)) continue;
+    const std::size_t options = std::min(word.find('+'), word.size());
+    PluginInfo plugin = describe_python(word.substr(0, options), a.python);
+    word = plugin.id + word.substr(options);
+    const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(),
+                                    [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; });
+    if (known == catalogue.plugins.end())
+      catalogue.plugins.push_back(std::move(plugin));
+    else if (known->sha256 != plugin.sha256 || known->python != plugin.python)
+      throw PluginError(
+          fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
+  }
+}
+
+int run(Arguments a) {
+  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  find_python_methods(a, catalogue);
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
 
   RunPlan plan;
   if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
@@ -183,7 +203,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("suite", a->suite, "A suite's id, or a .json file of one")->required();
   verb->add_option("--preset", a->preset,
                    "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
-  list("--methods", a->methods, "Methods, by plugin id; a variant as ID+OPTION=VALUE+OPTION=VALUE");
+  list("--methods", a->methods, "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
   list("--layout", a->layouts, "cells, continuous or released; several with commas");
@@ -197,6 +217,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--memory", a->memory_gib,
                    "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
       ->check(within(.1, 1e6));
+  verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");

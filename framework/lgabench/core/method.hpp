@@ -4,6 +4,7 @@
 // option or a file is wrong, not the method.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -60,6 +61,9 @@ struct Services {
   TrainingLog& log;
   /// A command's true distribution, for a method whose descriptor asks for the truth; for others it throws MethodError.
   std::function<Selection(const Command&)> truth = {};
+  /// A directory for pictures and curves of the method's own: plain files in it are kept with the cell (files/). It is
+  /// read when the last scored episode is over.
+  std::filesystem::path files = {};
 };
 
 /// What was learned. It may outlive its Method and the demonstrations. One thread.

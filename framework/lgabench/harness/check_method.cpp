@@ -12,9 +12,11 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/harness/check.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
+#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -103,9 +105,7 @@ class MethodCheck {
     } catch (const std::exception& e) {
       report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
     }
-    judge_leftovers(report_, at_first);
-    report_.judge("rounding mode", flushed_ ? "" : "the plugin cleared flush-to-zero", "flush-to-zero kept",
-                  "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+    if (plugin_.python.is_null()) judge_process(at_first);
     report_.ok("time", fmt::format("select {:.3f} s a command, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
                                    seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
     return std::move(report_);
@@ -125,6 +125,19 @@ class MethodCheck {
     });
   }
 
+  // What a library does to the process that it shares with us; a method in Python has its own, which ends with it.
+  void judge_process(const ProcessState& at_first) {
+    judge_leftovers(report_, at_first);
+    report_.judge("rounding mode", flushed_ ? "" : "the plugin cleared flush-to-zero", "flush-to-zero kept",
+                  "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+  }
+
+  std::unique_ptr<Method> make() {
+    if (plugin_.python.is_null()) return load_method(plugin_);
+    scratch_.emplace("check");
+    return std::make_unique<HostedMethod>(HostJob{plugin_, options_, seed, scratch_->path});
+  }
+
   // One line of what the call throws; "" if nothing.
   std::string thrown(const std::function<void()>& c) {
     try {
@@ -139,7 +152,7 @@ class MethodCheck {
     Use use;
     for (const auto& bench : benches) {
       const bool first = bench == benches.front();
-      auto method = load_method(plugin_);
+      auto method = make();
       const Needs needs = call("needs", [&] { return method->needs(options_); });
       std::vector<Instruction> instructions;
       for (std::size_t c = 0; c < bench->scenario.commands.size(); ++c) {
@@ -283,6 +296,7 @@ class MethodCheck {
                   "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
     report_.ok("actions", "finite, 12 numbers each");
 
+    if (!plugin_.python.is_null()) return;      // another process's memory
     constexpr int calls = 200, bearable = 256;  // bytes a call
     const auto act_all = [&](int n) {
       for (int i = 0; i < n; ++i)
@@ -307,6 +321,7 @@ class MethodCheck {
     same("Selections", first.selections, second.selections);
     same("training", first.training, second.training);
     same("actions", first.actions, second.actions);
+    if (!plugin_.python.is_null()) return;
     report_.judge("memory of a use", grown > (1 << 20) ? fmt::format("{} KiB are not given back", grown / 1024) : "",
                   "given back", "the second use must end with as much memory as the first");
   }
@@ -318,6 +333,7 @@ class MethodCheck {
   std::map<std::string, double> seconds_;  // of the last call of each kind
   CheckReport report_;
   bool flushed_ = true;
+  std::optional<Scratch> scratch_;  // of the method's process
 };
 
 }  // namespace

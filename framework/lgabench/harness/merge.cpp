@@ -153,6 +153,7 @@ void copy_cell(const fs::path& from, const fs::path& to) {
   const auto copy = [&](const std::string& name) { write_file(to / name, read_file(from / name, Links::refused)); };
   for (const std::string& name : cell_files)
     if (fs::exists(from / name)) copy(name);
+  for (const std::string& name : artefact_names(from / "files")) copy("files/" + name);
   sync_directory(to);
   copy("status.json");
   sync_directory(to);

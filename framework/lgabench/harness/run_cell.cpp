@@ -87,7 +87,8 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
 
 DemonstrationCache demonstration_cache(const CellJob& job) {
   Json builds = job.build;
-  for (const char* no_part_in_it : {"method", "lgabench-method", "liblgabench_learning.so"}) builds.erase(no_part_in_it);
+  for (const char* no_part_in_it : {"method", "python", "lgabench-method", "liblgabench_learning.so"})
+    builds.erase(no_part_in_it);
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 
@@ -210,6 +211,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
                       : abstraction_empty ? Actor()
                                           : reference_actor(id);
   std::vector<Episode> episodes = evaluate(*environment, scenario.space, tests, actor, [&](int n) { phases.count(n); });
+  // What the method shows of itself is taken here: from now on it may be told the truth.
+  auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
+  const auto files = hosted ? hosted->files() : std::vector<std::pair<std::string, std::string>>();
   const auto selects = [](const Instruction& i) { return i.selection.provenance != Provenance::none; };
   if (std::all_of(instructions.begin(), instructions.end(), selects)) {  // else there is no abstraction to blame
     std::vector<Instruction> true_ones;
@@ -218,7 +222,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
                        episodes);
   }
 
-  if (auto* hosted = dynamic_cast<HostedMethod*>(method.get())) guarded(id, [&] { hosted->end(); });
+  if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.
   std::string episode_lines;
@@ -228,6 +232,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     commands.push_back({{"utterance", instructions[c].utterance},
                         {"selection", to_json(instructions[c].selection)},
                         {"quality", quality(instructions[c].selection, scenario.commands[c].truth)}});
+  for (const auto& [name, bytes] : files) write_file(job.directory / "files" / name, bytes);
   record(job, self,
          {{"cell.json", canonical(to_json(cell)) + '\n'},
           {"selection.json", canonical({{"commands", commands}}) + '\n'},

@@ -109,6 +109,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   Json build = programs;
   build["engine"] = engine.sha256;
   if (method) build["method"] = method->sha256;
+  if (method && !method->python.is_null()) build["python"] = canonical(method->python.at("versions"));
   return build;
 }
 

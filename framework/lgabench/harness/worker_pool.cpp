@@ -273,7 +273,9 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 }
 
 Json plugin_json(const PluginInfo& plugin) {
-  return {{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
+  Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
+  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"python", plugin.python}});
+  return json;
 }
 
 double machine_bytes() {

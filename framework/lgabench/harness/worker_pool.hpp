@@ -51,7 +51,7 @@ struct PoolEvents {
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
 
-/// {"file", "sha256"}: a plugin, as a job names it to the worker.
+/// {"file", "sha256"}, for a method in Python also {"id", "python"}: a plugin, as a job names it to the worker.
 Json plugin_json(const PluginInfo& plugin);
 
 /// Of this machine's memory.

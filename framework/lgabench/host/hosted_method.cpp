@@ -8,6 +8,8 @@
 #include <new>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/host/asked.hpp>
 #include <lgabench/host/host_process.hpp>
 #include <lgabench/host/messages.hpp>
@@ -15,6 +17,25 @@
 
 namespace lgabench {
 namespace {
+
+// An installed interpreter has no lgabench_method: it comes with lgabench's data.
+fs::path python_package() { return fs::canonical(data_directory() / "python"); }
+
+HostCommand command_of(const HostJob& job, const Confinement* confinement) {
+  HostCommand command{
+      {(program_directory() / "lgabench-method").string()}, job.scratch, {}, confinement, job.memory_bytes};
+  if (const Json& python = job.method.python; !python.is_null()) {
+    command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
+    command.also_set = {"PYTHONPATH=" + python_package().string()};
+  }
+  return command;
+}
+
+Json method_json(const PluginInfo& method) {
+  Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
+  if (!method.python.is_null()) json["class"] = method.python.at("class");
+  return json;
+}
 
 // Of lgabench's data what learners use; of the system what a library or an interpreter starts with.
 Reach reach_of(const HostJob& job) {
@@ -24,10 +45,15 @@ Reach reach_of(const HostJob& job) {
                "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib", job.method.file.parent_path()},
               {job.scratch, "/dev/null", "/dev/zero"},
               job.hidden};
+  if (const Json& python = job.method.python; !python.is_null()) {
+    reach.reads.push_back(python_package());
+    reach.reads.push_back(python.at("interpreter").get<std::string>());
+    for (const Json& path : python.at("reads")) reach.reads.push_back(path.get<std::string>());
+  }
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
     const std::string name = entry.path().filename();
-    const bool readable = name == "spaces" || name == "embeddings" || name == "encoder";
+    const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
     (readable ? reach.reads : reach.hidden).push_back(entry.path());
   }
   return reach;
@@ -40,16 +66,12 @@ class HostSession {
  public:
   explicit HostSession(const HostJob& job)
       : confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
-        process_({{(program_directory() / "lgabench-method").string()},
-                  job.scratch,
-                  {},
-                  confinement_.get(),
-                  job.memory_bytes}),
+        process_(command_of(job, confinement_.get())),
         channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),
         observation_(protocol::observation_bytes) {
     Json hello{{"type", "hello"},
                {"protocol", protocol_version},
-               {"method", {{"file", fs::absolute(job.method.file).string()}, {"sha256", job.method.sha256}}},
+               {"method", method_json(job.method)},
                {"options", job.options},
                {"seed", job.seed},
                {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
@@ -156,7 +178,10 @@ double number_of(const std::string& payload) {
 
 }  // namespace
 
-HostedMethod::HostedMethod(const HostJob& job) : session_(std::make_shared<HostSession>(job)) {}
+HostedMethod::HostedMethod(const HostJob& job) : files_(job.scratch / "files") {
+  fs::create_directory(files_);
+  session_ = std::make_shared<HostSession>(job);
+}
 HostedMethod::~HostedMethod() = default;
 
 Needs HostedMethod::needs(const Json&) const {
@@ -204,6 +229,19 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
     throw;
   }
   return std::make_unique<HostedPolicy>(session_);
+}
+
+std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
+  constexpr std::uintmax_t most = 64 << 20;
+  std::vector<std::pair<std::string, std::string>> all;
+  std::uintmax_t bytes = 0;
+  for (const std::string& name : artefact_names(files_)) try {
+      all.emplace_back(name, read_file(files_ / name, Links::refused, most - bytes));
+      bytes += all.back().second.size();
+    } catch (const InputError& e) {  // too large, or changed by now
+      to_stdout("files/{} is not kept: {}\n", name, e.what());
+    }
+  return all;
 }
 
 void HostedMethod::end() { session_->call({{"type", "bye"}}, "bye"); }

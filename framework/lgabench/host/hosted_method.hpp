@@ -3,6 +3,8 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/method.hpp>
@@ -36,10 +38,13 @@ class HostedMethod : public Method {
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override;
   /// The policy may outlive this object; it acts in the same process.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
+  /// What the method left in Services::files, as names and bytes: 64 MiB at most. What is left out is said in the log.
+  std::vector<std::pair<std::string, std::string>> files() const;
   /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
   void end();
 
  private:
+  std::filesystem::path files_;
   std::shared_ptr<HostSession> session_;
 };
 

@@ -133,8 +133,13 @@ class Host {
 
   void answer(const Frame& frame) {
     const JsonReader reader(frame.header, frame.type());
-    Services services{model_, human_, options_,
-                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); }};
+    Services services{model_,
+                      human_,
+                      options_,
+                      seed_,
+                      log_,
+                      [this](const Command& command) { return human_.truth(command); },
+                      fs::current_path() / "files"};
     if (frame.type() == "needs") {
       Json needs = protocol::to_json(call([&] { return method_->needs(options_); }));
       needs["type"] = "needs";
