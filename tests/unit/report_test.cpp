@@ -253,6 +253,20 @@ TEST(Summary, AMeanThatLacksAScenarioSaysSo) {
   EXPECT_EQ(row_of(summary, "(mean)", "gcbc_dart").at("marks"), Json{"incomplete"});
 }
 
+// At 10 demonstrations the paper has LGA .096 (error bar .047), Human .135 (.045) and GCBC-SEG .046 (.012).
+TEST(Summary, CountsThePointsThatLieNearThePapers) {
+  FabricatedRun run;
+  run.add({"lga", 3, "heart", 10});
+  run.add({"human", 20, "heart", 10});
+  EXPECT_FALSE(summarize(run.read()).tables.at(0).nearness) << "gcbc_seg is missing";
+  run.add({"gcbc_seg", 1, "heart", 10});
+  const auto near = summarize(run.read()).tables.at(0).nearness;
+  ASSERT_TRUE(near);
+  EXPECT_EQ(near->points, 3);
+  EXPECT_EQ(near->near, 2);
+  EXPECT_NEAR(near->mean_distance, (.054 + .865 + .004) / 3, 1e-3);
+}
+
 TEST(Report, TwiceGivesTheSameBytes) {
   FabricatedRun run;
   for (const char* layout : {"cells", "continuous"})
