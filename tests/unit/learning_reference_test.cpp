@@ -28,17 +28,17 @@ struct Reference {
   nn::Linear words{nullptr}, joined{nullptr}, last{nullptr};
 
   explicit Reference(const NetworkShape& shape) {
-    const bool released = shape.architecture == Architecture::released, deep = released && shape.text;
+    const bool after_relu = shape.architecture == released, deep = after_relu && shape.text;
     for (const int channels : shape.channels) {
       nn::Sequential tower;
       const auto block = [&](int from, int to, int kernel, int stride, bool is_last = false) {
         tower->push_back(nn::Conv2d(nn::Conv2dOptions(from, to, kernel).stride(stride)));
         if (shape.architecture == Architecture::text) tower->push_back(nn::BatchNorm2d(to));
-        if (released && is_last)
+        if (after_relu && is_last)
           tower->push_back(nn::LeakyReLU());
         else
           tower->push_back(nn::ReLU());
-        if (released) tower->push_back(nn::BatchNorm2d(to));
+        if (after_relu) tower->push_back(nn::BatchNorm2d(to));
       };
       block(channels, 32, 8, 4);
       block(32, 64, 4, 2);
