@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <set>
+#include <string_view>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
@@ -12,10 +13,12 @@
 namespace lgabench::report {
 
 std::string plain(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '|') out += '\\';
-    out += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+  std::string flat = text, out;
+  std::replace(flat.begin(), flat.end(), '\n', ' ');
+  for (const char c : one_line(flat)) {
+    constexpr std::string_view marks = "|[]`*<\\";
+    if (marks.find(c) != marks.npos) out += '\\';
+    out += c;
   }
   return out;
 }

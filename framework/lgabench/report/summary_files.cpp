@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
@@ -44,11 +45,21 @@ Json to_json(const Summary& summary) {
                       {"phi", row.phi}});
   for (const CellResult& cell : summary.failed)
     failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
-  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}};
+  Json nearness = Json::array();
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      nearness.push_back({{"layout", table.layout},
+                          {"engine", table.engine},
+                          {"points", near->points},
+                          {"near", near->near},
+                          {"mean_distance", near->mean_distance}});
+  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
 }
 
 std::string to_csv(const Summary& summary) {
-  const auto quoted = [](const std::string& text) {  // RFC 4180
+  const auto quoted = [](const std::string& name) {  // RFC 4180, and nothing that a spreadsheet takes for a formula
+    std::string text = one_line(name);
+    if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string inside = text;
     for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2) inside.insert(at, 1, '"');
