@@ -125,7 +125,12 @@ struct Renderer::Impl {
   Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {
     // One fixed instruction set, so that no machine takes another path through Embree; every x86-64 since 2008 has it.
     device = rtcNewDevice("threads=1,isa=sse4.2");
-    if (!device) throw EngineError(fmt::format("Embree: not started, error {}", rtcGetDeviceError(nullptr)));
+    if (!device) fail("not started", rtcGetDeviceError(nullptr));
+  }
+
+  [[noreturn]] static void fail(const std::string& what, RTCError error) {
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();  // a limit of this process, as with any other memory
+    throw EngineError(fmt::format("Embree: {}, error {}", what, static_cast<int>(error)));
   }
 
   ~Impl() {
@@ -147,7 +152,7 @@ struct Renderer::Impl {
                                                                  3 * sizeof(float), mesh.vertices_m.size()));
     auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-    if (!vertices || !indices) throw EngineError(fmt::format("Embree: no memory for the mesh of \"{}\"", type));
+    if (!vertices || !indices) throw std::bad_alloc();
     for (const Vec3& v : mesh.vertices_m)
       for (const double number : {v.x, v.y, v.z}) *vertices++ = static_cast<float>(number);
     for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
@@ -156,8 +161,7 @@ struct Renderer::Impl {
     rtcReleaseGeometry(geometry);
     rtcSetSceneFlags(shape.scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
     rtcCommitScene(shape.scene);
-    if (const RTCError error = rtcGetDeviceError(device))
-      throw EngineError(fmt::format("Embree: the mesh of \"{}\": error {}", type, error));
+    if (const RTCError error = rtcGetDeviceError(device)) fail(fmt::format("the mesh of \"{}\"", type), error);
     return shapes.emplace(type, std::move(shape)).first->second;
   }
 

@@ -251,7 +251,89 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
   EXPECT_SAYS(failure_of("{\"choices\": []}"), "/choices: expected one choice");
   EXPECT_SAYS(failure_of("{\"choices\": [{\"finish_reason\": \"stop\", \"message\": {\"content\": null}}]}"),
               "content");
-  EXPECT_FALSE(fs::exists(tape())) << "what cannot be read is not kept";
+  EXPECT_EQ(read_file(tape()), "") << "what cannot be read is not kept";
+}
+
+TEST_F(Chat, AReplyWithoutEndOrBottomIsRefused) {
+  Server endless([](int, const auto&, httplib::Response& response) {
+    response.set_chunked_content_provider("application/json", [](std::size_t, httplib::DataSink& sink) {
+      const std::string block(1 << 16, ' ');
+      return sink.write(block.data(), block.size());
+    });
+    return true;
+  });
+  EXPECT_SAYS(failure(endless), "a reply of more than 4194304 bytes");
+  EXPECT_LE(endless.requests, 4) << "one attempt for each that was under way";
+  for (const std::string& body : {std::string(300000, '['), R"({"choices": )" + std::string(300000, '[') + "}"})
+    for (const int status : {200, 400}) {
+      Server deep([&](int, const auto&, httplib::Response& response) {
+        response.status = status;
+        response.set_content(body, "application/json");
+        return true;
+      });
+      EXPECT_SAYS(failure(deep), status == 200 ? "language model's reply: /" : "status 400: ");
+    }
+}
+
+TEST_F(Chat, TheKeyIsInNoMessageAndNoReply) {
+  const auto server_that_says = [](const std::string& text, const std::string& reason) {
+    return [=](int, const httplib::Request&, httplib::Response& response) {
+      response.set_content(completion(text, reason), "application/json");
+      return true;
+    };
+  };
+  {
+    Server server(server_that_says("Final answer: yes", std::string("no credit on ") + key));
+    EXPECT_SAYS(failure(server), "finish_reason is no credit on (key)");
+  }
+  {
+    Server server(server_that_says(std::string("You are ") + key, "stop"));
+    failure(server);
+  }
+  {  // at the end of what is shown of a message
+    Server server([](int, const auto&, httplib::Response& response) {
+      response.status = 400;
+      response.set_content(std::string(190, 'x') + key, "text/plain");
+      return true;
+    });
+    EXPECT_SILENT(failure(server), "sk-");
+  }
+  Server server(server_that_says(std::string("You are ") + key + ".\nFinal answer: yes", "stop"));
+  const OpenAiOptions options = server.options();
+  ask(&options);
+  EXPECT_SAYS(read_file(tape()), "You are (key).");
+  EXPECT_SILENT(read_file(tape()), key);
+  // A key that its own replacement holds.
+  OpenAiOptions odd = server.options();
+  odd.api_key = "key";
+  fs::remove(tape());
+  ask(&odd);
+}
+
+TEST_F(Chat, TwoWhoAskTakeTurnsAndPayOnce) {
+  Server server;
+  const OpenAiOptions options = server.options();
+  std::atomic<int> waited{0};
+  std::vector<std::thread> both;
+  for (int i = 0; i < 2; ++i)
+    both.emplace_back([&] { expect_red_hearts(ask(&options, {"m", 1, -1, {}, [&](const auto&) { ++waited; }})); });
+  for (std::thread& one : both) one.join();
+  EXPECT_EQ(server.requests, 5);
+  EXPECT_EQ(waited, 1);
+  const std::string lines = read_file(tape());
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 5);
+}
+
+TEST_F(Chat, SaysWhatItWaitsFor) {
+  Server server([](int request, const auto&, httplib::Response& response) {
+    response.status = 503;
+    return request == 1;
+  });
+  OpenAiOptions options = server.options();
+  std::string said;
+  options.waiting = [&](const std::string& why) { said = why; };
+  ask(&options, {"m", 1, -1, {}, {}});
+  EXPECT_SAYS(said, "attempt 1 of 6: status 503");
 }
 
 TEST_F(Chat, ABrokenConnectionIsTriedAgain) {
@@ -347,7 +429,7 @@ TEST_F(Chat, ACertificateThatNobodyTrustsEndsItBeforeTheKeyIsSent) {
   EXPECT_SAYS(said, "certificate");
   EXPECT_SILENT(said, key);
   EXPECT_EQ(server.requests, 0);
-  EXPECT_FALSE(fs::exists(tape()));
+  EXPECT_EQ(read_file(tape()), "");
 }
 
 TEST(FinalAnswer, IsOnTheLastLine) {

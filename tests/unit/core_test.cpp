@@ -1,4 +1,6 @@
 // Random numbers, JSON, scenarios, actions: values that everything else stands on.
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +13,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
 
 #include "testing.hpp"
 
@@ -105,6 +108,54 @@ TEST(JsonReader, MalformedFileIsNamedWithItsLine) {
   EXPECT_SAYS(message_of<Error>([&] { read_json(file); }), file.string() + ": cannot be read");
 }
 
+std::string json_refusal(const std::string& text) {
+  return message_of<InputError>([&] { parse_json(text, "f.json"); });
+}
+
+TEST(ParseJson, RefusesWhatNoReaderCouldBear) {
+  EXPECT_EQ(parse_json(R"({"a": [1, -2, 3.5, "x", null, true, {"b": {}}, []]})", "f").dump(),
+            R"({"a":[1,-2,3.5,"x",null,true,{"b":{}},[]]})");
+  EXPECT_EQ(parse_json("7", "f"), 7);
+  const auto nested = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  EXPECT_EQ(parse_json(nested(100), "f").dump(), nested(100));
+  EXPECT_SAYS(json_refusal(nested(101)), "f.json: /0/0/0");
+  EXPECT_SAYS(json_refusal(nested(101)), ": expected no more than 100 levels");
+  EXPECT_SAYS(json_refusal(std::string(1000000, '[')), "no more than 100 levels");
+  EXPECT_EQ(json_refusal(R"({"a": [0, {"b": 1, "c": 2, "b": 3}]})"),
+            "f.json: /a/1: expected each member once, got a second \"b\"");
+  EXPECT_EQ(json_refusal(R"({"a": 1e999})"), "f.json: /: expected a number within the range of a double");
+  EXPECT_SAYS(json_refusal(std::string(400, '9')), "within the range of a double");
+  EXPECT_EQ(json_refusal("[1,\n2"), "f.json: line 2 (byte 6): expected valid JSON");
+  EXPECT_EQ(json_refusal(""), "f.json: byte 1: expected valid JSON");
+  EXPECT_SAYS(json_refusal("[1] 2"), "expected valid JSON");
+  EXPECT_EQ(json_or_null("[1"), Json());
+  EXPECT_EQ(message_of<InputError>([] { parse_json_lines("{}\n[\n", "f.jsonl"); }),
+            "f.jsonl: line 2: byte 2: expected valid JSON");
+}
+
+TEST(ReadFile, ReadsRegularFilesAlone) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory.path / "file", link = directory.path / "link", pipe = directory.path / "pipe";
+  write_file(file, "bytes");
+  fs::create_symlink(file, link);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(read_file(link), "bytes");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(link, Links::refused); }), "link: a symbolic link");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(pipe); }), "pipe: cannot be read: not a regular file");
+  EXPECT_SAYS(message_of<InputError>([] { read_file("/dev/zero"); }), "not a regular file");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(directory.path); }), "not a regular file");
+  EXPECT_SAYS(message_of<InputError>([&] { read_file(file, Links::followed, 4); }), "expected at most 4");
+  EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }), "a run holds");
+}
+
+TEST(Printable, LeavesNoControlSequence) {
+  EXPECT_EQ(printable("plain, φ̂ – \U0001F600\n\ttext"), "plain, φ̂ – \U0001F600\n\ttext");
+  EXPECT_EQ(printable("\x1b[31m\r\x07\x7f"), "\\x1b[31m\\x0d\\x07\\u007f");
+  EXPECT_EQ(printable("\u009b31m\u202eabc\u2066"), "\\u009b31m\\u202eabc\\u2066");
+  EXPECT_EQ(printable("\xff\xc3(\xed\xa0\x80\xc0\x80\xe2\x82"), "\\xff\\xc3(\\xed\\xa0\\x80\\xc0\\x80\\xe2\\x82");
+  EXPECT_EQ(one_line("a\nb\tc"), "a\\nb\\x09c");
+}
+
 Json heart() { return load_scenario("heart").json; }
 
 std::string refusal(const Json& json) {
@@ -183,6 +234,11 @@ TEST(Scenario, RefusesBadInput) {
   json["task"] = "juggle";
   EXPECT_SAYS(refusal(json), "mine.json: /task: expected pick_and_place, rotate or sweep, got \"juggle\"");
   json = heart();
+  for (const char* name : {"", "a/../../b", "a\n", "a b", "=1"}) {
+    Json named = heart();
+    named["tests"][0]["arm"] = name;
+    EXPECT_SAYS(refusal(named), "/tests/0/arm: expected a name of letters");
+  }
   json["tests"] = Json::array();
   EXPECT_SAYS(refusal(json), "mine.json: /tests: expected at least one arm");
   json = heart();

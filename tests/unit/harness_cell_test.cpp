@@ -88,7 +88,7 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
 TEST_F(Play, FileReadsBackAsItWasWritten) {
   const auto before = demonstrations(3, 2);
   write_file(path / "d.hdf5", bytes(before));
-  const auto after = read_demonstrations(path / "d.hdf5");
+  const auto after = read_demonstrations(read_file(path / "d.hdf5"), (path / "d.hdf5").string());
   ASSERT_EQ(after.size(), before.size());
   EXPECT_EQ(bytes(after), bytes(before));
   for (std::size_t i = 0; i < after.size(); ++i) {
@@ -118,7 +118,7 @@ TEST_F(Play, ADamagedFileIsRefusedAndNeverACrash) {
         bad[static_cast<std::size_t>(i * 131 + k * 7) % good.size()] = static_cast<char>(i * k);
     write_file(path / "d.hdf5", bad);
     try {
-      read_demonstrations(path / "d.hdf5");
+      read_demonstrations(read_file(path / "d.hdf5"), (path / "d.hdf5").string());
     } catch (const InputError& e) {
       ++refused;
       EXPECT_EQ(std::string(e.what()).find((path / "d.hdf5").string()), 0u) << e.what();

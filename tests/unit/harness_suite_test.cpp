@@ -27,6 +27,29 @@ Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), p
 
 Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
 
+TEST(Expand, AsksThePeopleThatAMethodDeclares) {
+  Catalogue known = catalogue();
+  known.plugins[1].asks = "edit";
+  Participant edits, specifies;
+  edits.id = "one", specifies.id = "two";
+  for (const char* id : {"heart", "letter"}) {
+    const std::pair<std::string, std::string> command(id, load_scenario(id).commands[0].utterance);
+    edits.answers[command].edited = Selection();
+    specifies.answers[command].specified = Selection();
+  }
+  const std::vector<Cell> cells = expand(
+      load_suite("q1"), small_grid(), {"recorded", Json::object(), true, Truth::released, {edits, specifies}}, known);
+  for (const Cell& cell : cells) {
+    EXPECT_EQ(cell.participant.has_value(), cell.method.id == "b") << cell.title();
+    if (cell.participant) {
+      EXPECT_EQ(cell.participant->id, "one");
+    }
+    EXPECT_EQ(cell.method.asks, cell.method.id == "b" ? "edit" : "");
+    EXPECT_EQ(to_json(cell).at("method").contains("asks"), cell.method.id == "b");
+    EXPECT_EQ(to_json(read_cell(to_json(cell), "cell.json")), to_json(cell));
+  }
+}
+
 TEST(Suite, q1) {
   const Suite suite = load_suite("q1");
   EXPECT_EQ(suite.grid.scenarios.size(), 13u);

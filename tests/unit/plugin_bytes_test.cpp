@@ -43,6 +43,15 @@ TEST(DamagedPlugin, EveryCutIsRefused) {
   EXPECT_SAYS(message_of<PluginError>([&] { read_plugin(directory.path / "damaged.so"); }), "cut off");
 }
 
+TEST(DamagedPlugin, AnotherMachinesIsRefused) {
+  const Directory directory;
+  std::string bytes = good_bytes();
+  bytes[18] = '\xf3', bytes[19] = 0;  // e_machine: RISC-V
+  EXPECT_FALSE(accepted(directory, bytes));
+  EXPECT_SAYS(message_of<PluginError>([&] { read_plugin(directory.path / "damaged.so"); }),
+              "built for ELF machine 243");
+}
+
 TEST(DamagedPlugin, DescriptorOutsideOfWhatIsLoadedDoesNotCount) {
   const Directory directory;  // debug information repeats constants
   EXPECT_TRUE(accepted(directory, good_bytes() + good_bytes().substr(descriptor_at(), sizeof(PluginDescriptor))));

@@ -224,6 +224,28 @@ TEST(CompareCells, OutcomesWithinChanceOrNot) {
   EXPECT_SAYS(chance.detail, "arm test: 15 of 20 won there, 11 here (McNemar p = 0.125)");
   EXPECT_SAYS(chance.detail, "from episodes.jsonl line 12");
   EXPECT_EQ(agreement({"lga", 15}, {"lga", 5}, true).agreement, Agreement::differs);
+
+  // Three that turned in each of two cells may be chance in each; six are none.
+  const report::CellAgreement three = agreement({"lga", 15}, {"lga", 12}, true);
+  EXPECT_EQ(three.agreement, Agreement::within_interval);
+  EXPECT_EQ(three.only_recorded, 3);
+  EXPECT_EQ(three.only_recomputed, 0);
+  const std::vector<report::PooledAgreement> one = report::pooled({{"lga", three}, {"oracle", {}}});
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_FALSE(one[0].differs());
+  const std::vector<report::PooledAgreement> six = report::pooled({{"lga", three}, {"lga", three}});
+  ASSERT_EQ(six.size(), 1u);
+  EXPECT_EQ(six[0].cells, 2);
+  EXPECT_NEAR(six[0].p_holm, 2 * std::pow(.5, 6), 1e-12);
+  EXPECT_TRUE(six[0].differs());
+  // A forger may spread them over the rows too.
+  std::vector<std::pair<std::string, report::CellAgreement>> spread;
+  for (const char* row : {"a", "b", "c"}) spread.emplace_back(row, three);
+  const std::vector<report::PooledAgreement> rows = report::pooled(spread);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_FALSE(rows[0].differs());
+  EXPECT_EQ(rows[3].row, "");
+  EXPECT_TRUE(rows[3].differs());
   Spec otherwise{"lga", 15};
   otherwise.failure = "wrong_object";
   EXPECT_EQ(agreement({"lga", 15}, otherwise, true).agreement, Agreement::within_interval);

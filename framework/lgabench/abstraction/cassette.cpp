@@ -1,31 +1,59 @@
 #include <lgabench/abstraction/cassette.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
-#include <cstdio>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 
 Cassette::Cassette(const fs::path& file) : file_(file) {
-  if (!fs::exists(file)) return;
-  const std::string text = read_file(file);
-  int number = 0;
-  std::size_t begin = 0;
-  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const Json line = Json::parse(text.substr(begin, end - begin), nullptr, false);
-    const JsonReader reader(line, fmt::format("{}: line {}", file.string(), ++number));
+  if (fs::exists(file) && !read()) to_stderr("{}: the last line was cut off; not read\n", file.string());
+}
+
+bool Cassette::read() {
+  const std::string text = read_file(file_);
+  if (text.size() < size_) throw InputError(fmt::format("{}: was cut off since it was read", file_.string()));
+  const std::lock_guard lock(mutex_);
+  for (std::size_t end; (end = text.find('\n', size_)) != std::string::npos; size_ = end + 1) {
+    const std::string place = fmt::format("{}: line {}", file_.string(), ++lines_);
+    const Json line = parse_json(std::string_view(text).substr(size_, end - size_), place);
+    const JsonReader reader(line, place);
     reader.only({"key", "model", "request", "reply", "tokens", "seconds"});
     replies_[reader.at("key").string()] = {reader.at("reply").string(), reader.at("tokens").integer(0, 1LL << 40),
                                            reader.at("seconds").number()};
     models_.insert(reader.at("model").string());
   }
-  if (begin == text.size()) return;
-  fmt::print(stderr, "{}: the last line was cut off; dropped\n", file.string());
-  fs::resize_file(file, begin);
+  return size_ == text.size();
 }
+
+Cassette::Turn::Turn(Cassette& cassette, const std::function<void(const std::string&)>& waiting)
+    : lock_(::open(cassette.file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
+  const auto refuse = [&](const char* what) {
+    throw InputError(fmt::format("{}: {}: {}", cassette.file_.string(), what, std::strerror(errno)));
+  };
+  if (lock_ < 0) refuse("cannot be written");
+  try {
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && waiting)
+      waiting(fmt::format("{}: another process asks with it; waiting for its replies", cassette.file_.string()));
+    while (::flock(lock_, LOCK_EX) != 0)
+      if (errno != EINTR) refuse("cannot be locked");
+    if (!cassette.read() && ::ftruncate(lock_, static_cast<off_t>(cassette.size_)) != 0) refuse("cannot be written");
+  } catch (...) {
+    ::close(lock_);
+    throw;
+  }
+}
+
+Cassette::Turn::~Turn() { ::close(lock_); }
 
 std::string Cassette::key(const Json& request, const std::string& template_version) {
   return sha256(canonical({{"request", request}, {"template", template_version}}));
@@ -42,7 +70,10 @@ void Cassette::add(const std::string& key, const Json& request, const ChatReply&
   const Json line{{"key", key},          {"model", model},         {"request", request},
                   {"reply", reply.text}, {"tokens", reply.tokens}, {"seconds", reply.seconds}};
   const std::lock_guard lock(mutex_);
-  append_file(file_, canonical(line) + '\n');
+  const std::string bytes = canonical(line) + '\n';
+  append_file(file_, bytes);
+  size_ += bytes.size();
+  ++lines_;
   replies_[key] = reply;
   models_.insert(model);
 }

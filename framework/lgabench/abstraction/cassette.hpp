@@ -1,6 +1,7 @@
 // A language model's replies on file, to be replayed.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -20,11 +21,25 @@ struct ChatReply {
 
 /// A file of JSON lines {"key", "model", "request", "reply", "tokens", "seconds"}; grows a line a reply, each on the
 /// disk before add() returns, so that an interrupted series of questions goes on where it stopped. May be used by
-/// several threads; by one process at a time.
+/// several threads, and by several processes that take turns to ask.
 class Cassette {
  public:
-  /// Reads what is there; a file that does not exist is empty. A last line that was cut off is dropped, and said on
-  /// stderr. @throws InputError with file and line for anything else that is not a reply.
+  /// The one that asks, of all processes with this file, as long as it lives: no question is paid for twice.
+  class Turn {
+   public:
+    /// Waits until nobody else has it, which `waiting` is told of, then reads the replies that came meanwhile. The file
+    /// is made if need be, a last line that was cut off is removed. @throws InputError
+    Turn(Cassette& cassette, const std::function<void(const std::string&)>& waiting);
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    int lock_;
+  };
+
+  /// Reads what is there; a file that does not exist is empty. A last line that was cut off is no reply, which is said
+  /// on stderr. @throws InputError with file and line for anything else that is not a reply.
   explicit Cassette(const std::filesystem::path& file);
 
   /// Hash of the whole request (model, messages, parameters) and of the prompt template's version.
@@ -32,7 +47,7 @@ class Cassette {
 
   /// The reply to the request of this key(), if it was ever given.
   std::optional<ChatReply> find(const std::string& key) const;
-  /// @throws InputError if the file cannot be written.
+  /// @pre in a Turn. @throws InputError if the file cannot be written.
   void add(const std::string& key, const Json& request, const ChatReply& reply);
 
   /// Where it lies.
@@ -41,7 +56,11 @@ class Cassette {
   std::set<std::string> models() const;
 
  private:
+  bool read();  // the lines that were added since; whether all of them are whole
+
   std::filesystem::path file_;
+  std::size_t size_ = 0;  // of what was read
+  int lines_ = 0;
   mutable std::mutex mutex_;
   std::map<std::string, ChatReply> replies_;
   std::set<std::string> models_;

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <thread>
 
@@ -51,8 +53,8 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests) {
   {
     std::unique_lock lock(mutex);
     for (std::size_t told = 0; working > 0;) {
-      changed.wait(lock);
-      if (finished == told || !options_.progress) continue;
+      const bool quiet = changed.wait_for(lock, std::chrono::seconds(10)) == std::cv_status::timeout;
+      if ((finished == told && !quiet) || !options_.progress) continue;
       told = finished;
       options_.progress(static_cast<int>(finished), static_cast<int>(requests.size()));
     }
@@ -64,31 +66,39 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests) {
 
 std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
                                             const std::vector<Question>& questions) {
-  std::vector<std::string> keys;
-  std::vector<Request> missing;
+  std::vector<Request> requests;
   for (const Question& question : questions) {
     const Prompt prompt = template_.fill(command, space, question);
     const Json request{
         {"model", options_.model},
         {"messages", {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}}},
         {"temperature", 0}};
-    keys.push_back(Cassette::key(request, template_.version()));
-    if (!cassette_.find(keys.back())) missing.push_back({keys.back(), question.candidate, request});
+    requests.push_back({Cassette::key(request, template_.version()), question.candidate, request});
   }
-  if (!missing.empty() && !client_)
-    throw InputError(fmt::format(
-        "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
-        "--space {6} --answers openai --model {1} --cassette {0}",
-        cassette_.file().string(), options_.model, command.utterance, missing.size(), questions.size(),
-        to_string(command.task), space.id));
-  if (options_.max_queries >= 0 && asked_ + static_cast<int>(missing.size()) > options_.max_queries)
-    throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, missing.size(),
-                                 options_.max_queries - asked_));
-  ask(missing);
+  const auto without_reply = [&] {
+    std::vector<Request> some;
+    std::copy_if(requests.begin(), requests.end(), std::back_inserter(some),
+                 [this](const Request& request) { return !cassette_.find(request.key); });
+    return some;
+  };
+  if (const std::size_t missing = without_reply().size(); missing > 0) {
+    if (!client_)
+      throw InputError(fmt::format(
+          "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
+          "--space {6} --answers openai --model {1} --cassette {0}",
+          cassette_.file().string(), options_.model, command.utterance, missing, questions.size(),
+          to_string(command.task), space.id));
+    const Cassette::Turn turn(cassette_, options_.waiting);
+    const std::vector<Request> open = without_reply();  // of those whose turn it was before
+    if (options_.max_queries >= 0 && asked_ + static_cast<int>(open.size()) > options_.max_queries)
+      throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, open.size(),
+                                   options_.max_queries - asked_));
+    ask(open);
+  }
 
   std::vector<bool> answers;
-  for (const std::string& key : keys) {
-    const ChatReply reply = *cassette_.find(key);
+  for (const Request& request : requests) {
+    const ChatReply reply = *cassette_.find(request.key);
     answers.push_back(final_answer(reply.text));
     ++cost_.lm_queries;
     cost_.lm_tokens += reply.tokens;

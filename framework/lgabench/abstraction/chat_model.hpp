@@ -25,7 +25,8 @@ struct ChatOptions {
   std::string model;                                      // as the server names it
   int concurrency = 4;                                    // requests under way at once
   int max_queries = -1;                                   // to the server, in the model's life; -1: no limit
-  std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone
+  std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
+  std::function<void(const std::string&)> waiting = {};   // told in a line what it waits for; likewise
 };
 
 /// Asks what the cassette does not hold, if there is a client; provenance live once a reply came from it, else

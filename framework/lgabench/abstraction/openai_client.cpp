@@ -17,11 +17,14 @@ struct Response {
   long status = 0;  // 0: none came
   std::string body, problem;
   double retry_after_s = 0;
-  bool untrusted = false;  // whoever answered has no certificate that this machine trusts: waiting will not help
+  bool final = false;  // waiting will not help: no certificate that this machine trusts, or a reply without end
 };
 
+// Fewer bytes than were given end the transfer.
 std::size_t collect(char* bytes, std::size_t size, std::size_t count, void* into) {
-  static_cast<std::string*>(into)->append(bytes, size * count);
+  std::string& body = *static_cast<std::string*>(into);
+  if (body.size() + size * count > OpenAiClient::most_bytes) return 0;
+  body.append(bytes, size * count);
   return size * count;
 }
 
@@ -60,9 +63,11 @@ Response post(const OpenAiOptions& options, const std::string& body) {
   set(CURLOPT_LOW_SPEED_TIME, std::max(options.timeout_s / 2, 1L));
   const CURLcode code = curl_easy_perform(easy.handle);
   if (code != CURLE_OK) {
-    response.untrusted = code == CURLE_PEER_FAILED_VERIFICATION;
-    const bool tls = response.untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
-    response.problem = (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
+    const bool untrusted = code == CURLE_PEER_FAILED_VERIFICATION, too_long = code == CURLE_WRITE_ERROR;
+    response.final = untrusted || too_long;
+    const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
+    response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
+                                : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
     return response;
   }
   curl_easy_getinfo(easy.handle, CURLINFO_RESPONSE_CODE, &response.status);
@@ -74,29 +79,34 @@ Response post(const OpenAiOptions& options, const std::string& body) {
 
 bool may_pass(const Response& response) {
   const long s = response.status;
-  return (s == 0 && !response.untrusted) || s == 408 || s == 409 || s == 429 || s >= 500;
+  return (s == 0 && !response.final) || s == 408 || s == 409 || s == 429 || s >= 500;
 }
 
-// What went wrong, in a line, without the key that a server may repeat.
-std::string complaint(const Response& response, const OpenAiOptions& options) {
-  std::string text = response.problem;
-  if (response.status != 0) {
-    const Json body = Json::parse(response.body, nullptr, false);
-    const bool says = body.is_object() && body.contains("error") && body["error"].is_object() &&
-                      body["error"].contains("message") && body["error"]["message"].is_string();
-    constexpr std::size_t shown = 200;
-    text = fmt::format("status {}: {}", response.status,
-                       (says ? body["error"]["message"].get<std::string>() : response.body).substr(0, shown));
-  }
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  if (!options.api_key.empty())
-    for (std::size_t at; (at = text.find(options.api_key)) != std::string::npos;)
-      text.replace(at, options.api_key.size(), "(key)");
+// A server may repeat the key wherever it puts words.
+std::string without_key(std::string text, const std::string& key) {
+  constexpr std::string_view instead = "(key)";
+  for (std::size_t at = 0; !key.empty() && (at = text.find(key, at)) != std::string::npos; at += instead.size())
+    text.replace(at, key.size(), instead);
   return text;
 }
 
+// What went wrong, in a line.
+std::string complaint(const Response& response, const std::string& key) {
+  std::string text = response.problem;
+  if (response.status != 0) {
+    const Json body = json_or_null(response.body);
+    const bool says = body.is_object() && body.contains("error") && body["error"].is_object() &&
+                      body["error"].contains("message") && body["error"]["message"].is_string();
+    constexpr std::size_t shown = 200;
+    const std::string message = says ? body["error"]["message"].get<std::string>() : response.body;
+    text = fmt::format("status {}: {}", response.status, without_key(message, key).substr(0, shown));
+  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return without_key(text, key);
+}
+
 ChatReply read_completion(const std::string& body) {
-  const Json json = Json::parse(body, nullptr, false);
+  const Json json = parse_json(body, "language model's reply");
   const JsonReader reader(json, "language model's reply");
   const auto choices = reader.at("choices").elements();
   if (choices.size() != 1) reader.at("choices").fail("one choice");
@@ -138,16 +148,20 @@ ChatReply OpenAiClient::complete(const Json& request) {
     if (response.status == 200) {
       try {
         ChatReply reply = read_completion(response.body);
+        reply.text = without_key(std::move(reply.text), options_.api_key);
         reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
         return reply;
-      } catch (const InputError& e) {  // not what a completion looks like
-        throw MethodError(e.what());
+      } catch (const Error& e) {  // not what a completion looks like, or cut off
+        throw MethodError(without_key(e.what(), options_.api_key));
       }
     }
-    const std::string what = complaint(response, options_);
+    const std::string what = complaint(response, options_.api_key);
     if (!may_pass(response)) throw MethodError(what);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
     const double pause_s = std::min(std::max(wait_s, response.retry_after_s), longest_wait_s);
+    if (options_.waiting)
+      options_.waiting(
+          fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, what, pause_s));
     std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
     wait_s *= 2;
   }

@@ -8,6 +8,7 @@
 
 #include <lgabench/cli/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/check.hpp>
 #include <lgabench/harness/worker_pool.hpp>
@@ -90,8 +91,8 @@ bool has_problem(const CheckReport& report) {
 
 void print(const CheckReport& report) {
   for (const auto& [state, check, detail, fix] : report.findings) {
-    fmt::print("  {:<8} {:<22} {}\n", to_string(state), check, detail);
-    if (!fix.empty()) fmt::print("           {:<22} -> {}\n", "", fix);
+    to_stdout("  {:<8} {:<22} {}\n", to_string(state), check, detail);
+    if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
   }
 }
 
@@ -111,12 +112,12 @@ int check_plugin(const Arguments& a) {
     json["plugin"] =
         plugin.id.empty() ? Json() : Json{{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}};
     json["good"] = good;
-    fmt::print("{}\n", canonical(json));
+    to_stdout("{}\n", canonical(json));
   } else {
     if (!plugin.id.empty())
-      fmt::print("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+      to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
     print(report);
-    fmt::print("{}\n", good ? "good" : "not good: see the problems above");
+    to_stdout("{}\n", good ? "good" : "not good: see the problems above");
   }
   return good ? ok : regression;
 }
@@ -130,7 +131,7 @@ void add_check_plugin(CLI::App& app, int& exit) {
   verb->add_option("file", a->file, "The plugin's library")->required()->type_name("FILE.so");
   verb->add_option("--set", a->settings, "option=value of the plugin; may be given again")->allow_extra_args(false);
   verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
-      ->check(CLI::Range(1.0, 1e6))
+      ->check(within(1, 1e6))
       ->capture_default_str();
   verb->add_flag("--json", a->json, "One JSON object on stdout");
   verb->footer(

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/compare.hpp>
 
 namespace lgabench::cli {
@@ -26,8 +27,8 @@ void add_compare(CLI::App& app, int& exit) {
   verb->callback([options, &exit] {
     const report::RunComparison comparison =
         report::compare_runs(report::read_run(options->a), report::read_run(options->b));
-    fmt::print("{}",
-               options->json ? canonical(report::to_json(comparison)) + '\n' : report::comparison_text(comparison));
+    to_stdout("{}",
+              options->json ? canonical(report::to_json(comparison)) + '\n' : report::comparison_text(comparison));
     exit = comparison.regressed() ? regression : ok;
   });
 }

@@ -5,6 +5,7 @@
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/hdf5.hpp>
@@ -33,21 +34,21 @@ void write(const Arguments& a) {
   const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
   write_file(a.out,
              demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, a.engine)));
-  fmt::print("{}\n", a.out);
+  to_stdout("{}\n", a.out);
 }
 
 // A line a demonstration: its steps, the objects of its first picture, and where its first action goes.
 void inspect(const std::string& file) {
-  const auto demonstrations = read_demonstrations(file);
+  const auto demonstrations = read_demonstrations(read_file(file), file);
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
     const auto& [instruction, steps] = demonstrations[i];
     std::vector<std::string> objects;
     for (const Instance& instance : steps.front().observation.instances)
       objects.push_back(instance.texture + " " + instance.object_type);
     const Action& action = steps.front().label;
-    fmt::print("demo_{}: {} steps; \"{}\"; {}; ({:.3f}, {:.3f}) -> ({:.3f}, {:.3f})\n", i, steps.size(),
-               instruction.utterance, fmt::join(objects, ", "), action.pose0.position_m.x, action.pose0.position_m.y,
-               action.pose1.position_m.x, action.pose1.position_m.y);
+    to_stdout("demo_{}: {} steps; \"{}\"; {}; ({:.3f}, {:.3f}) -> ({:.3f}, {:.3f})\n", i, steps.size(),
+              instruction.utterance, fmt::join(objects, ", "), action.pose0.position_m.x, action.pose0.position_m.y,
+              action.pose1.position_m.x, action.pose1.position_m.y);
   }
 }
 
@@ -63,9 +64,7 @@ void add_demos(CLI::App& app, int&) {
   verb->add_option("--noisy", a->noisy, "DART: noisy rollouts for each demonstration")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  verb->add_option("--noise", a->noise, "DART: sigma of the last of them")
-      ->check(CLI::Range(0.0, 10.0))
-      ->capture_default_str();
+  verb->add_option("--noise", a->noise, "DART: sigma of the last of them")->check(within(0, 10))->capture_default_str();
   verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
   auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");

@@ -1,27 +1,39 @@
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <string_view>
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench::cli {
 
 int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
   const auto complain = [&app](const std::exception& e, int status) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), e.what());
+    constexpr std::size_t longest = 4000;
+    to_stderr("{}: {}\n", app.get_name(), std::string_view(e.what()).substr(0, longest));
     return status;
   };
   try {
-    app.parse(argc, argv);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& e) {
+      app.exit(e);  // --help, --version
+      flush_stdout();
+      return ok;
+    }
+    flush_stdout();
     return exit;
-  } catch (const CLI::Success& e) {
-    return app.exit(e);  // --help, --version
   } catch (const CLI::ParseError& e) {
     return complain(e, usage);
   } catch (const PluginError& e) {
     return complain(e, plugin_refused);
   } catch (const InputError& e) {
+    return complain(e, usage);
+  } catch (const fs::filesystem_error& e) {
+    return complain(e, usage);
+  } catch (const Json::exception& e) {  // a file with a member of another type than its reader expected
     return complain(e, usage);
   } catch (const std::exception& e) {
     return complain(e, cells_failed);

@@ -8,6 +8,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -15,20 +16,22 @@ namespace lgabench::cli {
 namespace {
 
 void print(const PluginInfo& plugin) {
-  fmt::print("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
-  fmt::print("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
-             plugin.sha256, plugin.fingerprint);
+  to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+  to_stdout("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
+            plugin.sha256, plugin.fingerprint);
+  if (!plugin.asks.empty())
+    to_stdout("  asks        {}\n", plugin.asks == "truth" ? "for the truth: a diagnosis" : "people to " + plugin.asks);
   if (plugin.options.empty()) return;
-  fmt::print("options, set with --set {}.NAME=VALUE\n", plugin.id);
+  to_stdout("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {
-    fmt::print("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
-               option["source"].get<std::string>());
-    if (option.contains("min")) fmt::print("      {} or more\n", canonical(option["min"]));
-    if (option.contains("values")) fmt::print("      one of {}\n", canonical(option["values"]));
+    to_stdout("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
+              option["source"].get<std::string>());
+    if (option.contains("min")) to_stdout("      {} or more\n", canonical(option["min"]));
+    if (option.contains("values")) to_stdout("      one of {}\n", canonical(option["values"]));
     if (option.contains("needs"))
       for (const auto& [value, others] : option["needs"].items())
         for (const auto& [other, values] : others.items())
-          fmt::print("      {} needs {} to be one of {}\n", value, other, canonical(values));
+          to_stdout("      {} needs {} to be one of {}\n", value, other, canonical(values));
   }
 }
 
@@ -37,34 +40,34 @@ std::string names(const std::vector<std::string>& chosen, const std::vector<std:
 }
 
 void print(const Scenario& scenario) {
-  fmt::print("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, to_string(scenario.task));
+  to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, to_string(scenario.task));
   const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
-    fmt::print("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
-               names(set.textures, scenario.space.textures));
+    to_stdout("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
+              names(set.textures, scenario.space.textures));
   };
   for (const ScenarioCommand& command : scenario.commands) {
-    fmt::print("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
+    to_stdout("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
     print_set("target", command.truth.target);
     if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
   }
-  fmt::print("  answers     {}{}\n", scenario.recorded,
-             scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
+  to_stdout("  answers     {}{}\n", scenario.recorded,
+            scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
   std::vector<std::string> arms;
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
-  fmt::print("  tests       {}\n", fmt::join(arms, ", "));
+  to_stdout("  tests       {}\n", fmt::join(arms, ", "));
   const JsonReader reader(scenario.json, scenario.id);
-  if (reader.has("note")) fmt::print("  note        {}\n", reader.at("note").string());
+  if (reader.has("note")) to_stdout("  note        {}\n", reader.at("note").string());
 }
 
 void print(const Suite& suite) {
-  fmt::print("{}, a suite in {}\n  file  {}\n", suite.id, suite.environment, suite.file);
+  to_stdout("{}, a suite in {}\n  file  {}\n", suite.id, suite.environment, suite.file);
   const auto print_members = [](const Json& members) {
-    for (const auto& [name, value] : members.items()) fmt::print("    {} = {}\n", name, canonical(value));
+    for (const auto& [name, value] : members.items()) to_stdout("    {} = {}\n", name, canonical(value));
   };
-  fmt::print("  grid\n");
+  to_stdout("  grid\n");
   print_members(to_json(suite.grid));
   for (const auto& [name, members] : suite.presets.items()) {
-    fmt::print("  preset {}\n", name);
+    to_stdout("  preset {}\n", name);
     print_members(members);
   }
 }
@@ -81,7 +84,7 @@ Json to_json(const Suite& suite) {
 template <class Thing>
 void show(const Thing& thing, const Json& as_json, bool json) {
   if (json)
-    fmt::print("{}\n", as_json.dump(2));
+    to_stdout("{}\n", as_json.dump(2));
   else
     print(thing);
 }

@@ -23,7 +23,7 @@ void limit(int resource, long long value) {
 // And sets the limits that it names.
 Json read_job() {
   const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
-  Json job = Json::parse(text, nullptr, false);
+  Json job = parse_json(text, "job");
   const JsonReader limits = JsonReader(job, "job").at("limits");
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 1LL << 28);
@@ -53,8 +53,9 @@ PluginInfo job_plugin(const JsonReader& reader) {
 
 void do_job(const std::function<void(const JsonReader& job, const Messages& messages)>& work) {
   const Messages messages;
-  const auto complain = [&messages](const std::exception& e, const char* fault) {
-    messages.send({{"reason", e.what()}, {"fault", fault}});
+  const auto complain = [&messages](const std::exception& e, const char* fault, bool refused = false) {
+    constexpr std::size_t longest = 2000;  // whatever a plugin throws, the line has room in the pipe
+    messages.send({{"reason", std::string(e.what()).substr(0, longest)}, {"fault", fault}, {"refused", refused}});
   };
   try {
     const Json job = read_job();
@@ -63,7 +64,7 @@ void do_job(const std::function<void(const JsonReader& job, const Messages& mess
     complain(e, "plugin");
     throw;
   } catch (const PluginError& e) {
-    complain(e, "plugin");
+    complain(e, "plugin", true);
     throw;
   } catch (const std::bad_alloc&) {
     const MethodError e("out of memory (the limit is --memory)");

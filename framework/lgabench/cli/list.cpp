@@ -7,6 +7,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
@@ -53,16 +54,16 @@ Json listing(const Catalogue& catalogue) {
 
 void print(const Json& all) {
   for (const char* section : sections) {
-    fmt::print("{}\n", section);
+    to_stdout("{}\n", section);
     std::size_t width = 0;
     for (const Json& row : all[section]) width = std::max(width, row["id"].get_ref<const std::string&>().size());
     for (const Json& row : all[section])
-      fmt::print("  {:<{}}  {}{}{}\n", row["id"].get<std::string>(), width, row.value("version", ""),
-                 row.contains("version") ? "  " : "", row["summary"].get<std::string>());
-    if (all[section].empty()) fmt::print("  (none)\n");
+      to_stdout("  {:<{}}  {}{}{}\n", row["id"].get<std::string>(), width, row.value("version", ""),
+                row.contains("version") ? "  " : "", row["summary"].get<std::string>());
+    if (all[section].empty()) to_stdout("  (none)\n");
   }
   for (const Json& row : all["refused"])
-    fmt::print(stderr, "refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
+    to_stderr("refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ void add_list(CLI::App& app, int& exit) {
   verb->callback([arguments, &exit] {
     const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
     if (arguments->json)
-      fmt::print("{}\n", all.dump(2));
+      to_stdout("{}\n", all.dump(2));
     else
       print(all);
     exit = ok;

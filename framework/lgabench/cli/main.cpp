@@ -10,6 +10,7 @@
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 
 namespace {
@@ -25,13 +26,14 @@ constexpr std::array<std::pair<const char*, const char*>, 3> worker_verbs{{
 int hand_to_worker(char** argv) {
   const fs::path worker = program_directory() / "lgabench-worker";
   ::execv(worker.c_str(), argv);
-  fmt::print(stderr, "lgabench: {}: cannot be started: {}\n", worker.string(), std::strerror(errno));
+  to_stderr("lgabench: {}: cannot be started: {}\n", worker.string(), std::strerror(errno));
   return cli::usage;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  lgabench::open_standard_streams();
   if (argc > 1)
     for (const auto& [verb, summary] : worker_verbs)
       if (std::string_view(argv[1]) == verb) return hand_to_worker(argv);

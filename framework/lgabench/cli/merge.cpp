@@ -5,6 +5,7 @@
 
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/merge.hpp>
 
 namespace lgabench::cli {
@@ -24,11 +25,11 @@ void add_merge(CLI::App& app, int& exit) {
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, joined(command_line()));
     if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);
-    fmt::print(stderr, "{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
-               outcome.missing);
+    to_stderr("{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
+              outcome.missing);
     if (outcome.failed + outcome.missing > 0)
-      fmt::print(stderr, "The command of one of the runs, with --out {} and without --shard, computes the rest.\n",
-                 options->out.string());
+      to_stderr("The command of one of the runs, with --out {} and without --shard, computes the rest.\n",
+                options->out.string());
     exit = outcome.failed ? cells_failed : ok;
   });
 }

@@ -8,6 +8,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 
 namespace lgabench::cli {
@@ -59,7 +60,7 @@ void new_plugin(const Arguments& a) {
                                              {"@PREFIX@", prefix.string()}})
       text = filled(std::move(text), placeholder, value);
     write_file(directory / to, text);
-    fmt::print("{}\n", (directory / to).string());
+    to_stdout("{}\n", (directory / to).string());
   };
   write(a.kind + ".cpp.in", a.name + ".cpp");
   write(a.kind + ".README.md.in", "README.md");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -43,10 +44,10 @@ std::string joined(const Words& words) {
 void print_report(const fs::path& run, bool json) {
   const report::Report report = report::write_report(run);
   if (json)
-    fmt::print("{}", read_file(run / "summary.json"));
+    to_stdout("{}", read_file(run / "summary.json"));
   else
-    fmt::print("{}{}\nreport: {}\n", report::plain_text(report.run, report.summary),
-               report::agreement_text(report.agreements), (run / "report.html").string());
+    to_stdout("{}{}\nreport: {}\n", report::plain_text(report.run, report.summary),
+              report::agreement_text(report.agreements), (run / "report.html").string());
 }
 
 }  // namespace lgabench::cli

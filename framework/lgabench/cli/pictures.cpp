@@ -12,6 +12,7 @@
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
@@ -128,7 +129,7 @@ void add_pictures(CLI::App& app, int&) {
       "                \"selections\": []}]' | lgabench-worker pictures");
   verb->callback([] {
     const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
-    const Json requests = Json::parse(text, nullptr, false);
+    const Json requests = parse_json(text, "pictures");
     Pictures pictures;
     for (const JsonReader& request : JsonReader(requests, "pictures").elements()) {
       Json line;
@@ -137,7 +138,7 @@ void add_pictures(CLI::App& app, int&) {
       } catch (const Error& e) {
         line = {{"problem", e.what()}};
       }
-      fmt::print("{}\n", canonical(line));
+      to_stdout("{}\n", canonical(line));
     }
   });
 }

@@ -11,6 +11,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 
@@ -52,7 +53,7 @@ void render_gallery(const Arguments& arguments) {
   const Sheet sheet = gallery(arguments.gallery);
   const fs::path file = arguments.out.empty() ? fmt::format("{}.png", arguments.gallery) : arguments.out;
   write_file(file, sheet.png);
-  fmt::print("{}\n\n{}", file.string(), sheet.legend);
+  to_stdout("{}\n\n{}", file.string(), sheet.legend);
 }
 
 void render(const Arguments& arguments) {
@@ -74,11 +75,10 @@ void render(const Arguments& arguments) {
   const fs::path file = arguments.out.empty() ? fmt::format("{}-{}.png", scenario.id, arguments.index) : arguments.out;
   write_file(file, panels.picture.png());
 
-  fmt::print("{}\n", file.string());
-  fmt::print("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
+  to_stdout("{}\n", file.string());
+  to_stdout("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
   for (const SceneObject& object : scene.objects)
-    fmt::print("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture,
-               object.object_type);
+    to_stdout("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture, object.object_type);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -14,13 +15,13 @@ namespace {
 int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
   const auto& [results, summary, claims, agreements] = report;
   if (format == "text")
-    fmt::print("{}", report::claims_text(summary.suite, claims));
+    to_stdout("{}", report::claims_text(summary.suite, claims));
   else if (format == "json")
-    fmt::print("{}", read_file(run / "claims.json"));
+    to_stdout("{}", read_file(run / "claims.json"));
   else
     throw InputError("--claims: expected --format text or json");
-  if (results.not_run > 0) fmt::print(stderr, "{} cells of the run have not been played: not final\n", results.not_run);
-  if (results.smoke) fmt::print(stderr, "Smoke or limited run: not for the leaderboard.\n");
+  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
+  if (results.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
   return reversed ? regression : ok;
@@ -56,12 +57,12 @@ void add_report(CLI::App& app, int& exit) {
       return;
     }
     if (options->format == "text")
-      fmt::print("{}{}", report::plain_text(report.run, report.summary), report::agreement_text(report.agreements));
+      to_stdout("{}{}", report::plain_text(report.run, report.summary), report::agreement_text(report.agreements));
     else if (options->format == "md")
-      fmt::print("{}", read_file(run / "report.md"));
+      to_stdout("{}", read_file(run / "report.md"));
     else
-      fmt::print("{}", read_file(run / ("summary." + options->format)));
-    fmt::print(stderr, "{}\n", (run / "report.html").string());
+      to_stdout("{}", read_file(run / ("summary." + options->format)));
+    to_stderr("{}\n", (run / "report.html").string());
     exit = ok;
   });
 }

@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_suite.hpp>
 
 namespace lgabench::cli {
@@ -98,14 +99,13 @@ std::string resuming_command(const Arguments& a, const fs::path& out) {
 }
 
 void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
-  fmt::print(stderr, "{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused,
-             outcome.failed.size());
-  if (outcome.computed) fmt::print(stderr, "{}\n", outcome.time.text(plan.pool.jobs));
+  to_stderr("{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
+  if (outcome.computed) to_stderr("{}\n", outcome.time.text(plan.pool.jobs));
   if (outcome.elsewhere)
-    fmt::print(stderr, "shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
-               plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
+    to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
+              plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
   for (const FailedCell& cell : outcome.failed)
-    fmt::print(stderr, "failed: {}: {} ({})\n", cell.title, cell.reason, cell.log.string());
+    to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
 int run(const Arguments& a) {
@@ -153,14 +153,21 @@ int run(const Arguments& a) {
 
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
-    fmt::print(stderr, "interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
-  if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+  std::string no_report;
+  try {
+    if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+  } catch (const InputError& e) {  // a full disk, or nothing left to report: the counts are told all the same
+    no_report = e.what();
+  }
   print_counts(outcome, plan);
   if (!outcome.failed.empty())
-    fmt::print(stderr, "To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+  if (!no_report.empty()) to_stderr("no report: {}\n", no_report);
   if (outcome.plugin_refused) return plugin_refused;
+  if (!no_report.empty() && outcome.failed.empty()) return usage;
   return outcome.failed.empty() ? ok : cells_failed;
 }
 
@@ -179,16 +186,16 @@ void add_run(CLI::App& app, int& exit) {
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
   list("--layout", a->layouts, "cells, continuous or released; several with commas");
-  list("--demos", a->demonstrations, "Numbers of demonstrations: 10,20");
+  list("--demos", a->demonstrations, "Numbers of demonstrations of each seen command: 10,20");
   list("--seeds", a->seeds, "Training seeds: 0,1,2 or 0:3");
   verb->add_option("--episodes", a->episodes, "Test scenes of each arm");
   verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
-      ->check(CLI::Range(1.0, 1e7))
+      ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--memory", a->memory_gib,
                    "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
-      ->check(CLI::Range(.1, 1e6));
+      ->check(within(.1, 1e6));
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");

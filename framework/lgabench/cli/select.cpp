@@ -12,6 +12,7 @@
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
@@ -54,10 +55,14 @@ Answerer make_answerer(const Arguments& a) {
     options.model = *models.begin();
   }
   if (live) {
-    answerer.client = std::make_unique<OpenAiClient>(openai_from_environment());
+    OpenAiOptions server = openai_from_environment();
+    server.waiting =
+        options.waiting = [](const std::string& why) { to_stderr("{}{}\n", ::isatty(2) ? "\n" : "", one_line(why)); };
+    answerer.client = std::make_unique<OpenAiClient>(std::move(server));
     options.progress = [](int asked_already, int all) {
-      fmt::print(stderr, ::isatty(2) ? "\rasked {} of {}{}" : "asked {} of {}{}", asked_already, all,
-                 asked_already == all || !::isatty(2) ? "\n" : "");
+      const bool redrawn = ::isatty(2) != 0;
+      put(stderr, fmt::format("{}asked {} of {}{}", redrawn ? "\r" : "", asked_already, all,
+                              asked_already == all || !redrawn ? "\n" : ""));
     };
   }
   answerer.model = std::make_unique<ChatLanguageModel>(*answerer.cassette, answerer.client.get(), options);
@@ -117,10 +122,10 @@ std::string describe(const Json& quality) {
 }
 
 void print_set(const char* name, const FeatureSet& set, const FeatureSpace& space, const Json& quality) {
-  fmt::print("{}\n  object types  {}\n", name, list(set.object_types, space.object_types));
-  if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("object_types")));
-  fmt::print("  textures      {}\n", list(set.textures, space.textures));
-  if (!quality.is_null()) fmt::print("                {}\n", describe(quality.at("textures")));
+  to_stdout("{}\n  object types  {}\n", name, list(set.object_types, space.object_types));
+  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("object_types")));
+  to_stdout("  textures      {}\n", list(set.textures, space.textures));
+  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
 }
 
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
@@ -132,21 +137,21 @@ void select(const Asked& asked, LanguageModel* model, const Arguments& arguments
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
-    fmt::print("{}\n", canonical({{"utterance", asked.command.utterance},
-                                  {"selection", to_json(selection)},
-                                  {"text", text},
-                                  {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
-                                  {"quality", judged}}));
+    to_stdout("{}\n", canonical({{"utterance", asked.command.utterance},
+                                 {"selection", to_json(selection)},
+                                 {"text", text},
+                                 {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
+                                 {"quality", judged}}));
     return;
   }
-  fmt::print("command     {}\n", asked.command.utterance);
-  if (selection.asked_as != asked.command.utterance) fmt::print("asked as    {}\n", selection.asked_as);
-  fmt::print("answers     {} ({})\n", selection.source, to_string(selection.provenance));
-  fmt::print("cost        {} queries", selection.cost.lm_queries);
+  to_stdout("command     {}\n", asked.command.utterance);
+  if (selection.asked_as != asked.command.utterance) to_stdout("asked as    {}\n", selection.asked_as);
+  to_stdout("answers     {} ({})\n", selection.source, to_string(selection.provenance));
+  to_stdout("cost        {} queries", selection.cost.lm_queries);
   if (selection.cost.lm_tokens > 0)
-    fmt::print(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
-  fmt::print("\n");
-  fmt::print("in words    {}\n", text);
+    to_stdout(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
+  to_stdout("\n");
+  to_stdout("in words    {}\n", text);
   print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
   if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
 }
@@ -199,7 +204,7 @@ void add_select(CLI::App& app, int&) {
     const Answerer answerer = make_answerer(*arguments);
     bool first = true;
     for (const Asked& asked : find_commands(*arguments)) {
-      if (!first && !arguments->json) fmt::print("\n");
+      if (!first && !arguments->json) to_stdout("\n");
       first = false;
       select(asked, answerer.model.get(), *arguments);
     }

@@ -1,6 +1,9 @@
 // The command line: one function a verb, each in its own file, each adding a CLI11 subcommand with its callback.
 #pragma once
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <string>
 
 namespace lgabench::cli {
 
@@ -25,6 +28,17 @@ void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
+
+/// A check for an option: a number from `low` to `high`, which NaN is not.
+inline CLI::Validator within(double low, double high) {
+  return CLI::Validator(
+      [low, high](const std::string& word) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(word, value) && value >= low && value <= high;
+        return number ? std::string() : fmt::format("expected a number from {} to {}, got {}", low, high, word);
+      },
+      fmt::format("FLOAT in [{} - {}]", low, high), "");
+}
 
 /// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.
 int dispatch(CLI::App& app, int argc, char** argv, const int& exit);

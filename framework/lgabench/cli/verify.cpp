@@ -14,6 +14,8 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/report/agreement.hpp>
@@ -25,7 +27,7 @@ struct Arguments {
   fs::path run;
   int sample = 3, jobs = 0;  // jobs 0: as many as there are cores
   std::optional<std::uint32_t> seed;
-  bool all = false, json = false;
+  bool all = false, strict = false, json = false;
   double timeout_s = 3600;
   std::vector<fs::path> plugin_path;
 };
@@ -45,6 +47,7 @@ struct Inventory {
 
 // Why the cell is not what its worker wrote; empty if it is.
 std::string edited(const Recorded& cell) {
+  expect_plain_entries(cell.directory);
   const Json& files = cell.status.at("files");
   for (const char* name : {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json"}) {
     std::error_code error;
@@ -57,7 +60,8 @@ std::string edited(const Recorded& cell) {
 }
 
 Inventory take_stock(const fs::path& run, const Json& record) {
-  const std::vector<std::string> listed = JsonReader(record, (run / "run.json").string()).at("cells").strings();
+  const std::vector<std::string> listed = read_cell_keys(JsonReader(record, (run / "run.json").string()));
+  expect_plain_run(run);
   Inventory inventory;
   for (const std::string& name : std::set<std::string>(listed.begin(), listed.end())) {
     const fs::path directory = run / "cells" / name;
@@ -67,7 +71,9 @@ Inventory take_stock(const fs::path& run, const Json& record) {
     }
     try {
       const std::string status_file = (directory / "status.json").string();
-      Recorded cell{directory, {}, read_json(status_file)};
+      Recorded cell;
+      cell.directory = directory;
+      cell.status = read_json(status_file, Links::refused);
       const JsonReader status(cell.status, status_file);
       if (status.at("state").string() == "failed") {
         ++inventory.failed;
@@ -75,7 +81,7 @@ Inventory take_stock(const fs::path& run, const Json& record) {
       }
       if (!status.at("files").json().is_object()) status.at("files").fail("an object");
       if (!status.at("build").json().is_object()) status.at("build").fail("an object");
-      cell.cell = read_cell(read_json(directory / "cell.json"), (directory / "cell.json").string());
+      cell.cell = read_cell(read_json(directory / "cell.json", Links::refused), (directory / "cell.json").string());
       if (const std::string why = edited(cell); why.empty())
         inventory.cells.push_back(std::move(cell));
       else
@@ -118,17 +124,17 @@ Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
 }
 
 struct Verdict {
-  std::string key, title;
+  std::string key, title, row;
   report::CellAgreement agreement;
 };
 
 Verdict judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
-  Verdict verdict{recorded.directory.filename().string(), recorded.cell.title(), {}};
+  Verdict verdict{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
   const Json status = read_json(recomputed / "status.json");
-  verdict.agreement =
-      status.at("state") == "failed"
-          ? report::CellAgreement{report::Agreement::differs, "fails now: " + status.at("reason").get<std::string>()}
-          : report::compare_cells(recorded.directory, recomputed, excused);
+  verdict.agreement = status.at("state") == "failed"
+                          ? report::CellAgreement{report::Agreement::differs,
+                                                  "fails now: " + status.at("reason").get<std::string>(), 0, 0}
+                          : report::compare_cells(recorded.directory, recomputed, excused);
   return verdict;
 }
 
@@ -144,6 +150,32 @@ std::string counts(const std::vector<Verdict>& verdicts) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+std::vector<report::PooledAgreement> pooled(const std::vector<Verdict>& verdicts) {
+  std::vector<std::pair<std::string, report::CellAgreement>> cells;
+  for (const Verdict& verdict : verdicts) cells.emplace_back(verdict.row, verdict.agreement);
+  return report::pooled(cells);
+}
+
+std::ptrdiff_t other_bytes(const std::vector<Verdict>& verdicts) {
+  return std::count_if(verdicts.begin(), verdicts.end(),
+                       [](const Verdict& v) { return v.agreement.agreement != report::Agreement::identical; });
+}
+
+// What the words of the cells' lines come to, where not all of them are "bit-identical".
+void print_other_bytes(const Arguments& a, const std::vector<Verdict>& verdicts) {
+  const std::ptrdiff_t others = other_bytes(verdicts);
+  if (others == 0) return;
+  for (const report::PooledAgreement& pool : pooled(verdicts))
+    to_stdout("{}: {} episodes won there alone, {} here alone, over {} cells (McNemar p = {:.3f}){}\n",
+              pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
+              pool.p_holm, pool.differs() ? ": differs" : "");
+  to_stdout("NOT bit-identical: {} of {} cells\n", others, verdicts.size());
+  if (!a.strict)
+    to_stdout(
+        "That another build or processor made them is the record's own word. With the recorded build, on such a\n"
+        "processor, lgabench verify --strict asks for the same bytes.\n");
+}
+
 void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
            const std::set<std::string>& why, const std::vector<Verdict>& verdicts) {
   if (a.json) {
@@ -153,36 +185,46 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
                        {"title", v.title},
                        {"agreement", to_string(v.agreement.agreement)},
                        {"detail", v.agreement.detail}});
-    fmt::print("{}\n", canonical({{"cells", cells},
-                                  {"edited", inventory.edited},
-                                  {"other", why},
-                                  {"seed", seed},
-                                  {"finished", of},
-                                  {"failed", inventory.failed},
-                                  {"not_played", inventory.not_played}}));
+    Json pools = Json::array();
+    for (const report::PooledAgreement& pool : pooled(verdicts))
+      pools.push_back({{"row", pool.row},
+                       {"cells", pool.cells},
+                       {"only_recorded", pool.only_recorded},
+                       {"only_recomputed", pool.only_recomputed},
+                       {"p_holm", pool.p_holm}});
+    to_stdout("{}\n", canonical({{"cells", cells},
+                                 {"pooled", pools},
+                                 {"not_identical", other_bytes(verdicts)},
+                                 {"edited", inventory.edited},
+                                 {"other", why},
+                                 {"seed", seed},
+                                 {"finished", of},
+                                 {"failed", inventory.failed},
+                                 {"not_played", inventory.not_played}}));
     return;
   }
-  fmt::print("{} of {} finished cells computed again{}\n", verdicts.size(), of,
-             verdicts.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
-  fmt::print("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
-  for (const std::string& line : why) fmt::print("  {}\n", line);
+  to_stdout("{} of {} finished cells computed again{}\n", verdicts.size(), of,
+            verdicts.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
+  to_stdout("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
+  for (const std::string& line : why) to_stdout("  {}\n", line);
   for (const Verdict& v : verdicts)
-    fmt::print("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
-               v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
-  if (verdicts.size() > 1) fmt::print("{}\n", counts(verdicts));
-  if (inventory.failed) fmt::print("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
-  if (inventory.not_played) fmt::print("{} cells have not been played\n", inventory.not_played);
+    to_stdout("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
+              v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
+  if (verdicts.size() > 1) to_stdout("{}\n", counts(verdicts));
+  print_other_bytes(a, verdicts);
+  if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
+  if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
 }
 
 int verify(const Arguments& a) {
-  const Json record = read_json(a.run / "run.json");
+  const Json record = read_json(a.run / "run.json", Links::refused);
   const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
   if (!same_cells(version, LGABENCH_VERSION))
     throw InputError(
         fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: verify it with {}",
                     a.run.string(), version, LGABENCH_VERSION, version));
   const Inventory inventory = take_stock(a.run, record);
-  for (const std::string& line : inventory.edited) fmt::print(stderr, "edited: {}\n", line);
+  for (const std::string& line : inventory.edited) to_stderr("edited: {}\n", one_line(line));
   if (inventory.cells.empty() && inventory.edited.empty())
     throw InputError((a.run / "cells").string() + ": no finished cell: nothing to verify");
 
@@ -229,7 +271,10 @@ int verify(const Arguments& a) {
   const bool differs = std::any_of(verdicts.begin(), verdicts.end(), [](const Verdict& v) {
     return v.agreement.agreement == report::Agreement::differs;
   });
-  return differs || !inventory.edited.empty() ? regression : ok;
+  const std::vector<report::PooledAgreement> pools = pooled(verdicts);
+  const bool beyond_chance = std::any_of(pools.begin(), pools.end(), [](const auto& pool) { return pool.differs(); });
+  const bool not_owed = a.strict && other_bytes(verdicts) > 0;
+  return differs || beyond_chance || not_owed || !inventory.edited.empty() ? regression : ok;
 }
 
 }  // namespace
@@ -244,17 +289,21 @@ void add_verify(CLI::App& app, int& exit) {
                      ->capture_default_str();
   verb->add_option("--seed", a->seed, "Of the draw (default: another each time; it is printed)");
   verb->add_flag("--all", a->all, "Every finished cell")->excludes(sample);
+  verb->add_flag("--strict", a->strict, "Exit 1 unless every cell is bit-identical, whatever build the record names");
   verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
-      ->check(CLI::Range(1.0, 1e7))
+      ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
   verb->add_flag("--json", a->json, "Print JSON instead of lines");
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\n"
       "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
-      "differs. With the recorded build, processor and data the same bytes are owed. Exit 1 if a cell differs or was\n"
-      "edited. A run of another version (0.1 for 0.2) is refused: it says which one to verify it with.");
+      "differs. With the recorded build, processor and data the same bytes are owed. Where the record names others, "
+      "the\n"
+      "changed episodes of all cells of a row are tested together. Exit 1 if a cell or a row differs, or was edited. A "
+      "run of\n"
+      "another version (0.1 for 0.2) is refused: it says which one to verify it with.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

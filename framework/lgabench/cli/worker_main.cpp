@@ -1,9 +1,11 @@
 // lgabench-worker: the process that loads plugins and engines. `lgabench` starts it; a person rarely does.
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 
 int main(int argc, char** argv) {
+  lgabench::open_standard_streams();
   using namespace lgabench;
   flush_denormals();
   int exit = cli::ok;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <algorithm>
 #include <cerrno>
@@ -16,6 +17,10 @@ namespace {
 
 [[noreturn]] void fail(const fs::path& file, const char* wanted) {
   throw InputError(fmt::format("{}: {}: {}", file.string(), wanted, std::strerror(errno)));
+}
+
+[[noreturn]] void refuse_link(const fs::path& file) {
+  throw InputError(fmt::format("{}: a symbolic link; a run holds none", file.string()));
 }
 
 // Owns a file descriptor; closes it on every way out.
@@ -40,10 +45,22 @@ bool write_all(int fd, std::string_view bytes) {
 
 }  // namespace
 
-std::string read_file(const fs::path& file) {
-  const Descriptor in{::open(file.c_str(), O_RDONLY | O_CLOEXEC)};
-  if (in.fd < 0) fail(file, "cannot be read");
+std::string read_file(const fs::path& file, Links links, std::uintmax_t most) {
+  // Without O_NONBLOCK opening a pipe waits for a writer.
+  const int flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (links == Links::refused ? O_NOFOLLOW : 0);
+  const Descriptor in{::open(file.c_str(), flags)};
+  if (in.fd < 0 && errno == ELOOP && links == Links::refused) refuse_link(file);
+  struct stat about {};
+  if (in.fd < 0 || ::fstat(in.fd, &about) != 0) fail(file, "cannot be read");
+  if (!S_ISREG(about.st_mode)) throw InputError(fmt::format("{}: cannot be read: not a regular file", file.string()));
+  const auto expect_within = [&](std::uintmax_t size) {
+    if (size > most)
+      throw InputError(
+          fmt::format("{}: cannot be read: {} bytes or more, expected at most {}", file.string(), size, most));
+  };
+  expect_within(static_cast<std::uintmax_t>(about.st_size));
   std::string bytes;
+  bytes.reserve(static_cast<std::size_t>(about.st_size));
   char block[1 << 16];
   for (;;) {
     const ssize_t n = ::read(in.fd, block, sizeof block);
@@ -51,22 +68,34 @@ std::string read_file(const fs::path& file) {
     if (n < 0) fail(file, "cannot be read");
     if (n == 0) return bytes;
     bytes.append(block, static_cast<std::size_t>(n));
+    expect_within(bytes.size());
+  }
+}
+
+void expect_plain_entries(const fs::path& directory) {
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(directory, none_there)) {
+    const fs::file_type type = entry.symlink_status().type();
+    if (type == fs::file_type::symlink) refuse_link(entry.path());
+    if (type != fs::file_type::regular && type != fs::file_type::directory)
+      throw InputError(fmt::format("{}: expected a regular file or a directory", entry.path().string()));
   }
 }
 
 void write_file(const fs::path& file, std::string_view bytes) {
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
-
-  // A name that no other process takes, on no machine that shares the directory.
+  // A name that no other process takes, on no machine that shares the directory; which another one may remove at any
+  // moment (a cache that is cleared).
   fs::path temporary;
   Descriptor out{-1};
   std::random_device random;
+  int removed = 0;
   do {
+    std::error_code error;
+    if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+    if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
     temporary = fmt::format("{}.{:08x}.tmp", file.string(), random());
     out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  } while (out.fd < 0 && errno == EEXIST);
+  } while (out.fd < 0 && (errno == EEXIST || (errno == ENOENT && ++removed < 10)));
   if (out.fd < 0) fail(file, "cannot be written");
   const auto give_up = [&](const char* wanted) {
     const int reason = errno;

@@ -1,5 +1,6 @@
 // Reading and writing whole files, and where the installation keeps its own. The only place that writes results.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,8 +11,17 @@ namespace lgabench {
 
 namespace fs = std::filesystem;
 
-/// @throws InputError naming the file and the system's reason.
-std::string read_file(const fs::path& file);
+/// Whether a file may be a symbolic link: what a person names may, a file of a run is none.
+enum class Links { followed, refused };
+
+/// The bytes of a regular file: no device, pipe or directory, which could hold a program up or have no end.
+/// @throws InputError naming the file and the system's reason, also for more than `most` bytes.
+std::string read_file(const fs::path& file, Links links = Links::followed,
+                      std::uintmax_t most = std::uintmax_t{1} << 30);
+
+/// @throws InputError naming the first entry of a directory that is neither a regular file nor a directory. What is not
+/// there holds none.
+void expect_plain_entries(const fs::path& directory);
 
 /// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, never a part.
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).

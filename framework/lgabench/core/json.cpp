@@ -7,15 +7,108 @@
 
 namespace lgabench {
 
-Json read_json(const std::filesystem::path& file) {
-  const std::string text = read_file(file);
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& e) {
-    const std::size_t at = std::min<std::size_t>(e.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-    throw InputError(fmt::format("{}: line {} (byte {}): expected valid JSON", file.string(), line, e.byte));
+namespace {
+
+// Builds the document as the parser goes, and stops it at what no reader here could bear: canonical() recurses, the
+// last of two members would win unnoticed, and a number out of range would be infinite.
+class Builder : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return add(nullptr) != nullptr; }
+  bool boolean(bool value) override { return add(value) != nullptr; }
+  bool number_integer(number_integer_t value) override { return add(value) != nullptr; }
+  bool number_unsigned(number_unsigned_t value) override { return add(value) != nullptr; }
+  bool number_float(number_float_t value, const string_t&) override { return add(value) != nullptr; }
+  bool string(string_t& value) override { return add(std::move(value)) != nullptr; }
+  bool binary(binary_t&) override { return false; }  // no part of JSON text
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    key_ = std::move(name);
+    return !open_.back()->contains(key_) || refuse("each member once, got a second \"" + key_ + "\"");
   }
+  bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
+    constexpr int number_overflow = 406;
+    if (e.id == number_overflow) return refuse("a number within the range of a double");
+    byte_ = byte;
+    return false;
+  }
+
+  Json document;
+  std::string complaint() const { return complaint_; }  // what was expected, after its place; "" for a syntax error
+  std::size_t byte() const { return byte_; }            // where the syntax ends
+
+ private:
+  Json* add(Json value) {
+    if (open_.empty()) return &(document = std::move(value));
+    Json& in = *open_.back();
+    if (in.is_object()) return &(in[key_] = std::move(value));
+    in.push_back(std::move(value));
+    return &in.back();
+  }
+  bool open(Json empty) {
+    constexpr std::size_t most_levels = 100;
+    if (open_.size() == most_levels) return refuse(fmt::format("no more than {} levels", most_levels));
+    open_.push_back(add(std::move(empty)));
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+  bool refuse(const std::string& expectation) {
+    std::string place;  // JSON pointer of the innermost object or array
+    for (std::size_t i = 0; i + 1 < open_.size(); ++i) {
+      const Json& in = *open_[i];
+      std::string step = in.is_array() ? std::to_string(in.size() - 1) : std::string();
+      for (auto member = in.begin(); in.is_object() && member != in.end(); ++member)
+        if (&*member == open_[i + 1]) step = member.key();
+      place += "/" + step;
+    }
+    complaint_ = fmt::format("{}: expected {}", place.empty() ? "/" : place, expectation);
+    return false;
+  }
+
+  std::vector<Json*> open_;  // from the document to the innermost object or array; none moves while it is open
+  std::string key_, complaint_;
+  std::size_t byte_ = 0;
+};
+
+}  // namespace
+
+Json parse_json(std::string_view text, const std::string& where) {
+  Builder builder;
+  if (Json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.document);
+  if (!builder.complaint().empty()) throw InputError(fmt::format("{}: {}", where, builder.complaint()));
+  const std::size_t at = std::min(builder.byte(), text.size());
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+  if (text.find('\n') == text.npos)
+    throw InputError(fmt::format("{}: byte {}: expected valid JSON", where, builder.byte()));
+  throw InputError(fmt::format("{}: line {} (byte {}): expected valid JSON", where, line, builder.byte()));
+}
+
+Json json_or_null(std::string_view text) {
+  try {
+    return parse_json(text, "");
+  } catch (const InputError&) {
+    return nullptr;
+  }
+}
+
+Json read_json(const std::filesystem::path& file, Links links) {
+  constexpr std::uintmax_t most = std::uintmax_t{1} << 28;
+  return parse_json(read_file(file, links, most), file.string());
+}
+
+std::vector<Json> parse_json_lines(std::string_view text, const std::string& file) {
+  std::vector<Json> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(parse_json(text.substr(begin, end - begin), fmt::format("{}: line {}", file, lines.size() + 1)));
+    begin = end + 1;
+  }
+  return lines;
 }
 
 std::string canonical(const Json& value) {

@@ -3,16 +3,29 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
 
 namespace lgabench {
 
 using Json = nlohmann::json;  // keys sorted, so a dump is canonical
 
-/// Parses the file. @throws InputError naming the file and the byte where parsing stopped, or why it could not be read.
-Json read_json(const std::filesystem::path& file);
+/// Parses a text from outside, the one way in for all of them. Refused besides what is no JSON: more than 100 levels,
+/// a member named twice in one object, a number outside the range of a double. `where` is the file, or "FILE: line 3".
+/// @throws InputError naming it, the place and what was expected.
+Json parse_json(std::string_view text, const std::string& where);
+
+/// Likewise; null for what parse_json refuses.
+Json json_or_null(std::string_view text);
+
+/// parse_json of a file of at most 256 MiB. @throws InputError likewise, or why it could not be read.
+Json read_json(const std::filesystem::path& file, Links links = Links::followed);
+
+/// parse_json of each line of a text; a last line needs no end. @throws InputError naming `file` and the line.
+std::vector<Json> parse_json_lines(std::string_view text, const std::string& file);
 
 /// One line, sorted keys, shortest round-trip numbers: the text that hashes and files use. @throws InputError on
 /// invalid UTF-8.

@@ -89,6 +89,11 @@ Arm read_arm(const JsonReader& reader, const FeatureSpace& space) {
   reader.only(members);
   Arm arm;
   arm.id = reader.at("arm").string();
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  if (arm.id.empty() || arm.id.size() > 64 || !std::all_of(arm.id.begin(), arm.id.end(), plain))
+    reader.at("arm").fail("a name of letters, digits, '_', '-' and '.'");
   if (arm.id == "train") reader.at("arm").fail("another name than train");
   arm.scenes = read_content(reader, {}, space);
   if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();

@@ -35,7 +35,8 @@ std::vector<AnswerFile> kept_answers(const fs::path& run) {
   std::vector<AnswerFile> files;
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(run / "answers", none_there))
-    if (!is_temporary(entry.path())) files.push_back({entry.path().filename(), entry.path(), Json::object()});
+    if (!is_temporary(entry.path()) && entry.symlink_status().type() == fs::file_type::regular)
+      files.push_back({entry.path().filename(), entry.path(), Json::object()});
   return files;
 }
 

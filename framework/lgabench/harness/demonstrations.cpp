@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/hdf5.hpp>
 
 namespace lgabench {
@@ -36,18 +38,36 @@ bool recovery_step(Environment& environment, const Scene& scene, double sigma, i
   return true;
 }
 
-// Named by everything that decides its bytes; a scene's hash covers scenario, layout, features, seed and index.
-fs::path cache_file(const DemonstrationCache& cache, const std::vector<Scene>& scenes, const Needs& needs,
-                    const std::vector<std::string>& utterances) {
+// All that decides a file's bytes; a scene's hash covers scenario, layout, features, seed and index.
+Json identity(const DemonstrationCache& cache, const std::vector<Scene>& scenes, const Needs& needs,
+              const std::vector<std::string>& utterances) {
   std::vector<std::string> hashes;
   for (const Scene& scene : scenes) hashes.push_back(hex(scene.hash()));
-  const Json identity{{"builds", cache.builds},
-                      {"environment", cache.environment_id},
-                      {"noisy_per_clean", needs.noisy_per_clean},
-                      {"noise_max", needs.noise_max},
-                      {"scenes", hashes},
-                      {"utterances", utterances}};
-  return cache.directory / (sha256(canonical(identity)).substr(0, 32) + ".hdf5");
+  return {{"builds", cache.builds},
+          {"environment", cache.environment_id},
+          {"labels", {{"noisy_per_clean", needs.noisy_per_clean}, {"noise_max", needs.noise_max}}},
+          {"scenes", hashes},
+          {"utterances", utterances}};
+}
+
+// After the HDF5 file's own bytes comes a line that says what they are: the identity and their SHA-256.
+std::string sealed(const std::string& hdf5, const Json& made_from) {
+  return hdf5 + '\n' + canonical({{"made_from", made_from}, {"sha256", sha256(hdf5)}}) + '\n';
+}
+
+// What it holds, if it is what `made_from` says and as it was written. @throws InputError
+std::vector<Demonstration> read_sealed(const fs::path& file, const Json& made_from) {
+  std::string bytes = read_file(file);
+  const std::size_t seal = bytes.size() < 2 ? bytes.npos : bytes.rfind('\n', bytes.size() - 2);
+  const Json said = seal == bytes.npos ? Json() : json_or_null(std::string_view(bytes).substr(seal + 1));
+  if (!said.is_object() || !said.contains("made_from") || !said.contains("sha256"))
+    throw InputError(file.string() + ": expected a last line that says what it holds: cut off, or of an older version");
+  if (said.at("made_from") != made_from)
+    throw InputError(file.string() + ": holds other scenes or labels than its name says");
+  bytes.resize(seal);
+  if (said.at("sha256") != sha256(bytes))
+    throw InputError(file.string() + ": does not have the bytes that were written");
+  return read_demonstrations(bytes, file.string());
 }
 
 }  // namespace
@@ -80,16 +100,17 @@ std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache
     const auto begin = scenes.begin() + static_cast<std::ptrdiff_t>(first);
     const auto count = static_cast<std::ptrdiff_t>(std::min(per_file, scenes.size() - first));
     const std::vector<Scene> block(begin, begin + count);
-    const fs::path file = cache_file(cache, block, needs, utterances);
+    const Json made_from = identity(cache, block, needs, utterances);
+    const fs::path file = cache.directory / (sha256(canonical(made_from)).substr(0, 32) + ".hdf5");
     std::vector<Demonstration> demonstrations;
     try {
-      if (fs::exists(file)) demonstrations = read_demonstrations(file);
+      if (fs::exists(fs::symlink_status(file))) demonstrations = read_sealed(file, made_from);
     } catch (const InputError& e) {
-      fmt::print(stderr, "{}; made again\n", e.what());
+      to_stderr("{}; made again\n", e.what());
     }
     if (demonstrations.size() != block.size()) {
       demonstrations = demonstrate(environment, block, needs, utterances);
-      write_file(file, demonstrations_hdf5(demonstrations, cache.environment_id));
+      write_file(file, sealed(demonstrations_hdf5(demonstrations, cache.environment_id), made_from));
     }
     std::move(demonstrations.begin(), demonstrations.end(), std::back_inserter(all));
     done(static_cast<int>(all.size()));

@@ -4,6 +4,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -33,7 +34,7 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
     episode.action = to_vector(move.action);
     episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {
-    fmt::print(stderr, "episode {} of {}: {}\n", scene.index, scene.arm, e.what());
+    to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
     episode.failure = Failure::method_error;
   }
   return episode;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include <lgabench/core/files.hpp>
@@ -166,7 +167,8 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
   const hsize_t rows = Observation::rows, columns = Observation::columns;
   const std::size_t pixels = rows * columns;
   const auto bytes = read_dataset<std::uint8_t>(h5, group, "instances", H5T_NATIVE_UINT8, {0}, place);
-  const Json tables = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const Json tables = parse_json(text, fmt::format("{}: {}/instances", h5.file(), place));
   const auto instances = JsonReader(tables, h5.file(), place + "/instances").elements();
   const hsize_t steps = instances.size();
   if (steps == 0 || steps > 10000) h5.fail(place, "expected 1 to 10000 steps");
@@ -228,9 +230,8 @@ std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations
   return bytes;
 }
 
-std::vector<Demonstration> read_demonstrations(const fs::path& path) {
-  const Library h5(path.string());
-  std::string bytes = read_file(path);
+std::vector<Demonstration> read_demonstrations(std::string bytes, const std::string& name) {
+  const Library h5(name);
   if (bytes.compare(0, 8, "\x89HDF\r\n\x1a\n") != 0) h5.fail("/", "expected an HDF5 file");
   const Handle access = h5.handle(H5Pcreate(H5P_FILE_ACCESS), "/");
   h5.check(H5Pset_fapl_core(access, std::size_t{1} << 16, false), "/");

@@ -19,8 +19,8 @@ namespace lgabench {
 /// @throws InputError if the HDF5 library fails.
 std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations, const std::string& environment_id);
 
-/// Reads such a file; instructions come without a Selection. @throws InputError naming the file, the place and what was
-/// expected.
-std::vector<Demonstration> read_demonstrations(const std::filesystem::path& file);
+/// Reads such a file's bytes; instructions come without a Selection. @throws InputError naming the file (`name`), the
+/// place and what was expected.
+std::vector<Demonstration> read_demonstrations(std::string bytes, const std::string& name);
 
 }  // namespace lgabench

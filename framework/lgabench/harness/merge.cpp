@@ -6,8 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
 
@@ -17,9 +20,10 @@ namespace {
 // A run to read from, which nobody writes into meanwhile.
 class Part {
  public:
-  explicit Part(const fs::path& path) : path_(path), json_(read_json(path / "run.json")) {
+  explicit Part(const fs::path& path) : path_(path), json_(read_json(path / "run.json", Links::refused)) {
     const JsonReader reader(json_, (path / "run.json").string());
-    reader.at("cells").strings();
+    keys_ = read_cell_keys(reader);
+    expect_plain_run(path);
     reader.at("command").string();
     reader.at("version").string();
     reader.at("started").string();
@@ -39,18 +43,21 @@ class Part {
   Part(Part&& other) noexcept
       : path_(std::move(other.path_)),
         json_(std::move(other.json_)),
+        keys_(std::move(other.keys_)),
         programs_(std::move(other.programs_)),
         lock_(std::exchange(other.lock_, -1)) {}
   Part& operator=(Part&&) = delete;
 
   const fs::path& path() const { return path_; }
   const Json& json() const { return json_; }
+  const std::vector<std::string>& keys() const { return keys_; }
   const std::map<std::string, Json>& programs() const { return programs_; }
   fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
 
  private:
   fs::path path_;
   Json json_;
+  std::vector<std::string> keys_;
   std::map<std::string, Json> programs_;  // file, or kind and id of a plugin -> sha256
   int lock_ = -1;
 };
@@ -90,6 +97,7 @@ CellState state_of(const Part& part, const std::string& key) {
   const fs::path cell = part.cell(key);
   if (!fs::exists(cell)) return {};
   try {
+    expect_plain_entries(cell);
     return cell_state(cell, key, build_of(part, key));
   } catch (const InputError& e) {
     CellState damaged;
@@ -116,7 +124,7 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
     } else if (state.failed) {
       if (failed.empty()) failed = part.cell(key);
     } else if (!state.why.empty()) {
-      fmt::print(stderr, "{}: {}; left out\n", part.cell(key).string(), state.why);
+      to_stderr("{}: {}; left out\n", part.cell(key).string(), state.why);
     }
   }
   ++(!finished.empty() ? outcome.finished : !failed.empty() ? outcome.failed : outcome.missing);
@@ -132,21 +140,21 @@ Json merged_json(const std::vector<Part>& parts, const std::string& command) {
     merged.push_back(own);
     const Json &processor = own["machine"]["processor"], &first = json["machine"]["processor"];
     if (processor != first)
-      fmt::print(stderr, "{}: computed on {}, {} on {}: its bits may differ from one machine's\n", part.path().string(),
-                 processor.get<std::string>(), parts.front().path().string(), first.get<std::string>());
+      to_stderr("{}: computed on {}, {} on {}: its bits may differ from one machine's\n", part.path().string(),
+                processor.get<std::string>(), parts.front().path().string(), first.get<std::string>());
   }
   json["command"] = command;
   json["merged"] = merged;
   return json;
 }
 
-// status.json last, as a worker does.
+// What a cell is documented to hold and nothing else; status.json last, as a worker does.
 void copy_cell(const fs::path& from, const fs::path& to) {
-  for (const auto& file : fs::directory_iterator(from))
-    if (file.is_regular_file() && file.path().filename() != "status.json")
-      write_file(to / file.path().filename(), read_file(file.path()));
+  const auto copy = [&](const std::string& name) { write_file(to / name, read_file(from / name, Links::refused)); };
+  for (const std::string& name : cell_files)
+    if (fs::exists(from / name)) copy(name);
   sync_directory(to);
-  write_file(to / "status.json", read_file(from / "status.json"));
+  copy("status.json");
   sync_directory(to);
 }
 
@@ -163,15 +171,23 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   }
   MergeOutcome outcome;
   std::map<std::string, fs::path> chosen;
-  for (const std::string key : parts.front().json().at("cells"))
+  for (const std::string& key : parts.front().keys())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
 
   const RunDirectory directory(out, merged_json(parts, command), Existing::resume);
   for (const Part& part : parts) keep_answers(kept_answers(part.path()), out);
+  std::size_t copied = 0;
+  auto told = std::chrono::steady_clock::now();
   for (const auto& [key, from] : chosen) {
     copy_cell(from, directory.scratch(key));
     directory.keep(key);
+    ++copied;
+    if (const auto now = std::chrono::steady_clock::now(); now - told > std::chrono::seconds(5)) {
+      told = now;
+      to_stderr("{} of {} cells copied\n", copied, chosen.size());
+    }
   }
+  directory.sync();
   return outcome;
 }
 

@@ -1,3 +1,4 @@
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/progress.hpp>
 
 #include <fmt/format.h>
@@ -37,17 +38,17 @@ Progress::Progress(std::size_t total) : total_(total), start_(std::chrono::stead
 Progress::~Progress() { wipe(); }
 
 void Progress::wipe() {
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  if (drawn_) put(stderr, "\r\x1b[K");
   drawn_ = false;
 }
 
 void Progress::say(const std::string& line) {
   wipe();
-  fmt::print(stderr, "{}\n", line);
+  put(stderr, printable(line) + '\n');
 }
 
 void Progress::started(std::size_t cell, const std::string& title) {
-  running_[cell] = {title, "", 0, std::chrono::steady_clock::now()};
+  running_[cell] = {one_line(title), "", 0, std::chrono::steady_clock::now()};
 }
 
 void Progress::phase(std::size_t cell, const std::string& phase, long long count) {
@@ -60,8 +61,9 @@ void Progress::ended(std::size_t cell, const std::string& failure) {
   ++done_;
   if (!failure.empty()) {
     ++failed_;
-    say(fmt::format("{}[{}/{}] {}: {}{}", colour_ ? "\x1b[31m" : "", done_, total_, it.title, failure,
-                    colour_ ? "\x1b[0m" : ""));
+    wipe();
+    put(stderr, fmt::format("{}[{}/{}] {}: {}{}\n", colour_ ? "\x1b[31m" : "", done_, total_, it.title,
+                            one_line(failure), colour_ ? "\x1b[0m" : ""));
   } else if (!terminal_) {
     say(fmt::format("[{}/{}] {} {:.1f} s", done_, total_, it.title, seconds_since(it.start)));
   }
@@ -86,7 +88,7 @@ void Progress::tick() {
   }
   const std::size_t width = terminal_width() - 1;
   if (line.size() > width) line = line.substr(0, width - 3) + "...";
-  fmt::print(stderr, "\r{}\x1b[K", line);
+  put(stderr, fmt::format("\r{}\x1b[K", one_line(line)));
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
@@ -82,8 +83,19 @@ DemonstrationCache demonstration_cache(const CellJob& job) {
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 
-// A plugin may return any name; only those of the space can be shown, counted and written.
-void expect_within(const FeatureSpace& space, const Selection& selection) {
+// A plugin may return anything; only names of the space can be shown and counted, only finite costs added up.
+void expect_usable(const FeatureSpace& space, const Selection& selection) {
+  constexpr std::size_t longest = 2000;
+  const auto& [queries, tokens, lm_seconds, human_seconds] = selection.cost;
+  if (queries < 0 || tokens < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
+      !std::isfinite(lm_seconds + human_seconds))
+    throw MethodError(
+        fmt::format("selection: /cost: expected finite numbers, none below 0, got {} queries, {} tokens, "
+                    "{} s of a model and {} s of people",
+                    queries, tokens, lm_seconds, human_seconds));
+  for (const std::string* words : {&selection.source, &selection.asked_as})
+    if (words->size() > longest || one_line(*words) != *words)
+      throw MethodError(fmt::format("selection: /source and /asked_as: expected a line of at most {} bytes", longest));
   const auto check = [&space](const FeatureSet& set) {
     try {
       const Json json = to_json(set);
@@ -144,7 +156,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     const Command command = scenario.command(static_cast<int>(c));
     Selection selection;
     if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
-    expect_within(scenario.space, selection);
+    expect_usable(scenario.space, selection);
     instructions.push_back({command.utterance, std::move(selection)});
   }
   const bool on_selected = method && needs.targets == Needs::Targets::selected;

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/run_layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -42,7 +43,9 @@ bool other_programs(const Json& there, const Json& wanted) {
 }  // namespace
 
 std::string difference(const Json& there, const Json& wanted) {
-  const Json before = there.value("request", Json::object()), now = wanted.value("request", Json::object());
+  Json before = there.value("request", Json::object());
+  const Json now = wanted.value("request", Json::object());
+  if (!before.is_object()) before = Json::object();
   for (const auto& item : now.items())
     if (before.value(item.key(), Json()) != item.value())
       return fmt::format("{} {} there, {} wanted", item.key(), canonical(before.value(item.key(), Json())),
@@ -56,23 +59,25 @@ bool same_cells(const std::string& version, const std::string& other) {
 
 CellState cell_state(const fs::path& cell, const std::string& key, const Json& build) {
   CellState state;
-  if (!fs::exists(cell)) return state;
+  std::error_code not_there;
+  if (!fs::exists(cell, not_there)) return state;
   const auto not_its_own = [&](const fs::path& file) {
     state.why = fmt::format("{} does not have the bytes that were written", file.string());
     return state;
   };
   try {
-    const Json status = read_json(cell / "status.json");
+    expect_plain_entries(cell);
+    const Json status = read_json(cell / "status.json", Links::refused);
     const JsonReader reader(status, (cell / "status.json").string());
     if (reader.at("state").string() != "ok") {
       state.failed = true;
       state.why = "failed: " + reader.at("reason").string();
       return state;
     }
-    const Json& files = reader.at("files").json();
     for (const char* name : result_files) reader.at("files").at(name).string();
     reader.at("files").at("timing.json").string();
-    for (const auto& file : files.items())
+    reader.at("files").only(cell_files);
+    for (const auto& file : reader.at("files").json().items())
       if (sha256_file(cell / file.key()) != file.value()) return not_its_own(cell / file.key());
     if (sha256(canonical(read_json(cell / "cell.json"))).substr(0, key.size()) != key)
       return not_its_own(cell / "cell.json");
@@ -107,6 +112,8 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
 }
 
 RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing existing) : path_(path) {
+  canonical(run);  // what is no UTF-8 is refused before anything is made
+  if (existing != Existing::fresh) expect_plain_run(path);  // which removes a link, and never what it leads to
   const bool was_there = has_content(path);
   make_directory(path);
   lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -123,7 +130,7 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
                                "report.html", "figures", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
-      there = read_json(record);
+      there = read_json(record, Links::refused);
       const auto version = [](const Json& json) { return json.is_object() ? json.value("version", "") : ""; };
       if (!same_cells(version(there), version(run)))
         throw InputError(fmt::format(
@@ -170,7 +177,13 @@ void RunDirectory::keep(const std::string& key) const {
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", there.string(), error.message()));
   remove_tree(old);
   remove_tree(made);
-  sync_directory(path_ / "cells");
+}
+
+void RunDirectory::sync() const { sync_directory(path_ / "cells"); }
+
+fs::path RunDirectory::cell(const std::string& key) const {
+  if (!is_cell_key(key)) throw InputError(fmt::format("{}: \"{}\" is no cell's key", path_.string(), key));
+  return path_ / "cells" / key;
 }
 
 }  // namespace lgabench

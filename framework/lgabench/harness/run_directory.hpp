@@ -51,8 +51,8 @@ class RunDirectory {
 
   const fs::path& path() const { return path_; }
 
-  /// Where the cell is, or will be.
-  fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
+  /// Where the cell is, or will be. @throws InputError for what is no key: it could lead anywhere.
+  fs::path cell(const std::string& key) const;
   CellState state(const std::string& key, const Json& build) const { return cell_state(cell(key), key, build); }
 
   /// A new empty directory for a worker to write into; a later start removes it unless kept.
@@ -60,6 +60,8 @@ class RunDirectory {
   /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic (in place of an
   /// earlier attempt only where the file system can exchange two names).
   void keep(const std::string& key) const;
+  /// fsync of what was kept since.
+  void sync() const;
 
  private:
   fs::path hidden(const std::string& key, const char* what) const;

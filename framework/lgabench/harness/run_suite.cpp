@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/progress.hpp>
 
@@ -110,19 +111,33 @@ ShardState shard_state(const RunPlan& plan, const Catalogue& catalogue, const Ru
     if (state.other_build)
       ++other_build, why = state.why;
     else if (!state.why.empty())
-      fmt::print(stderr, "{}: {}; computed again\n", cell->title(), state.why);
+      to_stderr("{}: {}; computed again\n", cell->title(), state.why);
   }
   if (other_build && plan.existing == Existing::same)
     throw InputError(fmt::format("{}: {} cells were {}; --resume computes them again, --fresh drops the run",
                                  plan.out.string(), other_build, why));
-  if (other_build) fmt::print(stderr, "{} cells were {}; computed again\n", other_build, why);
+  if (other_build) to_stderr("{} cells were {}; computed again\n", other_build, why);
   return all;
+}
+
+// What a plugin printed without end is not kept whole. Called where nobody writes any more.
+void cut_log(const fs::path& log) {
+  constexpr std::size_t most = std::size_t{1} << 20;  // of its begin, and of its end
+  if (fs::symlink_status(log).type() != fs::file_type::regular) {
+    fs::remove_all(log);
+    write_file(log, "");
+  }
+  if (fs::file_size(log) <= 2 * most) return;
+  const std::string all = read_file(log, Links::refused);
+  write_file(log, fmt::format("{}\n[{} bytes left out]\n{}", all.substr(0, most), all.size() - 2 * most,
+                              all.substr(all.size() - most)));
 }
 
 // The worker's own word that the cell is done, if its files bear it out; else status.json and nothing more. Returns the
 // reason of a failure, or "".
 std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scratch, const Json& build,
                    double timeout_s) {
+  cut_log(scratch / "log.txt");
   const bool ended_well = end.exit_code == 0 && end.signal == 0;
   const CellState state =
       ended_well && fs::exists(scratch / "status.json") ? cell_state(scratch, key(cell), build) : CellState();
@@ -134,6 +149,22 @@ std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scrat
   write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
   write_file(scratch / "status.json", canonical(status) + '\n');
   return status.at("reason");
+}
+
+// A cell that could not be put in its place as it ended: without its files, or with none at all on a full disk.
+void record_failure(const RunDirectory& directory, const Cell& cell, const std::string& reason,
+                    const std::string& fault, const Json& build) {
+  const Json status{{"state", "failed"}, {"reason", reason},        {"signal", nullptr},        {"fault", fault},
+                    {"build", build},    {"files", Json::object()}, {"log_tail", Json::array()}};
+  try {
+    const fs::path scratch = directory.scratch(key(cell));
+    write_file(scratch / "log.txt", "");
+    write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
+    write_file(scratch / "status.json", canonical(status) + '\n');
+    directory.keep(key(cell));
+  } catch (const std::exception& e) {
+    to_stderr("{}: {}\n", cell.title(), one_line(e.what()));
+  }
 }
 
 }  // namespace
@@ -183,6 +214,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
     return WorkerTask{job, scratch[i] / "log.txt"};
   };
+  std::set<std::string> failed;
   PoolEvents events;
   events.started = [&](std::size_t i) { progress.started(i, played[i]->title()); };
   events.progress = [&](std::size_t i, const std::string& phase, long long n) { progress.phase(i, phase, n); };
@@ -190,8 +222,19 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   events.ended = [&](std::size_t i, const WorkerEnd& end) {
     const Cell& cell = *played[i];
     constexpr int refused = 4;  // the worker's exit status for a plugin that cannot be loaded
-    const std::string reason = settle(cell, end, scratch[i], build_of(cell, catalogue), plan.pool.timeout_s);
-    directory.keep(key(cell));
+    const Json build = build_of(cell, catalogue);
+    std::string reason;
+    // What a plugin did to the directory, or a full disk, ends this cell and no other.
+    try {
+      if (scratch[i].empty()) throw InputError(why_it_ended(end, plan.pool.timeout_s).reason);
+      reason = settle(cell, end, scratch[i], build, plan.pool.timeout_s);
+      directory.keep(key(cell));
+      directory.sync();
+    } catch (const InputError& e) {
+      record_failure(directory, cell, reason = e.what(), "host", build);
+    } catch (const std::exception& e) {
+      record_failure(directory, cell, reason = e.what(), "plugin", build);
+    }
     outcome.time.workers_s += end.seconds;
     const fs::path kept = directory.cell(key(cell));
     if (reason.empty()) {
@@ -202,14 +245,30 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
         if (phase.key() != "total_s") outcome.time.phase_s[phase.key()] += phase.value().get<double>();
     } else {
       outcome.failed.push_back({cell.title(), reason, kept / "log.txt"});
-      outcome.plugin_refused |= end.exit_code == refused;
+      outcome.plugin_refused |= end.exit_code == refused && end.plugin_refused;
+      failed.insert(key(cell));
     }
     progress.ended(i, reason.empty() ? "" : "failed: " + reason);
   };
   const auto start = std::chrono::steady_clock::now();
   outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
   outcome.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  for (const Cell& cell : plan.cells) outcome.elsewhere += !fs::exists(directory.cell(key(cell)) / "status.json");
+  if (outcome.interrupted) return outcome;
+  // The last word is the disk's: a cell that was there, or was computed, and is not as it was kept has failed.
+  const auto expect_there = [&](const Cell& cell, std::size_t& count) {
+    const CellState state = directory.state(key(cell), build_of(cell, catalogue));
+    if (state.complete) return;
+    --count;
+    outcome.failed.push_back({cell.title(), "was kept and is gone: " + (state.why.empty() ? "no files" : state.why),
+                              directory.cell(key(cell)) / "log.txt"});
+  };
+  for (const Cell* cell : complete) expect_there(*cell, outcome.reused);
+  for (const Cell* cell : played)
+    if (failed.count(key(*cell)) == 0) expect_there(*cell, outcome.computed);
+  std::set<std::string> ours;
+  for (const Cell* cell : cells_of(plan.cells, plan.shard)) ours.insert(key(*cell));
+  for (const Cell& cell : plan.cells)
+    outcome.elsewhere += ours.count(key(cell)) == 0 && !fs::exists(directory.cell(key(cell)) / "status.json");
   return outcome;
 }
 

@@ -15,8 +15,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <list>
+#include <sstream>
 #include <utility>
 
 #include <lgabench/core/files.hpp>
@@ -104,10 +104,13 @@ Descriptor job_file(const Json& job) {
 
 // One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
 std::vector<std::string> worker_environment() {
+  // A secret of the person's is no plugin's business.
+  constexpr std::array<const char*, 2> not_theirs{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
   std::vector<std::string> all{"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
                                "LGABENCH_DATA=" + fs::absolute(data_directory()).string()};
   for (char** variable = environ; *variable; ++variable) {
     const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
+    if (std::find(not_theirs.begin(), not_theirs.end(), name) != not_theirs.end()) continue;
     if (std::none_of(all.begin(), all.begin() + 4, [&](const auto& ours) { return ours.rfind(name, 0) == 0; }))
       all.push_back(text);
   }
@@ -117,7 +120,8 @@ std::vector<std::string> worker_environment() {
 Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& options, const Signals& signals) {
   const std::string program = (program_directory() / "lgabench-worker").string();
   const Descriptor job = job_file(what.job);
-  const Descriptor log(::open(what.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644));
+  const Descriptor log(
+      ::open(what.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644));
   if (log.fd < 0) fail(what.log.string() + ": cannot be written");
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) fail("pipe");
@@ -158,12 +162,15 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
 // A line of fd 3: {"phase", "count"} or {"reason", "fault"}. A plugin could write there too: what is no such line is
 // dropped.
 void take_line(const std::string& line, Worker& worker, const PoolEvents& events) {
-  const Json message = Json::parse(line, nullptr, false);
+  const Json message = json_or_null(line);
   if (!message.is_object()) return;
   const auto text = [&message](const char* name) {
     return message.contains(name) && message[name].is_string() ? message[name].get<std::string>() : std::string();
   };
-  if (message.contains("reason")) worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+  if (message.contains("reason")) {
+    worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+    worker.end.plugin_refused = message.value("refused", Json()) == true;
+  }
   if (!message.contains("phase")) return;
   worker.end.phase = text("phase");
   const auto count = message.find("count");
@@ -225,8 +232,15 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   Clock::time_point awake = Clock::now();
   for (std::size_t next = 0; next < tasks || !crew.workers.empty();) {
     while (next < tasks && crew.workers.size() < static_cast<std::size_t>(options.jobs)) {
-      crew.workers.push_back(start(next, make(next), options, signals));
-      events.started(next++);
+      WorkerEnd not_begun;
+      try {
+        crew.workers.push_back(start(next, make(next), options, signals));
+      } catch (const InputError& e) {  // no process, or no place on the disk
+        not_begun.complaint = {{"reason", e.what()}, {"fault", "host"}};
+      }
+      events.started(next);
+      if (!not_begun.complaint.is_null()) events.ended(next, not_begun);
+      ++next;
     }
     std::vector<pollfd> watched{{signals.fd(), POLLIN, 0}};
     for (const Worker& worker : crew.workers) watched.push_back({worker.messages.fd, POLLIN, 0});
@@ -286,13 +300,13 @@ WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
 
 std::vector<std::string> log_tail(const fs::path& log) {
   constexpr std::size_t lines = 20, longest = 400;
-  constexpr std::uintmax_t most = 1 << 16;
-  std::ifstream file(log, std::ios::binary);
-  std::error_code none;
-  if (const std::uintmax_t size = fs::file_size(log, none); !none && size > most)
-    file.seekg(static_cast<std::streamoff>(size - most));
+  std::istringstream text;
+  try {
+    text.str(read_file(log, Links::refused));
+  } catch (const InputError&) {  // a plugin took it away
+  }
   std::vector<std::string> last;
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; std::getline(text, line);) {
     if (line.size() > longest) line = line.substr(0, longest) + "...";
     for (char& c : line)  // whatever was printed, status.json stays text
       if (static_cast<unsigned char>(c) >= 0x80 || (static_cast<unsigned char>(c) < 0x20 && c != '\t')) c = '?';

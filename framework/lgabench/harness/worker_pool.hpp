@@ -20,10 +20,11 @@ struct WorkerTask {
 struct WorkerEnd {
   double seconds = 0;  // of wall time
   int exit_code = 0;
-  int signal = 0;          // that ended it, or 0
-  bool timed_out = false;  // it was stopped after the limit
-  std::string phase;       // the last one it reported
-  Json complaint;          // {"reason", "fault"} if it said why it failed, else null
+  int signal = 0;               // that ended it, or 0
+  bool timed_out = false;       // it was stopped after the limit
+  std::string phase;            // the last one it reported
+  Json complaint;               // {"reason", "fault"} if it said why it failed, else null
+  bool plugin_refused = false;  // it said that a plugin could not be loaded
 };
 
 struct PoolOptions {
@@ -44,7 +45,8 @@ struct PoolEvents {
 /// A task's end, good or bad, changes nothing for the others. `make` is called just before a task starts.
 /// @returns false if SIGINT, SIGTERM or SIGHUP came: all workers are then stopped and gone, and more of these signals
 /// are ignored from there on.
-/// @throws InputError if no process can be started. Uses the process's signal mask and children; one call at a time.
+/// A task that cannot be started has ended with that complaint. Uses the process's signal mask and children; one call
+/// at a time.
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
 

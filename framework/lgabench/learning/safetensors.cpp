@@ -24,9 +24,8 @@ Safetensors::Safetensors(const fs::path& file, const std::string& sum) : file_(f
     throw InputError(
         fmt::format("{}: expected a header of {} bytes, got a file of {}", file_, header_size, bytes.size()));
   const std::size_t data = prefix + header_size, data_size = bytes.size() - data;
-  const Json header =
-      Json::parse(bytes.begin() + prefix, bytes.begin() + static_cast<std::ptrdiff_t>(data), nullptr, false);
-  if (!header.is_object()) throw InputError(file_ + ": expected a header in JSON");
+  const Json header = parse_json(std::string_view(bytes).substr(prefix, header_size), file_ + ": header in JSON");
+  if (!header.is_object()) throw InputError(file_ + ": expected a header in JSON that is an object");
 
   for (const auto& [name, value] : header.items()) {
     if (name == "__metadata__") continue;

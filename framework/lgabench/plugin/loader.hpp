@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  std::string asks;    // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
+  std::string asks{};  // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
 };
 
 /// Every member, under its name.

@@ -22,7 +22,7 @@ bool contains(const Json& values, const Json& value) {
 }  // namespace
 
 Json option_value(const std::string& word) {
-  Json value = Json::parse(word, nullptr, false);
+  const Json value = json_or_null(word);
   return value.is_number() || value.is_boolean() ? value : Json(word);
 }
 

@@ -23,6 +23,16 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+#if defined(__x86_64__)
+constexpr int own_machine = EM_X86_64;
+#elif defined(__aarch64__)
+constexpr int own_machine = EM_AARCH64;
+#elif defined(__riscv)
+constexpr int own_machine = EM_RISCV;
+#elif defined(__powerpc64__)
+constexpr int own_machine = EM_PPC64;
+#endif
+
 struct Range {
   std::size_t offset, size;
 };
@@ -36,6 +46,9 @@ std::vector<Range> loaded_ranges(std::string_view bytes) {
   const auto elf = value_at<Elf64_Ehdr>(bytes, 0);
   if (elf.e_ident[EI_CLASS] != ELFCLASS64 || elf.e_type != ET_DYN)
     throw PluginError("not a shared library: an ELF file of another kind");
+
+  if (elf.e_machine != own_machine)
+    throw PluginError(fmt::format("built for ELF machine {} (this program: {})", elf.e_machine, own_machine));
 
   const auto check_end = [&bytes](std::uint64_t offset, std::uint64_t size, const char* what) {
     if (offset > bytes.size() || size > bytes.size() - offset)
@@ -117,13 +130,8 @@ void check_needs(const JsonReader& option, const Json& options) {
 
 // Complaints of InputError's kind are the plugin's fault here.
 Json read_options(const std::string& options_json) {
-  Json options;
   try {
-    options = Json::parse(options_json);
-  } catch (const Json::parse_error& e) {
-    throw PluginError(fmt::format("options: byte {}: expected valid JSON", e.byte));
-  }
-  try {
+    Json options = parse_json(options_json, "options");
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
@@ -141,10 +149,10 @@ Json read_options(const std::string& options_json) {
         reader.at("min").fail("a number, not above a default that is one");
       if (reader.has("needs")) check_needs(reader, options);
     }
+    return options;
   } catch (const InputError& e) {
     throw PluginError(e.what());
   }
-  return options;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include <lgabench/report/pairs.hpp>
@@ -27,7 +28,8 @@ bool same_endings(const CellResult& a, const CellResult& b, const std::string& a
 
 // Of two cells whose bytes differ for a reason.
 CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& recomputed) {
-  if (recorded.arms != recomputed.arms) return {Agreement::differs, "other arms"};
+  if (recorded.arms != recomputed.arms) return {Agreement::differs, "other arms", 0, 0};
+  CellAgreement both{Agreement::same_outcomes, "", 0, 0};
   bool same = true;
   std::vector<double> p;
   std::string changed;
@@ -36,19 +38,22 @@ CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& rec
     try {
       pair = pair_policies(recorded, recomputed, arm);
     } catch (const InputError& e) {  // other scenes or commands
-      return {Agreement::differs, e.what()};
+      return {Agreement::differs, e.what(), 0, 0};
     }
     same = same && same_endings(recorded, recomputed, arm);
+    both.only_recorded += pair.only_first;
+    both.only_recomputed += pair.only_second;
     p.push_back(mcnemar(pair.only_first, pair.only_second));
     if (pair.only_first + pair.only_second > 0)
       changed += fmt::format("{}arm {}: {} of {} won there, {} here (McNemar p = {:.3f})", changed.empty() ? "" : "; ",
                              arm, pair.won_first, pair.episodes, pair.won_second, p.back());
   }
-  if (same) return {Agreement::same_outcomes, ""};
-  if (changed.empty()) changed = "episodes failed otherwise";
+  if (same) return both;
+  both.detail = changed.empty() ? "episodes failed otherwise" : changed;
   const std::vector<double> adjusted = holm(p);
   const bool chance = std::all_of(adjusted.begin(), adjusted.end(), [](double value) { return value > 0.05; });
-  return {chance ? Agreement::within_interval : Agreement::differs, changed};
+  both.agreement = chance ? Agreement::within_interval : Agreement::differs;
+  return both;
 }
 
 }  // namespace
@@ -63,13 +68,38 @@ CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed
   for (const char* name : {"selection.json", "training.jsonl", "episodes.jsonl"})
     if (std::string where = first_difference(recorded / name, recomputed / name); !where.empty())
       differences.push_back(std::move(where));
-  if (differences.empty()) return {Agreement::identical, ""};
+  if (differences.empty()) return {Agreement::identical, "", 0, 0};
   const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
-  if (!excused) return {Agreement::differs, where + ", though build, processor and data are those of the record"};
-  if (differences.front().rfind("selection.json", 0) == 0) return {Agreement::differs, where};
+  if (!excused) return {Agreement::differs, where + ", though build, processor and data are those of the record", 0, 0};
+  if (differences.front().rfind("selection.json", 0) == 0) return {Agreement::differs, where, 0, 0};
   CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
   outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);
   return outcomes;
+}
+
+std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells) {
+  std::map<std::string, PooledAgreement> rows;
+  for (const auto& [row, cell] : cells) {
+    if (cell.only_recorded + cell.only_recomputed == 0) continue;
+    PooledAgreement& one = rows.emplace(row, PooledAgreement{row}).first->second;
+    ++one.cells;
+    one.only_recorded += cell.only_recorded;
+    one.only_recomputed += cell.only_recomputed;
+  }
+  std::vector<PooledAgreement> all;
+  PooledAgreement total;
+  for (const auto& [row, one] : rows) {
+    all.push_back(one);
+    total.cells += one.cells;
+    total.only_recorded += one.only_recorded;
+    total.only_recomputed += one.only_recomputed;
+  }
+  if (all.size() > 1) all.push_back(total);
+  std::vector<double> p;
+  for (const PooledAgreement& one : all) p.push_back(mcnemar(one.only_recorded, one.only_recomputed));
+  const std::vector<double> adjusted = holm(p);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
+  return all;
 }
 
 }  // namespace lgabench::report

@@ -1,6 +1,8 @@
 // Does a cell that was computed again agree with what was recorded?
 #pragma once
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <lgabench/core/files.hpp>
 
@@ -18,6 +20,8 @@ std::string to_string(Agreement agreement);
 struct CellAgreement {
   Agreement agreement = Agreement::differs;
   std::string detail;  // what differs first, in one line; empty where nothing does
+  // Episodes, over all arms, that were won in one of them alone. Of outcomes that can be compared; else 0.
+  int only_recorded = 0, only_recomputed = 0;
 };
 
 /// Compares the directories of two finished cells. `excused`: build, processor or data are not those of the record.
@@ -25,5 +29,19 @@ struct CellAgreement {
 /// differs, excused or not. By chance: McNemar's exact p of each arm, Holm's over the arms, above .05.
 /// @throws InputError for files that are not as docs/formats says.
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused);
+
+/// The episodes of several cells put together: three that changed in each of two cells may be chance in each and are
+/// none in both.
+struct PooledAgreement {
+  std::string row;  // "" over all rows
+  int cells = 0, only_recorded = 0, only_recomputed = 0;
+  double p_holm = 1;  // McNemar's exact test, Holm's p over the rows and all rows
+
+  bool differs() const { return p_holm <= 0.05; }
+};
+
+/// Of each row of which an episode changed, by name, and of all of them where they are several. `cells`: row and
+/// agreement.
+std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells);
 
 }  // namespace lgabench::report

@@ -134,7 +134,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
   std::size_t begin = 0;
   for (const Request& request : requests) {
     const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-    const Json drawn = Json::parse(lines.substr(begin, end - begin), nullptr, false);
+    const Json drawn = json_or_null(lines.substr(begin, end - begin));
     begin = std::min(end + 1, lines.size());
     if (!drawn.is_object() || !drawn.contains("picture")) {
       if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";

@@ -10,34 +10,24 @@
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench::report {
 namespace {
 
 constexpr long long most = std::numeric_limits<int>::max();
 
-// The lines of a .jsonl file, each parsed; blank ones are errors too, as nothing writes them.
-std::vector<Json> read_lines(const fs::path& file) {
-  const std::string text = read_file(file);
-  std::vector<Json> lines;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(Json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                                text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false));
-    if (lines.back().is_discarded())
-      throw InputError(fmt::format("{}: line {}: expected valid JSON", file.string(), lines.size()));
-    begin = end + 1;
-  }
-  return lines;
-}
+// A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
+std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
 void read_episodes(const fs::path& file, CellResult& cell) {
   std::map<std::string, std::map<long long, PlayedEpisode>> played;
   const std::vector<std::string> words = failure_words();
   int line = 0;
-  for (const Json& json : read_lines(file)) {
+  for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
-    const std::string arm = reader.at("arm").string();
+    const std::string arm = shown(reader.at("arm"));
     if (std::find(cell.arms.begin(), cell.arms.end(), arm) == cell.arms.end())
       reader.at("arm").fail(fmt::format("an arm of the scenario ({})", fmt::join(cell.arms, ", ")));
     PlayedEpisode e;
@@ -70,37 +60,57 @@ void read_episodes(const fs::path& file, CellResult& cell) {
   }
 }
 
+void expect_selection(const JsonReader& selection) {
+  selection.at("target").at("object_types");
+  for (const char* text : {"provenance", "source", "asked_as"}) selection.at(text).string();
+  for (const char* number : {"lm_queries", "lm_tokens", "lm_seconds", "human_seconds"})
+    if (selection.at("cost").at(number).number() < 0) selection.at("cost").at(number).fail("0 or more");
+}
+
+void expect_quality(const JsonReader& quality) {
+  for (const char* about : {"target", "avoid"}) {
+    if (!quality.has(about) || quality.at(about).json().is_null()) {
+      if (std::string(about) == "target") quality.fail("the quality of the target");
+      continue;
+    }
+    for (const char* group : {"object_types", "textures"})
+      for (const char* number : {"precision", "recall", "size", "true_size"})
+        if (const JsonReader value = quality.at(about).at(group).at(number); !value.json().is_null()) value.number();
+  }
+}
+
 // What was selected for each of the cell's commands.
 void read_selections(const fs::path& file, CellResult& cell) {
-  const Json json = read_json(file);
+  const Json json = read_json(file, Links::refused);
   const JsonReader list = JsonReader(json, file.string()).at("commands");
   const auto commands = list.elements();
   if (commands.size() != cell.commands.size())
     list.fail(fmt::format("an entry for each of the scenario's {} commands", cell.commands.size()));
   for (std::size_t i = 0; i < commands.size(); ++i) {
     CommandResult& command = cell.commands[i];
-    if (commands[i].at("utterance").string() != command.utterance)
+    if (shown(commands[i].at("utterance")) != command.utterance)
       commands[i].at("utterance").fail(fmt::format("the scenario's command \"{}\"", command.utterance));
+    expect_selection(commands[i].at("selection"));
     command.selection = commands[i].at("selection").json();
     command.quality = commands[i].at("quality").json();
-    if (!command.quality.is_null()) commands[i].at("quality").at("target");
+    if (!command.quality.is_null()) expect_quality(commands[i].at("quality"));
   }
 }
 
 void read_configuration(const fs::path& file, CellResult& cell) {
-  const Json json = read_json(file);
+  const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
   const JsonReader scenario = reader.at("scenario"), method = reader.at("method");
-  cell.scenario = scenario.at("id").string();
+  cell.scenario = shown(scenario.at("id"));
   for (const JsonReader& command : scenario.at("commands").elements())
     cell.commands.push_back(
-        {command.at("utterance").string(), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
+        {shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
   cell.demonstrated_commands = static_cast<int>(
       std::count_if(cell.commands.begin(), cell.commands.end(), [](const CommandResult& c) { return c.seen; }));
-  for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(arm.at("arm").string());
-  cell.layout = reader.at("layout").string();
-  cell.engine = reader.at("engine").string();
-  cell.method = method.at("name").string();
+  for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(shown(arm.at("arm")));
+  cell.layout = shown(reader.at("layout"));
+  cell.engine = shown(reader.at("engine"));
+  cell.method = shown(method.at("name"));
   cell.kind = method.at("kind").string();
   if (method.has("asks")) cell.asks = method.at("asks").string();
   cell.id = method.at("id").string();
@@ -108,7 +118,7 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
-  if (reader.has("participant")) cell.participant = reader.at("participant").at("id").string();
+  if (reader.has("participant")) cell.participant = shown(reader.at("participant").at("id"));
   cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
 }
 
@@ -118,7 +128,8 @@ CellResult read_cell(const fs::path& directory) {
   CellResult cell;
   cell.key = directory.filename().string();
   const fs::path status_file = directory / "status.json";
-  const Json status = read_json(status_file);
+  expect_plain_entries(directory);
+  const Json status = read_json(status_file, Links::refused);
   const JsonReader reader(status, status_file.string());
   const std::string state = reader.at("state").string();
   if (state != "ok" && state != "failed") reader.at("state").fail("ok or failed");
@@ -127,16 +138,17 @@ CellResult read_cell(const fs::path& directory) {
   if (state == "failed") {
     cell.failed = true;
     cell.fault = reader.at("fault").string();
-    cell.reason = reader.at("reason").string();
-    cell.log_tail = reader.at("log_tail").strings();
+    cell.reason = shown(reader.at("reason"));
+    for (const JsonReader& line : reader.at("log_tail").elements()) cell.log_tail.push_back(shown(line));
     return cell;
   }
   read_selections(directory / "selection.json", cell);
   read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
-  cell.timing = read_json(timing_file);
+  cell.timing = read_json(timing_file, Links::refused);
   for (const char* phase : phases) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
+  reader.at("files").only(cell_files);
   for (const auto& [name, sum] : reader.at("files").json().items())
     if (sum != sha256_file(directory / name))
       throw InputError(fmt::format("{}: differs from its checksum in status.json; resuming the run makes it anew",
@@ -154,12 +166,13 @@ std::vector<std::string> failure_words() {
 RunResults read_run(const fs::path& run) {
   RunResults results;
   const fs::path run_file = run / "run.json";
-  results.json = read_json(run_file);
+  results.json = read_json(run_file, Links::refused);
   const JsonReader reader(results.json, run_file.string());
-  results.suite = reader.at("suite").string();
+  results.suite = shown(reader.at("suite"));
   results.smoke = reader.at("smoke").boolean();
   if (!reader.at("machine").json().is_object()) reader.at("machine").fail("an object");
-  const auto listed = reader.at("cells").strings();
+  const auto listed = read_cell_keys(reader);
+  expect_plain_run(run);
   const std::set<std::string> asked(listed.begin(), listed.end());
 
   std::set<std::string> found;

@@ -1,9 +1,13 @@
 // Misbehaves once, in a way and a place that its options name. Where it survives that, it is StayPolicy.
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <list>
 #include <stdexcept>
@@ -17,6 +21,7 @@
 namespace {
 
 using namespace lgabench;
+namespace fs = std::filesystem;
 
 [[noreturn]] void spin() {
   for (volatile int i = 0;; i = i + 1) {
@@ -27,7 +32,36 @@ using namespace lgabench;
   for (std::list<std::vector<char>> held;;) held.emplace_back(std::size_t{1} << 24, 'x');
 }
 
+// The directory that the worker's job names: where its results are written.
+fs::path scratch() {
+  std::ifstream job("/proc/self/fd/0");
+  return Json::parse(std::string(std::istreambuf_iterator<char>(job), {}))["directory"].get<std::string>();
+}
+
+// What it does to the files of its run.
+void vandalise(const std::string& how) {
+  const fs::path own = scratch();
+  if (how == "scratch_file" || how == "scratch_gone") fs::remove_all(own);
+  if (how == "scratch_file") std::ofstream(own) << "a file";
+  if (how == "cells_gone")
+    for (const auto& cell : fs::directory_iterator(own.parent_path()))
+      if (cell.path() != own) fs::remove_all(cell.path());
+  if (how == "link") fs::create_symlink("/etc/hostname", own / "leak.txt");
+  if (how == "log_pipe") {
+    fs::remove(own / "log.txt");
+    ::mkfifo((own / "log.txt").c_str(), 0600);
+  }
+}
+
 void misbehave(const std::string& how) {
+  if (how == "scratch_file" || how == "scratch_gone" || how == "cells_gone" || how == "link" || how == "log_pipe")
+    vandalise(how);
+  if (how == "exit_4") ::_exit(4);
+  if (how == "throw_huge") throw std::runtime_error(std::string(std::size_t{48} << 20, 'x'));
+  if (how == "flood")
+    for (int i = 0; i < 200000; ++i) std::puts("the fixture prints a line of fifty bytes, over and over");
+  if (how == "environment")
+    for (char** variable = environ; *variable; ++variable) std::puts(*variable);
   if (how == "abort") std::abort();
   if (how == "exit") std::exit(0);
   if (how == "quick_exit") ::_exit(0);
@@ -76,8 +110,14 @@ class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
  public:
   ~Faulty() override { misbehave(at_end_); }
   Selection select(const Command&, const FeatureSpace&, Services& services) override {
-    misbehave(how(services, "select"));
-    return {};
+    const std::string so = how(services, "select");
+    misbehave(so);
+    Selection selection;
+    if (so == "cost") selection.cost.lm_queries = -5;
+    if (so == "cost_nan") selection.cost.human_seconds = std::numeric_limits<double>::quiet_NaN();
+    if (so == "long_source") selection.source.assign(std::size_t{20} << 20, 'x');
+    if (so == "escape_source") selection.source = "\x1b[31m";
+    return selection;
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
     misbehave(how(services, "learn"));
@@ -101,5 +141,6 @@ LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
             "destroy"]},
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
     "quick_exit", "throw", "throw_int", "segfault", "spin", "allocate", "print", "messages", "fork", "fork_and_spin",
-    "close", "thread", "nan"]}
+    "close", "thread", "nan", "exit_4", "throw_huge", "flood", "environment", "scratch_file", "scratch_gone",
+    "cells_gone", "link", "log_pipe", "cost", "cost_nan", "long_source", "escape_source"]}
 })")

@@ -1,0 +1,24 @@
+// What a run directory that somebody sent may hold: names that lead nowhere else.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+/// The files of a finished cell, status.json, which is written last, excepted.
+extern const std::vector<std::string> cell_files;
+
+/// 16 hexadecimal digits: the name of a cell's directory.
+bool is_cell_key(const std::string& text);
+
+/// run.json's "cells". @throws InputError where one of them is no key.
+std::vector<std::string> read_cell_keys(const JsonReader& run);
+
+/// Expects run directories to hold regular files and directories, and no symbolic link: neither beside run.json nor in
+/// cells/, answers/ and figures/. A cell's own entries are checked where the cell is read.
+/// @throws InputError naming the first other entry.
+void expect_plain_run(const fs::path& run);
+
+}  // namespace lgabench
