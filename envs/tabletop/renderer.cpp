@@ -12,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <new>
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>

@@ -72,6 +72,8 @@ class Verify(unittest.TestCase):
         said = self.verify("--all", expect=0).stdout
         self.assertIn("4 of 4 finished cells computed again\nbuild, processor and data are those of the record", said)
         self.assertEqual(len(re.findall("^bit-identical ", said, re.M)), 4)
+        self.assertNotIn("NOT", said)
+        self.verify("--all", "--strict", expect=0)
         self.assertEqual({p: p.read_bytes() for p in self.run_directory.rglob("*") if p.is_file()}, before)
 
     def test_the_sample_is_the_seeds(self):
@@ -98,7 +100,8 @@ class Verify(unittest.TestCase):
         said = self.verify("--all", expect=0).stdout
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
-        self.assertIn("\n3 bit-identical, 1 same outcomes\n", said)
+        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells\n", said)
+        self.assertIn("NOT bit-identical: 1 of 4 cells", self.verify("--all", "--strict", expect=1).stdout)
 
     def test_other_data_are_named(self):
         shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")

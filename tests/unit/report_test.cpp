@@ -253,6 +253,19 @@ TEST(Summary, AMeanThatLacksAScenarioSaysSo) {
   EXPECT_EQ(row_of(summary, "(mean)", "gcbc_dart").at("marks"), Json{"incomplete"});
 }
 
+// At 10 demonstrations the paper has LGA .096 (error bar .047), Human .135 (.045) and GCBC-SEG .046 (.012).
+TEST(Summary, CountsThePointsThatLieNearThePapers) {
+  FabricatedRun run;
+  run.add({"lga", 3, "heart", 10});
+  run.add({"human", 20, "heart", 10});
+  EXPECT_EQ(summary_of(run).at("near_paper"), Json::array()) << "gcbc_seg is missing";
+  run.add({"gcbc_seg", 1, "heart", 10});
+  const Json near = summary_of(run).at("near_paper").at(0);
+  EXPECT_EQ(near.at("points"), 3);
+  EXPECT_EQ(near.at("near"), 2);
+  EXPECT_NEAR(near.at("mean_distance"), (.054 + .865 + .004) / 3, 1e-3);
+}
+
 TEST(Report, TwiceGivesTheSameBytes) {
   FabricatedRun run;
   for (const char* layout : {"cells", "continuous"})

@@ -33,8 +33,8 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
     return complain(e, usage);
   } catch (const fs::filesystem_error& e) {
     return complain(e, usage);
-  } catch (const Json::exception& e) {  // a file with a member of another type than its reader expected
-    return complain(e, usage);
+  } catch (const Json::exception& e) {
+    return complain(InputError(fmt::format("JSON with a member of another type than expected: {}", e.what())), usage);
   } catch (const std::exception& e) {
     return complain(e, cells_failed);
   }

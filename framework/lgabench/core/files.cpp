@@ -82,20 +82,19 @@ void expect_plain_entries(const fs::path& directory) {
   }
 }
 
-void write_file(const fs::path& file, std::string_view bytes) {
-  // A name that no other process takes, on no machine that shares the directory; which another one may remove at any
-  // moment (a cache that is cleared).
+void write_file(const fs::path& file, std::string_view bytes, Sync sync) {
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+
+  // A name that no other process takes, on no machine that shares the directory.
   fs::path temporary;
   Descriptor out{-1};
   std::random_device random;
-  int removed = 0;
   do {
-    std::error_code error;
-    if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-    if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
     temporary = fmt::format("{}.{:08x}.tmp", file.string(), random());
     out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  } while (out.fd < 0 && (errno == EEXIST || (errno == ENOENT && ++removed < 10)));
+  } while (out.fd < 0 && errno == EEXIST);
   if (out.fd < 0) fail(file, "cannot be written");
   const auto give_up = [&](const char* wanted) {
     const int reason = errno;
@@ -104,7 +103,7 @@ void write_file(const fs::path& file, std::string_view bytes) {
     fail(file, wanted);
   };
   if (!write_all(out.fd, bytes)) give_up("cannot be written");
-  if (::fsync(out.fd) != 0) give_up("cannot be written to disk");
+  if (sync == Sync::now && ::fsync(out.fd) != 0) give_up("cannot be written to disk");
   if (::rename(temporary.c_str(), file.c_str()) != 0) give_up("cannot be written");
 }
 
@@ -138,6 +137,11 @@ std::vector<std::string> json_names(const fs::path& directory, std::error_code& 
 void sync_directory(const fs::path& directory) {
   const Descriptor d{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
   if (d.fd < 0 || ::fsync(d.fd) != 0) fail(directory, "cannot be synced");
+}
+
+void sync_file_system(const fs::path& directory) {
+  const Descriptor d{::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  if (d.fd < 0 || ::syncfs(d.fd) != 0) fail(directory, "cannot be synced");
 }
 
 fs::path program_directory() {

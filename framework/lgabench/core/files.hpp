@@ -23,9 +23,12 @@ std::string read_file(const fs::path& file, Links links = Links::followed,
 /// there holds none.
 void expect_plain_entries(const fs::path& directory);
 
+/// Whether write_file() ends on the disk, or a sync_file_system() after many of them.
+enum class Sync { now, later };
+
 /// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, never a part.
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
-void write_file(const fs::path& file, std::string_view bytes);
+void write_file(const fs::path& file, std::string_view bytes, Sync sync = Sync::now);
 
 /// Appends to `file`, which is made if need be, and fsyncs. What fails is taken back: the file is then as it was.
 /// @throws InputError naming the file and the system's reason.
@@ -42,6 +45,9 @@ std::vector<std::string> json_names(const fs::path& directory, std::error_code& 
 
 /// fsync of a directory, so that a rename in it survives a power cut.
 void sync_directory(const fs::path& directory);
+
+/// All that was written to the directory's file system is on the disk afterwards. @throws InputError
+void sync_file_system(const fs::path& directory);
 
 /// Installed data (scenarios/, suites/, spaces/, answers/, embeddings/, paper/): $LGABENCH_DATA, or ../share/lgabench
 /// from the program.

@@ -67,7 +67,7 @@ std::vector<Demonstration> read_sealed(const fs::path& file, const Json& made_fr
   bytes.resize(seal);
   if (said.at("sha256") != sha256(bytes))
     throw InputError(file.string() + ": does not have the bytes that were written");
-  return read_demonstrations(bytes, file.string());
+  return read_demonstrations(std::move(bytes), file.string());
 }
 
 }  // namespace
@@ -110,7 +110,11 @@ std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache
     }
     if (demonstrations.size() != block.size()) {
       demonstrations = demonstrate(environment, block, needs, utterances);
-      write_file(file, sealed(demonstrations_hdf5(demonstrations, cache.environment_id), made_from));
+      try {
+        write_file(file, sealed(demonstrations_hdf5(demonstrations, cache.environment_id), made_from));
+      } catch (const InputError& e) {  // full, read-only, or cleared at this moment: that costs time, and no cell
+        to_stderr("{}; not kept\n", e.what());
+      }
     }
     std::move(demonstrations.begin(), demonstrations.end(), std::back_inserter(all));
     done(static_cast<int>(all.size()));

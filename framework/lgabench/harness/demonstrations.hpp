@@ -30,7 +30,7 @@ struct DemonstrationCache {
 /// demonstrate() through the cache: files of ten scenes each, named by the hash of all that they depend on, so that
 /// demonstrations of the first ten scenes serve the first fifty too. Each says in a last line, after its HDF5, what it
 /// was made from and the SHA-256 of the rest; a file that is not what its name and that line say is made again, which
-/// is said on stderr. `done(n)` after each ten.
+/// is said on stderr, as is one that cannot be written. `done(n)` after each ten.
 std::vector<Demonstration> cached_demonstrations(const DemonstrationCache& cache, Environment& environment,
                                                  const std::vector<Scene>& scenes, const Needs& needs,
                                                  const std::vector<std::string>& utterances,

@@ -148,15 +148,15 @@ Json merged_json(const std::vector<Part>& parts, const std::string& command) {
   return json;
 }
 
-// What a cell is documented to hold and nothing else; status.json last, as a worker does.
+// What a cell is documented to hold and nothing else.
 void copy_cell(const fs::path& from, const fs::path& to) {
-  const auto copy = [&](const std::string& name) { write_file(to / name, read_file(from / name, Links::refused)); };
+  const auto copy = [&](const std::string& name) {
+    write_file(to / name, read_file(from / name, Links::refused), Sync::later);
+  };
   for (const std::string& name : cell_files)
     if (fs::exists(from / name)) copy(name);
   for (const std::string& name : artefact_names(from / "files")) copy("files/" + name);
-  sync_directory(to);
   copy("status.json");
-  sync_directory(to);
 }
 
 }  // namespace
@@ -181,13 +181,14 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   auto told = std::chrono::steady_clock::now();
   for (const auto& [key, from] : chosen) {
     copy_cell(from, directory.scratch(key));
-    directory.keep(key);
     ++copied;
-    if (const auto now = std::chrono::steady_clock::now(); now - told > std::chrono::seconds(5)) {
+    if (const auto now = std::chrono::steady_clock::now(); now - told > std::chrono::seconds(2)) {
       told = now;
       to_stderr("{} of {} cells copied\n", copied, chosen.size());
     }
   }
+  sync_file_system(directory.path());  // before the first of them gets its name: a name stands for what is on the disk
+  for (const auto& cell : chosen) directory.keep(cell.first);
   directory.sync();
   return outcome;
 }

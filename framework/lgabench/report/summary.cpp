@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 
@@ -262,6 +263,26 @@ void mark_low_rows(Table& table) {
   }
 }
 
+std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
+  constexpr double error_bars = 1.5;
+  Nearness near;
+  for (const char* method : {"lga", "human", "gcbc_seg"})
+    for (const int n : table.demonstrations()) {
+      const std::string name = display_name(method);
+      const auto rate = paper.find(mean_scenario, name, n), error = paper.error(mean_scenario, name, n);
+      if (!rate || !error) continue;
+      const Row* row = table.find(table.arms.front(), mean_scenario, method, n);
+      if (!row || !row->success) return std::nullopt;
+      const double distance = std::abs(*row->success - *rate);
+      ++near.points;
+      near.near += distance <= error_bars * *error ? 1 : 0;
+      near.mean_distance += distance;
+    }
+  if (near.points == 0) return std::nullopt;
+  near.mean_distance /= near.points;
+  return near;
+}
+
 using Cells = std::vector<const CellResult*>;
 
 Table make_table(const Cells& cells) {
@@ -357,7 +378,11 @@ Summary summarize(const RunResults& run) {
     tables[{cell.layout, cell.engine}].push_back(&cell);
     if (cell.failed) summary.failed.push_back(cell);
   }
-  for (const auto& item : tables) summary.tables.push_back(make_table(item.second));
+  const PaperValues paper = paper_values(run.suite);
+  for (const auto& item : tables) {
+    summary.tables.push_back(make_table(item.second));
+    summary.tables.back().nearness = nearness(summary.tables.back(), paper);
+  }
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/report/paper.hpp>
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/statistics.hpp>
 
@@ -54,6 +55,7 @@ struct Table {
   std::vector<std::string> arms;
   int demonstrated_commands = 1;  // of each scenario, each with as many demonstrations; 0 where scenarios differ
   std::vector<Row> rows;
+  std::optional<Nearness> nearness;  // to the paper's curves; none unless the rows of all three methods are there
 
   std::vector<std::string> scenarios() const;  // in order, the mean last
   std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none

@@ -45,7 +45,15 @@ Json to_json(const Summary& summary) {
                       {"phi", row.phi}});
   for (const CellResult& cell : summary.failed)
     failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
-  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}};
+  Json nearness = Json::array();
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      nearness.push_back({{"layout", table.layout},
+                          {"engine", table.engine},
+                          {"points", near->points},
+                          {"near", near->near},
+                          {"mean_distance", near->mean_distance}});
+  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
 }
 
 std::string to_csv(const Summary& summary) {

@@ -112,6 +112,13 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   for (const std::string& arm : same_as)
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      lines.push_back(
+          fmt::format("Beside the paper, {}, {}: {} of {} points of LGA, Human and GCBC-SEG lie within 1.5 of its "
+                      "error bars; the mean "
+                      "distance is {:.3f}.",
+                      table.title(), table.title(mean_scenario), near->near, near->points, near->mean_distance));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   return lines;
