@@ -115,6 +115,8 @@ class Host:
 
     def bye(self, header, payload, descriptor):
         self.policy = self.method = None
+        sys.stdout.flush()  # the worker ends this process once it has the answer
+        sys.stderr.flush()
         self.channel.send({"type": "bye"})
 
 

@@ -94,6 +94,7 @@ class PythonMethods(Case):
         self.assertEqual((self.dir / "out/cells" / key / "files/curve.csv").read_text(), "1")
         again = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "again")
         self.assert_same_results("out", "again")
+        self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
         (self.dir / "helper.py").write_text("x = 2\n")
         said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
         self.assertIn("python differs", said.stderr)

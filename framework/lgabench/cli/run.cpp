@@ -110,26 +110,9 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
     to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
-// Adds the methods in Python to the catalogue and names them by their ids.
-void find_python_methods(Arguments& a, Catalogue& catalogue) {
-  for (std::string& word : a.methods) {
-    if (!is_python_method(word)) continue;
-    const std::size_t options = std::min(word.find('+'), word.size());
-    PluginInfo plugin = describe_python(word.substr(0, options), a.python);
-    word = plugin.id + word.substr(options);
-    const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(),
-                                    [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; });
-    if (known == catalogue.plugins.end())
-      catalogue.plugins.push_back(std::move(plugin));
-    else if (known->sha256 != plugin.sha256 || known->python != plugin.python)
-      throw PluginError(
-          fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
-  }
-}
-
 int run(Arguments a) {
   Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  find_python_methods(a, catalogue);
+  for (std::string& word : a.methods) word = with_python_method(word, a.python, catalogue);
   const Suite suite = load_suite(a.suite);
   const Grid grid = grid_of(a, suite);
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};

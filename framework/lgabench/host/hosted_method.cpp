@@ -26,7 +26,7 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
       {(program_directory() / "lgabench-method").string()}, job.scratch, {}, confinement, job.memory_bytes};
   if (const Json& python = job.method.python; !python.is_null()) {
     command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
-    command.also_set = {"PYTHONPATH=" + python_package().string()};
+    command.also_set = {"PYTHONPATH=" + python_package().string(), "PYTHONUNBUFFERED=1"};
   }
   return command;
 }

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -89,6 +90,20 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
   if (plugin.asks == "truth")
     throw PluginError(fmt::format("{}: asks \"truth\", which no method of yours may", written));
   return plugin;
+}
+
+std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue) {
+  if (!is_python_method(row)) return row;
+  const std::size_t options = std::min(row.find('+'), row.size());
+  const PluginInfo plugin = describe_python(row.substr(0, options), interpreter);
+  const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; };
+  const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
+  if (known == catalogue.plugins.end())
+    catalogue.plugins.push_back(plugin);
+  else if (known->file != plugin.file || known->python != plugin.python)
+    throw PluginError(
+        fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
+  return plugin.id + row.substr(options);
 }
 
 }  // namespace lgabench

@@ -13,4 +13,8 @@ bool is_python_method(const std::string& word);
 /// @throws PluginError with the interpreter's message, or naming what is wrong with id, options or asks.
 PluginInfo describe_python(const std::string& written, const std::string& interpreter);
 
+/// A row as the suite's reader knows it: where it is written FILE.py:Class+OPTION=VALUE, the method is described, added
+/// to the catalogue, and named by its id. @throws PluginError likewise, and for an id that another plugin has.
+std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue);
+
 }  // namespace lgabench

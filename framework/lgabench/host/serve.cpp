@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstring>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <new>
@@ -133,13 +135,9 @@ class Host {
 
   void answer(const Frame& frame) {
     const JsonReader reader(frame.header, frame.type());
-    Services services{model_,
-                      human_,
-                      options_,
-                      seed_,
-                      log_,
-                      [this](const Command& command) { return human_.truth(command); },
-                      fs::current_path() / "files"};
+    Services services{model_, human_, options_,
+                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
+                      files_};
     if (frame.type() == "needs") {
       Json needs = protocol::to_json(call([&] { return method_->needs(options_); }));
       needs["type"] = "needs";
@@ -173,6 +171,8 @@ class Host {
   void end() {
     policy_.reset();
     method_.reset();
+    std::cout.flush();
+    std::fflush(nullptr);  // the worker ends this process once it has the answer
     channel_.send({{"type", "bye"}});
   }
 
@@ -198,6 +198,7 @@ class Host {
   RemoteHuman human_;
   RemoteLog log_;
   protocol::SharedMemory observation_;
+  const fs::path files_ = fs::current_path() / "files";  // wherever the plugin goes
   Json options_;
   std::uint64_t seed_ = 0;
   PluginInfo plugin_;
