@@ -20,6 +20,7 @@
 #include <utility>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/host/host_process.hpp>
 
 namespace lgabench {
 namespace {
@@ -27,18 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError(fmt::format("{}: {}", what, std::strerror(errno))); }
-
-// Owns a file descriptor.
-struct Descriptor {
-  int fd = -1;
-  explicit Descriptor(int f = -1) : fd(f) {}
-  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() { close(); }
-  void close() {
-    if (fd >= 0) ::close(std::exchange(fd, -1));
-  }
-};
 
 // SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end. Once one of them came, more
 // of them are ignored: who presses Ctrl-C twice still gets the orderly end.
@@ -214,14 +203,32 @@ bool reap(Worker& worker, const PoolEvents& events) {
   return true;
 }
 
+// What a method's process left behind when its worker was stopped: it became ours. No worker is meant by that.
+void kill_strays(const std::list<Worker>& workers) {
+  const auto is_worker = [&workers](pid_t pid) {
+    return std::any_of(workers.begin(), workers.end(), [pid](const Worker& worker) { return worker.pid == pid; });
+  };
+  for (bool some = true; some;) {
+    some = false;
+    for (const pid_t pid : children_of(::getpid())) {
+      if (is_worker(pid)) continue;
+      some = true;
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, 0);
+    }
+  }
+}
+
 // However this is left, no worker stays behind.
 struct Crew {
+  Crew() { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }
   std::list<Worker> workers;
   ~Crew() {
     for (Worker& worker : workers) {
       kill_group(worker);
       ::waitpid(worker.pid, nullptr, 0);
     }
+    kill_strays({});
   }
 };
 
@@ -265,6 +272,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
       }
       const Worker gone = std::move(*worker);
       worker = crew.workers.erase(worker);
+      kill_strays(crew.workers);
       events.ended(gone.task, gone.end);
     }
     events.tick();

@@ -13,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -20,9 +21,21 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
+
+std::vector<pid_t> children_of(pid_t parent) {
+  std::vector<pid_t> all;
+  std::error_code gone;
+  for (const auto& thread : fs::directory_iterator(fmt::format("/proc/{}/task", parent), gone)) {
+    std::ifstream file(thread.path() / "children");
+    for (pid_t pid = 0; file >> pid;) all.push_back(pid);
+  }
+  return all;
+}
+
 namespace {
 
 [[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
@@ -44,17 +57,6 @@ std::vector<char*> pointers(const std::vector<std::string>& words) {
   std::vector<char*> all;
   for (const std::string& word : words) all.push_back(const_cast<char*>(word.c_str()));
   all.push_back(nullptr);
-  return all;
-}
-
-// Processes that a process started, and those whose own parent is gone if it is a subreaper.
-std::vector<pid_t> children_of(pid_t parent) {
-  std::vector<pid_t> all;
-  std::error_code gone;
-  for (const auto& thread : fs::directory_iterator(fmt::format("/proc/{}/task", parent), gone)) {
-    std::ifstream file(thread.path() / "children");
-    for (pid_t pid = 0; file >> pid;) all.push_back(pid);
-  }
   return all;
 }
 
@@ -99,13 +101,13 @@ HostProcess::HostProcess(const HostCommand& command) : memory_bytes_(command.mem
     ::setsid();
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent || ::chdir(directory.c_str()) != 0) ::_exit(127);
+    if (command.confinement && !command.confinement->apply()) ::_exit(126);
     // Above those that are replaced: dup2 onto itself would keep CLOEXEC.
-    const int spare = ::fcntl(theirs.fd, F_DUPFD, 10);
+    const int spare = ::fcntl(theirs.fd, F_DUPFD_CLOEXEC, 10);
     ::dup2(nothing.fd, 0);
     ::dup2(printing.fd, 1);
     ::dup2(printing.fd, 2);
     ::dup2(spare, 3);
-    if (command.confinement && !command.confinement->apply()) ::_exit(126);
     ::syscall(SYS_close_range, 4u, ~0u, 0u);
     ::execve(arguments[0], arguments.data(), environment.data());
     ::_exit(127);
@@ -144,10 +146,10 @@ void HostProcess::pass_on_output() {
     if (n < 0) return;
     if (n == 0) output_.close();
     const std::size_t room = most - std::min(printed_, most), size = std::min(static_cast<std::size_t>(n), room);
+    std::fflush(stdout);
     [[maybe_unused]] const ssize_t written = ::write(1, block, size);  // a full disk changes no result
     if (printed_ < most && static_cast<std::size_t>(n) >= room)
-      fmt::print("\n(the method printed more than {} MiB; the rest is dropped)\n", most >> 20);
-    std::fflush(stdout);
+      to_stdout("\n(the method printed more than {} MiB; the rest is dropped)\n", most >> 20);
     printed_ += static_cast<std::size_t>(n);
   }
 }
@@ -167,12 +169,12 @@ void HostProcess::stop() {
 }
 
 void HostProcess::explain() {
-  // A process that closed its connection may not be at its end yet.
-  constexpr int patience = 100;
+  // A process that closed its connection may not be at its end yet: it has two seconds.
   siginfo_t ended{};
-  for (int i = 0; i < patience && ended.si_pid == 0; ++i) {
+  for (int i = 0; i < 400 && ended.si_pid == 0; ++i) {
     if (::waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0) break;
-    if (ended.si_pid == 0) wait(-1, 0), ::usleep(1000);
+    pass_on_output();
+    if (ended.si_pid == 0) ::usleep(5000);
   }
   const bool by_itself = ended.si_pid != 0;
   stop();
