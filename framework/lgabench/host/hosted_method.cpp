@@ -40,9 +40,10 @@ Json method_json(const PluginInfo& method) {
 // Of lgabench's data what learners use; of the system what a library or an interpreter starts with.
 Reach reach_of(const HostJob& job) {
   const fs::path data = data_directory(), bin = program_directory();
-  Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/localtime",
-               "/usr/share/zoneinfo", "/usr/share/locale", "/proc/cpuinfo", "/proc/meminfo", "/sys/devices/system/cpu",
-               "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib", job.method.file.parent_path()},
+  Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/ssl/openssl.cnf",
+               "/etc/localtime", "/usr/share/zoneinfo", "/usr/share/locale", "/proc/cpuinfo", "/proc/meminfo",
+               "/sys/devices/system/cpu", "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib",
+               job.method.file.parent_path()},
               {job.scratch, "/dev/null", "/dev/zero"},
               job.hidden};
   if (const Json& python = job.method.python; !python.is_null()) {
