@@ -56,7 +56,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     }
     programs = build_of(cell, catalogue);
   }
-  for (const char* plugin : {"engine", "method"}) programs.erase(plugin);
+  for (const char* plugin : {"engine", "method", "python"}) programs.erase(plugin);
   Json answers = Json::array();
   for (const AnswerFile& file : plan.answers) {
     answers.push_back(file.about);
