@@ -67,6 +67,7 @@ Samples samples_of(const NetworkShape& shape) {
     const ActionVector label = to_vector({{scene.find(Role::target)->position_m, {}}, {{.5, .3}, {}}});
     std::copy(label.begin(), label.end(), samples.labels.begin() + i * action_size);
   }
+  if (shape.architecture != Architecture::plain) samples.find_usual();  // as CloningMethod
   return samples;
 }
 
@@ -109,9 +110,10 @@ void torchs(benchmark::State& state, const NetworkShape& shape) {
   };
   for (std::size_t t = 0; t < shape.channels.size(); ++t) {
     const int channels = shape.channels[t];
-    towers.push_back(nn::Sequential(nn::Conv2d(nn::Conv2dOptions(channels, 32, 8).stride(4)), nn::ReLU(),
-                                    nn::Conv2d(nn::Conv2dOptions(32, 64, 4).stride(2)), nn::ReLU(),
-                                    nn::Conv2d(nn::Conv2dOptions(64, 32, 3)), nn::ReLU(), nn::Flatten()));
+    towers.push_back(nn::Sequential(nn::Conv2d(nn::Conv2dOptions(channels, 32, 8).stride(4)), nn::BatchNorm2d(32),
+                                    nn::ReLU(), nn::Conv2d(nn::Conv2dOptions(32, 64, 4).stride(2)), nn::BatchNorm2d(64),
+                                    nn::ReLU(), nn::Conv2d(nn::Conv2dOptions(64, 32, 3)), nn::BatchNorm2d(32),
+                                    nn::ReLU(), nn::Flatten()));
     add(towers.back()->parameters());
     for (int b = 0; b < batches; ++b)
       pictures[t].push_back(batch_of(samples.pictures[t], b, {36, 72, channels}).permute({0, 3, 1, 2}).contiguous());
@@ -186,6 +188,14 @@ void register_training() {
       benchmark::RegisterBenchmark(
           ("step/" + std::string(name) + (best ? "" : std::string("/") + kernels->name)).c_str(),
           [&s, kernels](benchmark::State& state) { ours(state, s, *kernels); });
+    }
+    for (const auto& [network, architecture] :
+         {std::pair("/plain", Architecture::plain), std::pair("/released", Architecture::released)}) {
+      NetworkShape other = shape;
+      other.architecture = architecture;
+      benchmark::RegisterBenchmark(("step/" + std::string(name) + network).c_str(), [other](benchmark::State& state) {
+        ours(state, other, *available_kernels().front());
+      });
     }
     benchmark::RegisterBenchmark(("step/" + std::string(name) + "/libtorch").c_str(),
                                  [&s](benchmark::State& state) { torchs(state, s); });

@@ -18,8 +18,9 @@ class Network(nn.Module):
     def __init__(self, channels, text):
         super().__init__()
         self.towers = nn.ModuleList(
-            nn.Sequential(nn.Conv2d(c, 32, 8, stride=4), nn.ReLU(), nn.Conv2d(32, 64, 4, stride=2), nn.ReLU(),
-                          nn.Conv2d(64, 32, 3), nn.ReLU(), nn.Flatten()) for c in channels)
+            nn.Sequential(nn.Conv2d(c, 32, 8, stride=4), nn.BatchNorm2d(32), nn.ReLU(),
+                          nn.Conv2d(32, 64, 4, stride=2), nn.BatchNorm2d(64), nn.ReLU(),
+                          nn.Conv2d(64, 32, 3), nn.BatchNorm2d(32), nn.ReLU(), nn.Flatten()) for c in channels)
         self.text = nn.Linear(384, 100) if text else None
         self.head = nn.Linear(160 * len(channels) + (100 if text else 0), 12)
 

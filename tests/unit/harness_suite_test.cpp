@@ -27,6 +27,29 @@ Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), p
 
 Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
 
+TEST(Expand, AsksThePeopleThatAMethodDeclares) {
+  Catalogue known = catalogue();
+  known.plugins[1].asks = "edit";
+  Participant edits, specifies;
+  edits.id = "one", specifies.id = "two";
+  for (const char* id : {"heart", "letter"}) {
+    const std::pair<std::string, std::string> command(id, load_scenario(id).commands[0].utterance);
+    edits.answers[command].edited = Selection();
+    specifies.answers[command].specified = Selection();
+  }
+  const std::vector<Cell> cells = expand(
+      load_suite("q1"), small_grid(), {"recorded", Json::object(), true, Truth::released, {edits, specifies}}, known);
+  for (const Cell& cell : cells) {
+    EXPECT_EQ(cell.participant.has_value(), cell.method.id == "b") << cell.title();
+    if (cell.participant) {
+      EXPECT_EQ(cell.participant->id, "one");
+    }
+    EXPECT_EQ(cell.method.asks, cell.method.id == "b" ? "edit" : "");
+    EXPECT_EQ(to_json(cell).at("method").contains("asks"), cell.method.id == "b");
+    EXPECT_EQ(to_json(read_cell(to_json(cell), "cell.json")), to_json(cell));
+  }
+}
+
 TEST(Suite, q1) {
   const Suite suite = load_suite("q1");
   EXPECT_EQ(suite.grid.scenarios.size(), 13u);
@@ -105,6 +128,7 @@ TEST(Cells, KeyIsOfTheWholeConfiguration) {
   for (const auto& member : json.items()) {
     Json other = json;
     other[member.key()] = member.value().is_number() ? Json(91) : member.value().is_boolean() ? Json(true) : Json("x");
+    if (member.key() == "test_scenes") other["test_scenes"] = "per_seed";
     if (member.key() == "scenario") other["scenario"] = {{"id", "x"}};
     if (member.key() == "method")
       other["method"] = {{"kind", "method"}, {"id", "x"}, {"name", "x"}, {"version", ""}, {"options", {}}};
@@ -164,13 +188,14 @@ TEST(GridOptions, TheFirstGivenHolds) {
   EXPECT_EQ(epochs("a+epochs=1", both(of("a", 2), of("*", 3)), both(of("a", 4), of("*", 5))), 1);
   EXPECT_EQ(epochs("a", both(of("a", 2), of("*", 3)), both(of("a", 4), of("*", 5))), 2);
   EXPECT_EQ(epochs("a", of("*", 3), both(of("a", 4), of("*", 5))), 3);
-  EXPECT_EQ(epochs("a", {}, both(of("a", 4), of("*", 5))), 4);
-  EXPECT_EQ(epochs("b", {}, both(of("a", 4), of("*", 5))), 5);
-  EXPECT_EQ(epochs("a", {}, {}), 750);
+  const Json none = Json::object();
+  EXPECT_EQ(epochs("a", none, both(of("a", 4), of("*", 5))), 4);
+  EXPECT_EQ(epochs("b", none, of("*", 5)), 5);
+  EXPECT_EQ(epochs("a", none, none), 750);
 }
 
-// A suite of the test's own, with these options in its preset "p".
-std::string refusal_of_options(const Json& options) {
+// Expands a suite of the test's own that has these options in its preset "p"; method a lacks the option loss.
+void expand_with(const Json& options) {
   const TemporaryDirectory directory;
   Json suite = read_json(data_directory() / "suites" / "q1.json");
   suite["methods"] = {"a", "b+epochs=5"};
@@ -180,15 +205,16 @@ std::string refusal_of_options(const Json& options) {
   write_file(directory.path / "q1.json", canonical(suite));
   Catalogue shipped = catalogue();
   shipped.plugins[0].options.erase("loss");
-  return message_of<InputError>([&] {
-    const Suite own = load_suite((directory.path / "q1.json").string());
-    expand(own, preset_grid(own, "p"), {}, shipped);
-  });
+  const Suite own = load_suite((directory.path / "q1.json").string());
+  expand(own, preset_grid(own, "p"), {}, shipped);
+}
+
+std::string refusal_of_options(const Json& options) {
+  return message_of<InputError>([&] { expand_with(options); });
 }
 
 TEST(GridOptions, AreRefusedWithTheirPlace) {
-  EXPECT_EQ(refusal_of_options({{"*", {{"loss", "squared"}}}, {"b", {{"rate", 1}}}}), "")
-      << "a need not have every option in *";
+  EXPECT_NO_THROW(expand_with({{"*", {{"loss", "squared"}}}, {"b", {{"rate", 1}}}})) << "a has no loss";
   EXPECT_SAYS(refusal_of_options({{"c", {{"epochs", 5}}}}),
               "q1.json: /presets/p/options: unknown member \"c\", expected one of: *, a, b");
   EXPECT_SAYS(refusal_of_options({{"a", 5}}), "q1.json: /presets/p/options/a: expected an object");
@@ -256,7 +282,7 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
     if (!cell.method.is_reference())
       pairs.insert(cell.method.options.at("scenes").get<std::string>() + " " +
                    cell.method.options.at("input").get<std::string>());
-  EXPECT_EQ(pairs.size(), 6u) << "every pair of scenes and input";
+  EXPECT_EQ(pairs.size(), 7u) << "both scenes with each input but object_mask, which has one";
 }
 
 struct RunDirectories : testing::Test, TemporaryDirectory {};

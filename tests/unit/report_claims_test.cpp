@@ -1,7 +1,9 @@
 // The paper's claims on fabricated runs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <lgabench/report/claims.hpp>
 #include <lgabench/report/report.hpp>
@@ -53,7 +55,7 @@ TEST(Claims, C1HeldAtEveryNumberOfDemonstrations) {
   EXPECT_EQ(c1.verdict, Verdict::held);
   EXPECT_EQ(c1.differences.size(), 4u);
   const ClaimedDifference& d = between(c1, "lga", "gcbc_seg", "test", 10);
-  EXPECT_NEAR(d.change->difference, .45, 1e-12);
+  EXPECT_NEAR(d.these.change->difference, .45, 1e-12);
   EXPECT_EQ(d.scenarios, 2);
   EXPECT_EQ(d.policies, 6);
   EXPECT_EQ(claim_of(run, "C3").verdict, Verdict::not_tested);
@@ -71,8 +73,8 @@ TEST(Claims, OneReversedDifferenceReversesTheClaim) {
   add_row(run, "gcbc_dart", 2, 20);
   const Claim c1 = claim_of(run, "C1");
   EXPECT_EQ(c1.verdict, Verdict::reversed);
-  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 20).verdict, Verdict::reversed);
-  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 10).verdict, Verdict::held);
+  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 20).these.verdict, Verdict::reversed);
+  EXPECT_EQ(between(c1, "lga", "gcbc_seg", "test", 10).these.verdict, Verdict::held);
 }
 
 TEST(Claims, UndecidedWhereChanceMayHaveDoneIt) {
@@ -82,7 +84,7 @@ TEST(Claims, UndecidedWhereChanceMayHaveDoneIt) {
   run.add({"gcbc_dart", 2});
   const Claim c1 = claim_of(run, "C1");
   EXPECT_EQ(c1.verdict, Verdict::undecided);
-  EXPECT_EQ(between(c1, "lga", "gcbc_dart").verdict, Verdict::held);
+  EXPECT_EQ(between(c1, "lga", "gcbc_dart").these.verdict, Verdict::held);
 }
 
 // Six scenes that one alone won: McNemar's p is .03125, beyond chance alone, but not as one of two.
@@ -90,12 +92,12 @@ TEST(Claims, HolmCountsTheRowsCompared) {
   FabricatedRun run;
   run.add({"lga", 12});
   run.add({"gcbc_seg", 6});
-  EXPECT_EQ(between(claim_of(run, "C1"), "lga", "gcbc_seg").verdict, Verdict::held);
+  EXPECT_EQ(between(claim_of(run, "C1"), "lga", "gcbc_seg").these.verdict, Verdict::held);
   run.add({"gcbc_dart", 6});
   const ClaimedDifference d = between(claim_of(run, "C1"), "lga", "gcbc_seg");
-  EXPECT_NEAR(d.change->p, .03125, 1e-12);
-  EXPECT_NEAR(d.p_holm, .0625, 1e-12);
-  EXPECT_EQ(d.verdict, Verdict::undecided);
+  EXPECT_NEAR(d.these.change->p, .03125, 1e-12);
+  EXPECT_NEAR(d.these.p_holm, .0625, 1e-12);
+  EXPECT_EQ(d.these.verdict, Verdict::undecided);
 }
 
 TEST(Claims, NotTestedSaysWhatIsMissing) {
@@ -176,11 +178,11 @@ TEST(Claims, C2PairsEveryParticipantWithThePolicyOfTheSameSeed) {
   const Claim c2 = claim_of(run, "C2");
   EXPECT_EQ(c2.verdict, Verdict::held);
   const ClaimedDifference& d = between(c2, "lga", "human", "test", 50);
-  EXPECT_NEAR(d.change->difference, 0, 1e-12);
+  EXPECT_NEAR(d.these.change->difference, 0, 1e-12);
   EXPECT_EQ(d.participants, 3);
   EXPECT_EQ(d.policies, 5 * 2 * 3);
   // People differ more than training seeds do: their own level of the bootstrap, with the floor of one's episodes.
-  EXPECT_GT(d.change->interval.high, .02);
+  EXPECT_GT(d.these.change->interval.high, .02);
 
   // A participant whose policy failed has no pair, and no one gains by it.
   Spec failed{"human", 18, "heart", 50, 0};
@@ -218,9 +220,9 @@ TEST(Claims, C5TestsTheSecondsOfEachParticipant) {
   EXPECT_EQ(d.participants, 3);
   EXPECT_EQ(d.scenarios, 5);
   // Differences 100, 101, 99: mean 100, s = 1, t = 100 / (1 / sqrt(3)) with 2 degrees of freedom; t_.975 = 4.3027.
-  EXPECT_NEAR(d.change->difference, 100, 1e-9);
-  EXPECT_NEAR(d.change->interval.high, 100 + 4.302653 / std::sqrt(3.0), 1e-4);
-  EXPECT_LT(d.change->p, .001);
+  EXPECT_NEAR(d.these.change->difference, 100, 1e-9);
+  EXPECT_NEAR(d.these.change->interval.high, 100 + 4.302653 / std::sqrt(3.0), 1e-4);
+  EXPECT_LT(d.these.change->p, .001);
   EXPECT_EQ(verdict(250, 261, 269).verdict, Verdict::reversed);
   EXPECT_EQ(verdict(50, 300, 170).verdict, Verdict::undecided);
 }
@@ -237,46 +239,130 @@ TEST(Claims, C5NeedsPeopleInBothRows) {
 }
 
 // As q2: three seeds of two scenarios, two arms.
-void add_shifted(FabricatedRun& run, const std::string& method, int control, int texture) {
+void add_shifted(FabricatedRun& run, const std::string& method, int control, int texture,
+                 const Json& options = Json::object()) {
   for (const char* scenario : {"q2_heart", "q2_bowl"})
     for (int seed = 0; seed < 3; ++seed) {
       Spec spec{method, 0, scenario, 50, seed};
       spec.arms = {{"control", control}, {"texture", texture}};
+      spec.options = options;
       run.add(spec);
     }
 }
 
-TEST(Claims, C3TakesTheBetterLgaLInEachShiftedArm) {
+TEST(Claims, C3ComparesWithLgaLThatSeesThePicture) {
   FabricatedRun run;
   run.run["suite"] = "q2";
   add_shifted(run, "lga", 2, 20);
   add_shifted(run, "lga_s", 2, 19);
   add_shifted(run, "gcbc_dart", 20, 1);
-  add_shifted(run, "lga_l", 20, 9);
+  add_shifted(run, "lga_l+image=none", 12, 20);
   EXPECT_EQ(claim_of(run, "C3").verdict, Verdict::not_tested);
-  EXPECT_EQ(claim_of(run, "C3").reason, "no row lga_l+image=rgb");
-  add_shifted(run, "lga_l+image=rgb", 12, 2);
+  EXPECT_EQ(claim_of(run, "C3").reason, "no row lga_l with image=rgb");
+  add_shifted(run, "lga_l", 20, 9, {{"image", "rgb"}});
   const Claim c3 = claim_of(run, "C3");
-  EXPECT_EQ(c3.verdict, Verdict::held) << "the control arm, where nothing shifts and which is reversed, is no part";
+  EXPECT_EQ(c3.verdict, Verdict::held) << "the control arm, where nothing shifts and which is reversed, is no part, "
+                                          "nor the row without the picture";
   EXPECT_EQ(c3.differences.size(), 4u);
-  EXPECT_NEAR(between(c3, "lga_s", "lga_l", "texture", 50).change->difference, .5, 1e-12);
+  EXPECT_NEAR(between(c3, "lga_s", "lga_l", "texture", 50).these.change->difference, .5, 1e-12);
+  EXPECT_EQ(c3.alike, Verdict::not_tested);
+  EXPECT_EQ(c3.reason_alike, "none, six needed");
 }
 
-TEST(Claims, C4LooksAtUnseenCommandsAlone) {
+TEST(Claims, C3FindsThePictureWhereARowNamesIt) {  // as 0.1.0 did
+  FabricatedRun run;
+  run.run["suite"] = "q2";
+  add_shifted(run, "lga", 2, 20);
+  add_shifted(run, "lga_s", 2, 19);
+  add_shifted(run, "gcbc_dart", 20, 1);
+  add_shifted(run, "lga_l", 20, 20, {{"image", "none"}});
+  add_shifted(run, "lga_l+image=rgb", 20, 9);
+  EXPECT_EQ(claim_of(run, "C3").verdict, Verdict::held);
+}
+
+void add_ambiguous(FabricatedRun& run, const std::string& method, int seen, int unseen,
+                   const Json& options = Json::object()) {
+  for (int seed = 0; seed < 3; ++seed) {
+    Spec spec{method, 0, "q3_fruit", 50, seed};
+    spec.arms = {{"named", seen, {0, 1}}, {"kind", unseen, {2}}};
+    spec.commands = {{"Bring me a tomato.", true}, {"Bring me an apple.", true}, {"Bring me a fruit.", false}};
+    spec.options = options;
+    run.add(spec);
+  }
+}
+
+TEST(Claims, C4LooksAtUnseenCommandsWithOneInstance) {
   FabricatedRun run;
   run.run["suite"] = "q3";
-  for (const auto& [method, seen, unseen] :
-       {std::tuple("lga", 2, 20), {"lga_s", 2, 20}, {"gcbc_dart", 20, 3}, {"lga_l", 20, 4}, {"lga_l+image=rgb", 20, 5}})
-    for (int seed = 0; seed < 3; ++seed) {
-      Spec spec{method, 0, "q3_fruit", 50, seed};
-      spec.arms = {{"named", seen, {0, 1}}, {"kind", unseen, {2}}};
-      spec.commands = {{"Bring me a tomato.", true}, {"Bring me an apple.", true}, {"Bring me a fruit.", false}};
-      run.add(spec);
-    }
+  for (const char* method : {"lga", "lga_s"}) add_ambiguous(run, method, 20, 0, {{"instances", "all"}});
+  add_ambiguous(run, "gcbc_dart", 20, 3);
+  add_ambiguous(run, "lga_l", 20, 5, {{"image", "rgb"}});
+  EXPECT_EQ(claim_of(run, "C4").verdict, Verdict::not_tested);
+  EXPECT_EQ(claim_of(run, "C4").reason, "no row with instances=first");
+  add_ambiguous(run, "lga+epochs=5+instances=first", 2, 0);  // no LGA as shipped
+  EXPECT_EQ(claim_of(run, "C4").reason, "no row with instances=first");
+  add_ambiguous(run, "lga+instances=first", 2, 20);
+  EXPECT_EQ(claim_of(run, "C4").reason, "") << "half of it is tested";
+  EXPECT_EQ(between(claim_of(run, "C4"), "lga_s", "lga_l", "kind", 50).these.reason,
+            "no row lga_s with instances=first");
+  add_ambiguous(run, "lga_s+instances=first", 2, 20);
   const Claim c4 = claim_of(run, "C4");
   EXPECT_EQ(c4.verdict, Verdict::held);
   EXPECT_EQ(c4.differences.size(), 4u);
-  EXPECT_NEAR(between(c4, "lga", "lga_l+image=rgb", "kind", 50).change->difference, .75, 1e-12);
+  EXPECT_NEAR(between(c4, "lga+instances=first", "lga_l", "kind", 50).these.change->difference, .75, 1e-12);
+}
+
+TEST(Claims, AreTestedOnTheseScenariosAndOnScenariosLikeThem) {
+  FabricatedRun run;
+  // One scenario in which LGA is far above, five in which it is a little below.
+  const std::vector<const char*> scenarios{"tiger", "heart", "letter", "bowl", "ring", "star"};
+  for (std::size_t i = 0; i < scenarios.size(); ++i)
+    for (int seed = 0; seed < 3; ++seed) {
+      run.add({"lga", i == 0 ? 20 : 9, scenarios[i], 20, seed});
+      for (const char* baseline : {"gcbc_seg", "gcbc_dart"})
+        run.add({baseline, i == 0 ? 0 : 10, scenarios[i], 20, seed});
+    }
+  const Claim c1 = claim_of(run, "C1");
+  EXPECT_EQ(c1.verdict, Verdict::held);
+  EXPECT_EQ(c1.alike, Verdict::undecided);
+  const ClaimedDifference& d = between(c1, "lga", "gcbc_seg");
+  EXPECT_EQ(d.scenarios, 6);
+  EXPECT_EQ(d.scenes, 120);
+  EXPECT_EQ(d.seeds, 3);
+  ASSERT_EQ(d.by_scenario.size(), 6u);
+  const std::map<std::string, double> by_scenario(d.by_scenario.begin(), d.by_scenario.end());
+  EXPECT_EQ(by_scenario.at("tiger"), 1);
+  // Differences 1 and five times -.05: mean .125, s = .42866; t with 5 degrees of freedom, t_.975 = 2.5706.
+  EXPECT_NEAR(d.alike.change->interval.low, .125 - 2.570582 * .428661 / std::sqrt(6.0), 1e-4);
+  EXPECT_NEAR(d.alike.p_holm, std::min(1.0, 2 * d.alike.change->p), 1e-12) << "Holm's over the two baselines";
+
+  const std::string text = report::claims_text("q1", {c1});
+  EXPECT_SAYS(text, "these scenarios: held\n      scenarios like these: undecided\n");
+  EXPECT_SAYS(text, "by scenario: -1 [...................5|...................1] +1  ");
+  EXPECT_SAYS(text, "-0.05 to tiger +1.00\n");
+  report::write_report(run.save().path);
+  const std::string page = read_file(run.path / "report.md"), html = read_file(run.path / "report.html");
+  EXPECT_SAYS(page, "| **held** | **undecided** |");
+  EXPECT_SAYS(page, "The same by scenario:");
+  EXPECT_SAYS(page, " tiger |");
+  EXPECT_SAYS(html, "aria-label=\"tiger +1.00\"><circle");
+  const Json json = read_json(run.path / "claims.json").at("claims").at(0);
+  EXPECT_EQ(json.at("scenarios_like_these").at("verdict"), "undecided");
+  EXPECT_EQ(json.at("differences").at(0).at("by_scenario").size(), 6u);
+  EXPECT_EQ(json.at("differences").at(0).at("scenarios_like_these").at("p"), d.alike.change->p);
+}
+
+TEST(Claims, OfOneSeedSaySo) {
+  FabricatedRun run;
+  for (const char* scenario : {"heart", "letter"})
+    for (const auto& [method, won] : {std::pair("lga", 18), {"gcbc_seg", 9}, {"gcbc_dart", 2}})
+      run.add({method, won, scenario});
+  EXPECT_EQ(claim_of(run, "C1").verdict, Verdict::held);
+  EXPECT_SAYS(report::claims_text("q1", {claim_of(run, "C1")}),
+              "2 policies, 2 scenarios, 40 scenes, for this training seed");
+  add_row(run, "lga", 18, 50);
+  add_row(run, "gcbc_seg", 9, 50);
+  EXPECT_SAYS(report::claims_text("q1", {claim_of(run, "C1")}), "6 policies, 2 scenarios, 40 scenes\n");
 }
 
 TEST(Claims, StandInTheReportAndInClaimsJson) {

@@ -98,7 +98,7 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
 
     // ... and none stands there that is not the summary's, but for the paper's.
     std::string cells = std::regex_replace(measured(page), value, "");
-    cells = std::regex_replace(cells, std::regex("<i class=paper>0\\.\\d*</i>"), "");
+    cells = std::regex_replace(cells, std::regex("<i class=paper>[^<]*</i>"), "");
     const std::regex cell("<td>(.*?)</td>"), tag("<[^>]*>"), number("(^|[\\s\\[])[+-]?\\d");
     int seen = 0;
     for (std::sregex_iterator it(cells.begin(), cells.end(), cell), end; it != end; ++it, ++seen) {
@@ -141,7 +141,8 @@ TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
       if (claim.at("differences")[d].at("difference").is_null()) continue;
       ++tested;
       const std::string place = "/claims/" + std::to_string(c) + "/differences/" + std::to_string(d) + "/";
-      for (const char* member : {"difference", "low", "high", "participants", "policies", "scenarios"})
+      for (const char* member : {"difference", "these_scenarios/low", "these_scenarios/high", "participants",
+                                 "policies", "scenarios", "scenes"})
         EXPECT_EQ(shown.count(place + member), 1u) << place << member;
     }
   }
@@ -191,7 +192,8 @@ TEST(Html, SaysWhatAReaderMustKnow) {
        {"Smoke or limited run: not for the leaderboard.", "1 of 27 cells have not run yet", "† baseline not learned",
         "‡ incomplete", "Human: true φ̂: an upper bound, no human data.", "= same actions as in control",
         "signal 11 (Segmentation fault) in phase learn", "last words", "a language model's recorded answers", "gpt-4",
-        "“fetch | heart”", "Failures laid to abstraction or policy", "<th scope=col>demonstrate</th>", "a processor"})
+        "“fetch | heart”", "Failures attributed to abstraction or policy", "<th scope=col>demonstrate</th>",
+        "a processor"})
     EXPECT_SAYS(page, note);
   // No scene of a fabricated run can be drawn.
   EXPECT_SAYS(page, "No pictures of scenes: ");
@@ -232,8 +234,8 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   report::Pictures pictures;
   pictures.wanted = 1;
   pictures.scenes[hex(19)] = "PNG";
-  const std::string page = report::html(results, report::summarize(results), report::test_claims(results),
-                                        {}, report::paper_values("q1"), pictures);
+  const std::string page = report::html(results, report::summarize(results), report::test_claims(results), {},
+                                        report::paper_values("q1"), pictures);
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));

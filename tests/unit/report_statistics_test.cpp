@@ -38,51 +38,6 @@ TEST(McNemar, ExactFractions) {
   EXPECT_NEAR(mcnemar(3000, 3200), 0.011488253770871206, 1e-12);  // 2^-6200 is no double
 }
 
-// The resampling distribution written out in exact fractions (Python: the mean of every draw within a cluster, mixed
-// over clusters, convolved over draws). Its quantiles at 2.5 % and 97.5 %, chosen to lie well inside a step of it.
-TEST(ClusterBootstrap, ExactResamplingDistributions) {
-  // Eight seeds of one scenario, half of which won: binomial(8, 1/2) / 8; P(<= 0) = .0039, P(<= 1/8) = .0352.
-  const Interval seeds = cluster_bootstrap({{0, 1, 0, 1, 0, 1, 0, 1}}, "test/seeds");
-  EXPECT_DOUBLE_EQ(seeds.low, .125);
-  EXPECT_DOUBLE_EQ(seeds.high, .875);
-  // Two scenarios that differ, seeds that do not: 0, 1/2, 1 with probability 1/4, 1/2, 1/4. Drawing seeds alone gives
-  // 1/2 always.
-  const Interval scenarios = cluster_bootstrap({{0, 0, 0}, {1, 1, 1}}, "test/scenarios");
-  EXPECT_DOUBLE_EQ(scenarios.low, 0);
-  EXPECT_DOUBLE_EQ(scenarios.high, 1);
-  // Both, with unequal numbers of seeds: P(< 1/4) = .0096, P(<= 1/4) = .0314; P(< 11/12) = .9635, P(<= 11/12) = .9794.
-  const Interval both = cluster_bootstrap({{0, .5, 1}, {.5, 1}}, "test/both");
-  EXPECT_NEAR(both.low, .25, 1e-12);
-  EXPECT_NEAR(both.high, 11. / 12, 1e-12);
-}
-
-TEST(ClusterBootstrap, SameNameSameBits) {
-  const std::vector<Cluster> clusters{{.11, .52, .83}, {.94, .15, .36}, {.07, .18, .59}};
-  const Interval a = cluster_bootstrap(clusters, "a"), again = cluster_bootstrap(clusters, "a");
-  EXPECT_EQ(a.low, again.low);
-  EXPECT_EQ(a.high, again.high);
-  const Interval b = cluster_bootstrap(clusters, "b");
-  EXPECT_TRUE(a.low != b.low || a.high != b.high);
-  EXPECT_NEAR(a.low, b.low, .03);
-}
-
-TEST(ClusterMean, WeighsClustersAlike) { EXPECT_DOUBLE_EQ(cluster_mean({{1}, {0, 0, .5, .5}}), .625); }
-
-TEST(SuccessInterval, IsWilsonsForOnePolicy) {
-  EXPECT_NEAR(success_interval({{.75}}, 20, "x").low, .5313, 5e-5);
-  EXPECT_NEAR(success_interval({{.75}}, 20, "x").high, .8881, 5e-5);
-}
-
-TEST(SuccessInterval, IsTheWiderOfBootstrapAndWilson) {
-  // Policies that agree: the bootstrap has no width.
-  const Interval agree = success_interval({{1, 1, 1}}, 60, "x");
-  EXPECT_EQ(agree.low, wilson(60, 60).low);
-  // Policies that differ widely: Wilson's, which takes all episodes for independent, is too narrow.
-  const Interval differ = success_interval({{0, 0, 0}, {1, 1, 1}}, 120, "x");
-  EXPECT_EQ(differ.low, 0);
-  EXPECT_EQ(differ.high, 1);
-}
-
 // How often the interval holds the truth, summed over every outcome of n scenes with its multinomial probability.
 double coverage(double only_first, double only_second, int n) {
   const double neither = 1 - only_first - only_second, truth = only_second - only_first;
@@ -114,36 +69,6 @@ TEST(PairedDifference, HasASignAndStaysWithinOne) {
   EXPECT_NEAR(a.high, -b.low, 1e-15);
   EXPECT_GT(a.low + a.high, 0);
   EXPECT_EQ(paired_difference(0, 20, 20).high, 1);
-}
-
-TEST(PairedChange, IsTheWiderOfBootstrapAndPairedDifference) {
-  const Change agree = paired_change({{0, 0, 0}}, 0, 0, 60, "x");
-  EXPECT_EQ(agree.interval.low, paired_difference(0, 0, 60).low);
-  EXPECT_EQ(agree.p, 1);
-  const Change differ = paired_change({{0, 0, 0}, {-1, -1, -1}}, 60, 0, 120, "x");
-  EXPECT_EQ(differ.difference, -.5);
-  EXPECT_EQ(differ.interval.low, -1);
-  EXPECT_EQ(differ.interval.high, 0);
-  EXPECT_NEAR(differ.p, .5, .05);  // a quarter of the resamples draw the first scenario alone
-}
-
-TEST(PairedChange, OfOnePolicyIsMcNemars) {
-  const Change one = paired_change({{.4}}, 1, 9, 20, "x");
-  EXPECT_EQ(one.p, mcnemar(1, 9));
-  EXPECT_EQ(one.interval.low, paired_difference(1, 9, 20).low);
-}
-
-// statistics_reference.py: the resampling distribution in exact fractions.
-TEST(PairedChange, PIsTwiceTheShareOfResamplesBeyondZero) {
-  const std::vector<Cluster> seeds{{-1, 1, 1, 1, 1, 1, 1, 1}};
-  EXPECT_NEAR(paired_change(seeds, 20, 140, 160, "test/p").p, .022495627403259277, 4 * .0015);  // 4 deviations
-  std::vector<Cluster> reversed = seeds;
-  for (double& d : reversed.front()) d = -d;
-  EXPECT_NEAR(paired_change(reversed, 140, 20, 160, "test/p").p, .022495627403259277, 4 * .0015);
-}
-
-TEST(PairedChange, PIsNowhereBelowMcNemars) {  // seeds that happen to agree: no resample is beyond zero
-  EXPECT_EQ(paired_change({{.1, .1, .1}}, 3, 9, 60, "x").p, mcnemar(3, 9));
 }
 
 // What follows: statistics_reference.py (SciPy, statsmodels), but where another source is named.

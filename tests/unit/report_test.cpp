@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -78,12 +80,14 @@ TEST(Summary, RowsHaveTheExactCounts) {
   EXPECT_EQ(mean.at("success"), 0.5);
   EXPECT_EQ(mean.at("episodes"), 40);
   EXPECT_EQ(mean.at("failures"), (Json{{"missed_object", 5}, {"wrong_object", 15}}));
-  EXPECT_EQ(mean.at("low"), 0.25);  // bootstrap over two scenarios: both the worse one
-  EXPECT_EQ(mean.at("high"), 0.75);
+  // The scenarios are fixed: 40 scenes, of which each has a chance of .75 or .25, not two draws from .75 and .25.
+  EXPECT_EQ(mean.at("scenes"), 40);
+  EXPECT_NEAR(mean.at("low").get<double>(), .5 - 1.96 * std::sqrt(.1875 / 40), .02);
+  EXPECT_NEAR(mean.at("high").get<double>(), .5 + 1.96 * std::sqrt(.1875 / 40), .02);
   EXPECT_EQ(mean.at("phi"), nullptr);
 }
 
-TEST(Summary, CountsWhatFailuresAreLaidTo) {
+TEST(Summary, CountsWhatFailuresAreAttributedTo) {
   FabricatedRun run;
   for (int seed = 0; seed < 3; ++seed) {
     FabricatedRun::Spec lga{"lga", 15 + seed, "heart", 20, seed};
@@ -92,9 +96,9 @@ TEST(Summary, CountsWhatFailuresAreLaidTo) {
   }
   run.add({"lga", 20, "letter"});
   run.add({"gcbc_dart", 2});
-  const Json summary = summary_of(run), laid_to{{"abstraction", 5}, {"policy", 4 + 3}};
-  EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), laid_to);
-  EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), laid_to);
+  const Json summary = summary_of(run), attributed{{"abstraction", 5}, {"policy", 4 + 3}};
+  EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), attributed);
+  EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
   EXPECT_SAYS(read_file(run.path / "report.md"), "| layout cells, engine mujoco | test | LGA | 20 | 5 | 7 |");
   EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0,,5,7,12,0,");
@@ -136,9 +140,26 @@ TEST(Summary, SeveralSeedsAreAveraged) {
   EXPECT_EQ(row.at("seeds"), 3);
   EXPECT_EQ(row.at("episodes"), 60);
   EXPECT_EQ(row.at("success"), 0.5);
-  // Means of three draws from 0, 1/2, 1: P(0) = 1/27 is above 2.5 %.
-  EXPECT_EQ(row.at("low"), 0.0);
-  EXPECT_EQ(row.at("high"), 1.0);
+  // Means of three draws from 0, 1/2, 1: P(0) = 1/27 is above 2.5 %; the imagined scenes keep the ends from certainty.
+  EXPECT_LT(row.at("low"), .06);
+  EXPECT_GT(row.at("high"), .94);
+}
+
+TEST(Summary, SeedsOnTheSameScenesAreNoMoreScenes) {
+  FabricatedRun shared, apart;
+  for (int seed = 0; seed < 3; ++seed) {
+    shared.add({"lga", 15, "heart", 20, seed});
+    FabricatedRun::Spec own{"lga", 15, "heart", 20, seed};
+    own.first_scene = 20 * seed;
+    apart.add(own);
+  }
+  const Json one = row_of(summary_of(shared), "heart", "lga"), other = row_of(summary_of(apart), "heart", "lga");
+  EXPECT_EQ(one.at("episodes"), other.at("episodes"));
+  EXPECT_EQ(one.at("scenes"), 20);
+  EXPECT_EQ(other.at("scenes"), 60);
+  EXPECT_LT(one.at("low"), report::wilson(45, 60).low - .04) << "60 episodes would be narrower";
+  EXPECT_NEAR(one.at("low").get<double>(), report::wilson(15, 20).low, .05);
+  EXPECT_GT(other.at("low").get<double>(), one.at("low").get<double>() + .03);
 }
 
 TEST(Summary, SeveralParticipantsAreAveragedEachOverTheirSeeds) {
@@ -172,24 +193,32 @@ TEST(Summary, SeveralParticipantsAreAveragedEachOverTheirSeeds) {
   EXPECT_EQ(row_of(summary_of(one), "heart", "human").at("low"), 0.0);
 }
 
-TEST(Summary, ReferenceRowsMarkWhatLearnedNothing) {
+TEST(Summary, MarksWhatIsBelowAReferenceRow) {
   FabricatedRun run;
   run.add({"constant_action", 6, "heart", 20, 0, "reference"});
   run.add({"constant_action", 2, "heart", 50, 0, "reference"});
-  run.add({"lga", 6, "heart", 20, 0});                                // as good: not below
-  run.add({"gcbc_dart", 5, "heart", 20, 0});                          // below
-  run.add({"gcbc_dart", 5, "heart", 50, 0});                          // above that of 50
+  run.add({"random_object", 9, "heart", 0, 0, "reference"});          // whatever the demonstrations
+  run.add({"lga", 9, "heart", 20, 0});                                // as good: not below
+  run.add({"gcbc_dart", 5, "heart", 20, 0});                          // below both
+  run.add({"gcbc_dart", 5, "heart", 50, 0});                          // below the random object alone
   run.add({"gcbc_dart", 1, "heart", 20, 0, "method", "continuous"});  // no reference in that layout
   const Json summary = summary_of(run);
-  std::set<std::string> marked;
+  std::map<std::string, Json> marks;
   for (const Json& row : summary.at("rows"))
-    if (row.at("marks") == Json{"baseline_not_learned"})
-      marked.insert(row.at("scenario").get<std::string>() + " " + row.at("method").get<std::string>() + " " +
-                    row.at("demonstrations").dump() + " " + row.at("layout").get<std::string>());
-    else
-      EXPECT_EQ(row.at("marks"), Json::array());
-  EXPECT_EQ(marked, (std::set<std::string>{"heart gcbc_dart 20 cells", "(mean) gcbc_dart 20 cells"}));
-  EXPECT_SAYS(table_text(run.path), "baseline not learned");
+    if (row.at("marks") != Json::array())
+      marks[row.at("scenario").get<std::string>() + " " + row.at("method").get<std::string>() + " " +
+            row.at("demonstrations").dump() + " " + row.at("layout").get<std::string>()] = row.at("marks");
+  const Json both{"baseline_not_learned", "below_random_object"}, random{"below_random_object"};
+  EXPECT_EQ(marks, (std::map<std::string, Json>{{"heart gcbc_dart 20 cells", both},
+                                                {"(mean) gcbc_dart 20 cells", both},
+                                                {"heart gcbc_dart 50 cells", random},
+                                                {"(mean) gcbc_dart 50 cells", random}}));
+  const std::string text = table_text(run.path);
+  EXPECT_SAYS(text, "0.47]†§");
+  EXPECT_SAYS(text, "† baseline not learned: below the best constant action");
+  EXPECT_SAYS(text, "§ below the random visible object");
+  EXPECT_SAYS(read_file(run.path / "report.md"), "0.47]§ |");
+  EXPECT_SAYS(read_file(run.path / "report.html"), "<li><b>§</b> below the random visible object");
 }
 
 TEST(Summary, FailedCellsAreListedAndNeverCounted) {
@@ -222,6 +251,19 @@ TEST(Summary, AMeanThatLacksAScenarioSaysSo) {
   const Json summary = summary_of(run);
   EXPECT_EQ(row_of(summary, "(mean)", "lga").at("marks"), Json::array());
   EXPECT_EQ(row_of(summary, "(mean)", "gcbc_dart").at("marks"), Json{"incomplete"});
+}
+
+// At 10 demonstrations the paper has LGA .096 (error bar .047), Human .135 (.045) and GCBC-SEG .046 (.012).
+TEST(Summary, CountsThePointsThatLieNearThePapers) {
+  FabricatedRun run;
+  run.add({"lga", 3, "heart", 10});
+  run.add({"human", 20, "heart", 10});
+  EXPECT_EQ(summary_of(run).at("near_paper"), Json::array()) << "gcbc_seg is missing";
+  run.add({"gcbc_seg", 1, "heart", 10});
+  const Json near = summary_of(run).at("near_paper").at(0);
+  EXPECT_EQ(near.at("points"), 3);
+  EXPECT_EQ(near.at("near"), 2);
+  EXPECT_NEAR(near.at("mean_distance"), (.054 + .865 + .004) / 3, 1e-3);
 }
 
 TEST(Report, TwiceGivesTheSameBytes) {
@@ -280,7 +322,7 @@ TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
     if (d.at("below") == "gcbc_dart") {
       char text[64];
       std::snprintf(text, sizeof text, "%+.2f [%+.2f, %+.2f]", d.at("difference").get<double>(),
-                    d.at("low").get<double>(), d.at("high").get<double>());
+                    d.at("these_scenarios").at("low").get<double>(), d.at("these_scenarios").at("high").get<double>());
       known.insert(text);
     }
   EXPECT_EQ(numbers(read_file(run.path / "report.md")), known);
@@ -304,7 +346,7 @@ TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
 
   report::write_report(run.path);
   const std::string page = read_file(run.path / "report.md");
-  EXPECT_SAYS(page, "| *LGA, the paper* | *0.293* |");
+  EXPECT_SAYS(page, "| *LGA, the paper* | *0.293 ± 0.078* |");
   EXPECT_SAYS(page,
               "| heart | Bring me the heart. | LGA | target | a language model's recorded answers | gpt-4 | 1.00 | "
               "0.75 | 3 of 4 |");
@@ -325,14 +367,14 @@ TEST(Report, CsvHoldsTheRows) {
   summary_of(run);
   const std::string csv = read_file(run.path / "summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,"
+            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,scenes,episodes,successes,"
             "success,low,high,"
             "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,abstraction,"
             "policy,missed_"
             "object,wrong_object,"
             "bad_placement,bad_angle,missed_zone,touched_obstacle,"
             "left_workspace,truncated,abstraction_empty,method_error");
-  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,15,0.75,0.53");
+  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,20,15,0.75,0.53");
   EXPECT_SAYS(csv, ",,,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
 }
 

@@ -39,7 +39,7 @@ void write(const Arguments& a) {
 
 // A line a demonstration: its steps, the objects of its first picture, and where its first action goes.
 void inspect(const std::string& file) {
-  const auto demonstrations = read_demonstrations(read_file(file), file.string());
+  const auto demonstrations = read_demonstrations(read_file(file), file);
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
     const auto& [instruction, steps] = demonstrations[i];
     std::vector<std::string> objects;

@@ -19,6 +19,8 @@ void print(const PluginInfo& plugin) {
   to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
   to_stdout("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
             plugin.sha256, plugin.fingerprint);
+  if (!plugin.asks.empty())
+    to_stdout("  asks        {}\n", plugin.asks == "truth" ? "for the truth: a diagnosis" : "people to " + plugin.asks);
   if (plugin.options.empty()) return;
   to_stdout("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {

@@ -186,7 +186,7 @@ void add_run(CLI::App& app, int& exit) {
   list("--engines", a->engines, "Engines, by plugin id");
   list("--scenarios", a->scenarios, "Scenarios");
   list("--layout", a->layouts, "cells, continuous or released; several with commas");
-  list("--demos", a->demonstrations, "Numbers of demonstrations: 10,20");
+  list("--demos", a->demonstrations, "Numbers of demonstrations of each seen command: 10,20");
   list("--seeds", a->seeds, "Training seeds: 0,1,2 or 0:3");
   verb->add_option("--episodes", a->episodes, "Test scenes of each arm");
   verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));

@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  std::string asks;    // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
+  std::string asks{};  // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
 };
 
 /// Every member, under its name.
@@ -67,7 +67,7 @@ Json option_value(const std::string& word);
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values, and
 /// for one whose needs of other options are not met.
 Json resolve_options(const PluginInfo& plugin, const Json& overrides);
-/// Likewise of an object that need not be all that is given: its options one by one, each complaint with its place.
+/// Likewise of an object that need not be all that is given: its options one by one, without their needs.
 Json check_options(const PluginInfo& plugin, const JsonReader& given);
 
 }  // namespace lgabench

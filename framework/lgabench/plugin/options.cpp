@@ -50,21 +50,23 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
       given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));
     resolved[name] = std::move(value);
   }
+  return resolved;
+}
+
+Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
+  const JsonReader given(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id));
+  Json resolved = check_options(plugin, given);
   for (const auto& [name, option] : plugin.options.items()) {
     const Json& value = resolved[name];
     if (!option.contains("needs") || !value.is_string()) continue;
     const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
     for (const auto& [other, values] : needs.items())
       if (!contains(values, resolved[other]))
-        JsonReader(resolved, given.file(), given.place())
+        JsonReader(resolved, given.file())
             .at(other)
             .fail(fmt::format("one of {}, which {}={} needs", canonical(values), name, value.get<std::string>()));
   }
   return resolved;
-}
-
-Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
-  return check_options(plugin, JsonReader(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id)));
 }
 
 }  // namespace lgabench

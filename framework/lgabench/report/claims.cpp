@@ -3,188 +3,104 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
-#include <tuple>
 
-#include <lgabench/report/names.hpp>
-#include <lgabench/report/pairs.hpp>
+#include <lgabench/report/claims_field.hpp>
 
 namespace lgabench::report {
 namespace {
 
 constexpr double refuse_up_to = 0.05, margin = 0.10;
 
-// The cells of one (layout, engine), by row, demonstrations, then scenario and training seed.
-struct Field {
-  std::string layout, engine;
-  std::vector<std::string> arms;  // as the scenarios list them
-  std::set<int> demonstrations;   // of the methods
-  // By scenario and training seed, then participant ("" where nobody was asked).
-  using People = std::map<std::string, const CellResult*>;
-  using Policies = std::map<std::pair<std::string, long long>, People>;
-  std::map<std::string, std::map<int, Policies>> rows;
+// Both tests of a difference are judged in the same way, each on its own.
+constexpr std::array tests{&ClaimedDifference::these, &ClaimedDifference::alike};
+using Test = Tested ClaimedDifference::*;
 
-  const Policies* find(const std::string& row, int n) const {
-    const auto by_number = rows.find(row);
-    if (by_number == rows.end()) return nullptr;
-    const auto policies = by_number->second.find(n);
-    return policies == by_number->second.end() ? nullptr : &policies->second;
-  }
-};
-
-bool has_arm(const CellResult& cell, const std::string& arm) {
-  return std::find(cell.arms.begin(), cell.arms.end(), arm) != cell.arms.end();
-}
-
-// The policy that stands on the participant's answers, or the one that stands on nobody's; nullptr where it did not
-// finish.
-const CellResult* finished(const Field::People& people, const std::string& participant) {
-  auto it = people.find(participant);
-  if (it == people.end()) it = people.find("");
-  return it == people.end() || it->second->failed ? nullptr : it->second;
-}
-
-// Whose answers the one or the other of two rows stands on; "" alone where both stand on nobody's.
-std::set<std::string> participants(const Field::People& one, const Field::People& other) {
-  std::set<std::string> names;
-  for (const Field::People* people : {&one, &other})
-    for (const auto& item : *people) names.insert(item.first);
-  if (names.size() > 1) names.erase("");
-  return names;
-}
-
-// `above` against `below`, every policy of the one with its pair; not tested where one lacks its pair, since whoever
-// fails on hard scenarios would gain by it.
-ClaimedDifference measured(const Field& field, const std::string& claim, const std::string& above,
-                           const std::string& below, const std::string& arm, int n) {
-  ClaimedDifference d;
-  d.above = above, d.below = below, d.arm = arm, d.demonstrations = n;
-  const Field::Policies *high = field.find(above, n), *low = field.find(below, n);
-  for (const auto& [row, policies] : {std::pair(above, high), {below, low}})
-    if (!policies && d.reason.empty()) d.reason = fmt::format("no row {}", row);
-  if (!d.reason.empty()) return d;
-
-  Field::Policies all = *high;
-  all.insert(low->begin(), low->end());
-  PairedRow pairs;
-  int wanted = 0;
-  const auto people = [](const Field::Policies& row, const Field::Policies::key_type& which) {
-    const auto found = row.find(which);
-    return found == row.end() ? Field::People() : found->second;
-  };
-  for (const auto& item : all) {
-    if (!has_arm(*item.second.begin()->second, arm)) continue;
-    const Field::People a = people(*low, item.first), b = people(*high, item.first);
-    for (const std::string& participant : participants(a, b)) {
-      ++wanted;
-      const CellResult *first = finished(a, participant), *second = finished(b, participant);
-      if (first && second) pairs.add(item.first.first, pair_policies(*first, *second, arm), participant);
-    }
-  }
-  if (pairs.policies() < wanted || wanted == 0) {
-    d.reason = fmt::format("{} of {} policies finished in both rows", pairs.policies(), wanted);
-    return d;
-  }
-  d.scenarios = pairs.scenarios();
-  d.policies = pairs.policies();
-  d.participants = pairs.participants();
-  d.change =
-      pairs.change(fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, above, below, arm, n));
-  return d;
-}
-
-Verdict worst(const std::vector<ClaimedDifference>& differences) {
+Verdict worst(const std::vector<ClaimedDifference>& differences, Test test) {
   for (const Verdict verdict : {Verdict::reversed, Verdict::undecided, Verdict::not_tested})
-    if (std::any_of(differences.begin(), differences.end(), [&](const auto& d) { return d.verdict == verdict; }))
+    if (std::any_of(differences.begin(), differences.end(),
+                    [&](const auto& d) { return (d.*test).verdict == verdict; }))
       return verdict;
   return differences.empty() ? Verdict::not_tested : Verdict::held;
 }
 
 // The rows compared for one claim in one arm at one number of demonstrations: a family of tests.
 void judge_orderings(std::vector<ClaimedDifference>& family) {
-  std::vector<double> p;
-  for (const ClaimedDifference& d : family)
-    if (d.change) p.push_back(d.change->p);
-  const std::vector<double> adjusted = holm(p);
-  std::size_t tested = 0;
-  for (ClaimedDifference& d : family) {
-    if (!d.change) continue;
-    d.p_holm = adjusted[tested++];
-    const bool beyond_chance = d.p_holm <= refuse_up_to;
-    d.verdict = beyond_chance && d.change->interval.low > 0    ? Verdict::held
-                : beyond_chance && d.change->interval.high < 0 ? Verdict::reversed
-                                                               : Verdict::undecided;
+  for (const Test test : tests) {
+    std::vector<double> p;
+    for (const ClaimedDifference& d : family)
+      if ((d.*test).change) p.push_back((d.*test).change->p);
+    const std::vector<double> adjusted = holm(p);
+    std::size_t tested = 0;
+    for (ClaimedDifference& d : family) {
+      Tested& t = d.*test;
+      if (!t.change) continue;
+      t.p_holm = adjusted[tested++];
+      const bool beyond_chance = t.p_holm <= refuse_up_to;
+      t.verdict = beyond_chance && t.change->interval.low > 0    ? Verdict::held
+                  : beyond_chance && t.change->interval.high < 0 ? Verdict::reversed
+                                                                 : Verdict::undecided;
+    }
   }
 }
 
 // All must be equivalent, so none needs a correction for the others (intersection-union).
 void judge_equivalence(ClaimedDifference& d) {
-  if (!d.change) return;
-  const Interval& i = d.change->interval;
-  d.p_holm = d.change->p;
-  d.verdict = i.low > -margin && i.high < margin   ? Verdict::held
-              : i.low > margin || i.high < -margin ? Verdict::reversed
-                                                   : Verdict::undecided;
+  for (const Test test : tests) {
+    Tested& t = d.*test;
+    if (!t.change) continue;
+    const Interval& i = t.change->interval;
+    t.p_holm = t.change->p;
+    t.verdict = i.low > -margin && i.high < margin   ? Verdict::held
+                : i.low > margin || i.high < -margin ? Verdict::reversed
+                                                     : Verdict::undecided;
+  }
+}
+
+// Why none of the differences was tested.
+std::string reasons(const std::vector<ClaimedDifference>& differences, Test test) {
+  std::vector<std::string> all;
+  for (const ClaimedDifference& d : differences)
+    if (const std::string& reason = (d.*test).reason;
+        !reason.empty() && std::find(all.begin(), all.end(), reason) == all.end())
+      all.push_back(reason);
+  return all.empty() ? "no method's cell has been played" : fmt::format("{}", fmt::join(all, "; "));
 }
 
 void conclude(Claim& claim) {
-  claim.verdict = worst(claim.differences);
-  if (claim.verdict != Verdict::not_tested || !claim.reason.empty()) return;
-  std::vector<std::string> reasons;
-  for (const ClaimedDifference& d : claim.differences)
-    if (!d.reason.empty() && std::find(reasons.begin(), reasons.end(), d.reason) == reasons.end())
-      reasons.push_back(d.reason);
-  claim.reason = reasons.empty() ? "no method's cell has been played" : fmt::format("{}", fmt::join(reasons, "; "));
+  const bool refused = !claim.reason.empty();  // before any row was looked at
+  claim.verdict = worst(claim.differences, &ClaimedDifference::these);
+  claim.alike = worst(claim.differences, &ClaimedDifference::alike);
+  if (claim.verdict == Verdict::not_tested && !refused)
+    claim.reason = reasons(claim.differences, &ClaimedDifference::these);
+  if (claim.alike == Verdict::not_tested)
+    claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
 }
 
-using Baselines = std::function<std::vector<std::string>(const std::string& arm, int n)>;
-
 void test_orderings(Claim& claim, const Field& field, const std::vector<std::string>& arms,
-                    const std::vector<std::string>& above, const Baselines& baselines) {
+                    const std::vector<ClaimedMethod>& above, const std::vector<ClaimedMethod>& baselines) {
   for (const std::string& arm : arms)
     for (const int n : field.demonstrations) {
       std::vector<ClaimedDifference> family;
-      for (const std::string& row : above)
-        for (const std::string& baseline : baselines(arm, n))
-          family.push_back(measured(field, claim.id, row, baseline, arm, n));
+      for (const ClaimedMethod& method : above)
+        for (const ClaimedMethod& baseline : baselines)
+          family.push_back(measured(field, claim.id, method, baseline, arm, n));
       judge_orderings(family);
       claim.differences.insert(claim.differences.end(), family.begin(), family.end());
     }
-  conclude(claim);
-}
-
-// GCBC-DART, and of LGA-L's two rows the one that did better; both rows where one is missing, which then says so.
-std::vector<std::string> shifted_baselines(const Field& field, const std::string& arm, int n) {
-  const std::vector<std::string> rows{"lga_l", "lga_l+image=rgb"};
-  std::vector<double> success;
-  for (const std::string& row : rows)
-    if (const Field::Policies* policies = field.find(row, n)) {
-      PairedRow itself;
-      for (const auto& [which, people] : *policies)
-        for (const auto& [participant, cell] : people)
-          if (!cell->failed && has_arm(*cell, arm))
-            itself.add(which.first, pair_policies(*cell, *cell, arm), participant);
-      if (itself.policies() > 0) success.push_back(itself.first_success());
-    }
-  if (success.size() < rows.size()) return {"gcbc_dart", rows[0], rows[1]};
-  return {"gcbc_dart", success[1] > success[0] ? rows[1] : rows[0]};
 }
 
 // Arms that give only commands without demonstrations.
 std::vector<std::string> unseen_arms(const Field& field) {
+  std::set<std::string> seen;
+  for (const CellResult* cell : field.cells())
+    for (const auto& [arm, episodes] : cell->episodes)
+      for (const PlayedEpisode& e : episodes)
+        if (cell->commands[e.command].seen) seen.insert(arm);
   std::vector<std::string> unseen;
-  for (const std::string& arm : field.arms) {
-    bool seen = false;
-    for (const auto& [row, by_number] : field.rows)
-      for (const auto& [n, policies] : by_number)
-        for (const auto& [which, people] : policies)
-          for (const auto& [participant, cell] : people)
-            if (!cell->failed && has_arm(*cell, arm))
-              for (const PlayedEpisode& e : cell->episodes.at(arm)) seen = seen || cell->commands[e.command].seen;
-    if (!seen) unseen.push_back(arm);
-  }
+  for (const std::string& arm : field.arms)
+    if (seen.count(arm) == 0) unseen.push_back(arm);
   return unseen;
 }
 
@@ -207,27 +123,21 @@ void test_equivalence(Claim& claim, const Field& field) {
   constexpr int n = 50;
   if (people_selected(field, n))
     for (const std::string& arm : field.arms) {
-      claim.differences.push_back(measured(field, claim.id, "lga", "human", arm, n));
+      claim.differences.push_back(measured(field, claim.id, {"lga"}, {"human"}, arm, n));
       judge_equivalence(claim.differences.back());
     }
   if (claim.differences.empty()) claim.reason = "no human data at 50 demonstrations";
-  conclude(claim);
 }
 
 // Of each participant, the seconds that each command took; one command has one answer, however many cells it is in.
 using Seconds = std::map<std::string, std::map<std::pair<std::string, std::string>, double>>;
 Seconds seconds_of(const Field& field, const std::string& method) {
   Seconds seconds;
-  for (const auto& [row, by_number] : field.rows) {
-    if (row.substr(0, row.find('+')) != method) continue;  // what is learned from an answer takes the person no time
-    for (const auto& [n, policies] : by_number)
-      for (const auto& [which, people] : policies)
-        for (const auto& [participant, cell] : people)
-          if (!participant.empty() && !cell->failed)
-            for (const CommandResult& command : cell->commands)
-              seconds[participant][{which.first, command.utterance}] =
-                  command.selection.at("cost").at("human_seconds").get<double>();
-  }
+  for (const CellResult* cell : field.cells())  // whatever the options: what is learned takes the person no time
+    if (cell->id == method && !cell->participant.empty() && !cell->failed)
+      for (const CommandResult& command : cell->commands)
+        seconds[cell->participant][{cell->scenario, command.utterance}] =
+            command.selection.at("cost").at("human_seconds").get<double>();
   return seconds;
 }
 
@@ -257,13 +167,14 @@ void test_seconds(Claim& claim, const Field& field) {
     d.participants = static_cast<int>(differences.size());
     d.scenarios = static_cast<int>(scenarios.size());
     if (differences.size() < 2)
-      d.reason = fmt::format("{} participants answered a command in both ways, expected 2 or more", differences.size());
+      d.these.reason =
+          fmt::format("{} participants answered a command in both ways, expected 2 or more", differences.size());
     else
-      d.change = paired_t(differences);
+      d.these.change = paired_t(differences);
+    d.alike.reason = "people are the sample, not scenarios";
     claim.differences = {d};
     judge_orderings(claim.differences);
   }
-  conclude(claim);
 }
 
 // All but the first, which is what the others are compared with: nothing shifts there.
@@ -273,29 +184,36 @@ std::vector<std::string> shifted_arms(const Field& field) {
 
 std::vector<Claim> test_field(const std::string& suite, const Field& field) {
   const auto claim = [&field](const char* id, const char* statement) {
-    return Claim{id, statement, field.layout, field.engine, Verdict::not_tested, "", {}};
+    Claim c;
+    c.id = id, c.statement = statement, c.layout = field.layout, c.engine = field.engine;
+    return c;
   };
   Claim c1 = claim("C1", "LGA above GCBC-SEG and GCBC-DART, at every number of demonstrations"),
         c2 = claim("C2", "LGA within 0.10 of Human at 50 demonstrations"),
-        c3 = claim("C3",
-                   "LGA and LGA-S above GCBC-DART and the better LGA-L under covariate shift, in each shifted arm"),
-        c4 = claim("C4", "LGA and LGA-S above GCBC-DART and the better LGA-L on unseen commands"),
+        c3 = claim("C3", "LGA and LGA-S above GCBC-DART and LGA-L under covariate shift, in each shifted arm"),
+        c4 = claim("C4", "LGA and LGA-S, with instances=first, above GCBC-DART and LGA-L on unseen commands"),
         c5 = claim("C5", "LGA-HILL takes people fewer seconds than Human");
-  const Baselines shifted = [&field](const std::string& arm, int n) { return shifted_baselines(field, arm, n); };
+  const std::vector<ClaimedMethod> baselines{{"gcbc_dart"}, {"lga_l", {{"image", "rgb"}}}};
+  const std::map<std::string, std::string> first{{"instances", "first"}};
   const auto needs = [&suite](Claim& c, const char* wanted) {
     if (suite == wanted) return true;
     c.reason = fmt::format("needs a run of suite {}", wanted);
     return false;
   };
-  if (needs(c1, "q1"))
-    test_orderings(c1, field, field.arms, {"lga"}, [](const std::string&, int) {
-      return std::vector<std::string>{"gcbc_seg", "gcbc_dart"};
-    });
+  if (needs(c1, "q1")) test_orderings(c1, field, field.arms, {{"lga"}}, {{"gcbc_seg"}, {"gcbc_dart"}});
   if (needs(c2, "q1")) test_equivalence(c2, field);
-  if (needs(c3, "q2")) test_orderings(c3, field, shifted_arms(field), {"lga", "lga_s"}, shifted);
-  if (needs(c4, "q3")) test_orderings(c4, field, unseen_arms(field), {"lga", "lga_s"}, shifted);
+  if (needs(c3, "q2")) test_orderings(c3, field, shifted_arms(field), {{"lga"}, {"lga_s"}}, baselines);
+  if (needs(c4, "q3")) {
+    // A mask of all instances shows two objects where training never did: the claim could not hold for a reason.
+    if (find_row(field, {"lga", first}).empty() && find_row(field, {"lga_s", first}).empty())
+      c4.reason = "no row with instances=first";
+    else
+      test_orderings(c4, field, unseen_arms(field), {{"lga", first}, {"lga_s", first}}, baselines);
+  }
   test_seconds(c5, field);
-  return {c1, c2, c3, c4, c5};
+  std::vector<Claim> claims{c1, c2, c3, c4, c5};
+  for (Claim& c : claims) conclude(c);
+  return claims;
 }
 
 }  // namespace
@@ -307,16 +225,7 @@ std::string to_string(Verdict verdict) {
 
 std::vector<Claim> test_claims(const RunResults& run) {
   std::map<std::pair<std::string, std::string>, Field> fields;
-  for (const CellResult& cell : run.cells) {
-    Field& field = fields[{cell.layout, cell.engine}];
-    field.layout = cell.layout;
-    field.engine = cell.engine;
-    if (cell.is_reference()) continue;
-    for (const std::string& arm : cell.arms)
-      if (std::find(field.arms.begin(), field.arms.end(), arm) == field.arms.end()) field.arms.push_back(arm);
-    field.demonstrations.insert(cell.demonstrations);
-    field.rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}][cell.participant] = &cell;
-  }
+  for (const CellResult& cell : run.cells) fields[{cell.layout, cell.engine}].add(cell);
   std::vector<Claim> claims;
   for (const auto& item : fields)
     for (Claim& claim : test_field(run.suite, item.second)) claims.push_back(std::move(claim));

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/report/results.hpp>
@@ -14,40 +15,47 @@ enum class Verdict { held, reversed, undecided, not_tested };
 /// "not tested", for readers.
 std::string to_string(Verdict verdict);
 
+/// One test of a difference.
+struct Tested {
+  Verdict verdict = Verdict::not_tested;
+  std::string reason;            // why not tested; else empty
+  std::optional<Change> change;  // none where not tested
+  double p_holm = 1;             // over the rows compared for this claim in this arm at this number of demonstrations
+};
+
 /// Two rows on the mean over scenarios, paired by scenario, training seed, participant and scene; or the seconds that
 /// participants took for both.
 struct ClaimedDifference {
   std::string above, below, arm;  // rows; the change is above minus below; no arm for seconds
   std::string unit = "success";   // or "seconds", a participant
   int demonstrations = 0;
-  Verdict verdict = Verdict::not_tested;
-  std::string reason;            // why not tested; else empty
-  std::optional<Change> change;  // none where not tested
-  double p_holm = 1;             // over the rows compared for this claim in this arm at this number of demonstrations
-  int scenarios = 0, policies = 0, participants = 0;
+  Tested these;  // would other test scenes and training seeds of these scenarios say the same? (paired_change)
+  Tested alike;  // would other scenarios like these? (t on the scenarios' differences, from six on)
+  std::vector<std::pair<std::string, double>> by_scenario;  // its difference; empty for seconds
+  int scenarios = 0, scenes = 0, seeds = 0, policies = 0, participants = 0;
 };
 
 /// A claim on one (layout, engine).
 struct Claim {
   std::string id, statement, layout, engine;
-  Verdict verdict = Verdict::not_tested;
-  std::string reason;  // why not tested; else empty
+  Verdict verdict = Verdict::not_tested;  // on these scenarios: the claim's own
+  std::string reason;                     // why not tested; else empty
+  Verdict alike = Verdict::not_tested;    // on scenarios like these
+  std::string reason_alike;
   std::vector<ClaimedDifference> differences;
 };
 
-/// C1 to C5 for every (layout, engine) of the run. An ordering is held if the 95 % interval of the difference is above
-/// 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if the interval lies within the margin,
-/// reversed if outside; C5 is Student's paired t test over participants. A claim is what the worst of its differences
-/// is: reversed, undecided, not tested, held. Deterministic. @throws InputError where cells of the run did not play the
-/// same scenes.
+/// C1 to C5 for every (layout, engine) of the run. Both tests judge alike: an ordering is held if the 95 % interval of
+/// the difference is above 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if the interval
+/// lies within the margin, reversed if outside. C5 is Student's paired t test over participants. A claim is what the
+/// worst of its differences is: reversed, undecided, not tested, held. Deterministic. @throws InputError where cells of
+/// the run did not play the same scenes.
 std::vector<Claim> test_claims(const RunResults& run);
 
 /// claims.json (docs/formats), the terminal's table, and the section of report.md.
 Json to_json(const std::string& suite, const std::vector<Claim>& claims);
 std::string claims_text(const std::string& suite, const std::vector<Claim>& claims);
-/// "+0.90 [+0.80, +0.97]", "+100.1 s [+90.0, +110.2]". @pre it was tested
-std::string claimed_text(const ClaimedDifference& difference);
-/// "6 policies, 2 scenarios": what it stands on.
+/// "6 policies, 2 scenarios, 40 scenes", and "for this training seed" where there is one: what it is based on.
 std::string sample_text(const ClaimedDifference& difference);
 std::string claims_markdown(const std::vector<Claim>& claims);
 

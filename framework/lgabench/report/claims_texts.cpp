@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <lgabench/report/claims.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/pairs.hpp>
@@ -24,6 +27,43 @@ std::string with_reason(Verdict verdict, const std::string& reason) {
   return reason.empty() ? to_string(verdict) : fmt::format("{}: {}", to_string(verdict), reason);
 }
 
+// "+0.90 [+0.80, +0.97]", "+100.1 s [+90.0, +110.2]".
+std::string change_of(const ClaimedDifference& d, const Change& change) {
+  return d.unit == "seconds"
+             ? fmt::format("{:+.1f} s [{:+.1f}, {:+.1f}]", change.difference, change.interval.low, change.interval.high)
+             : change_text(change);
+}
+
+// What a test says, with its numbers or why it has none.
+std::string tested_text(const ClaimedDifference& d, const Tested& t) {
+  return t.change ? fmt::format("{}, {} (Holm)", change_of(d, *t.change), p_text(t.p_holm)) : t.reason;
+}
+
+// A place for each scenario between -1 and 1, the number of scenarios where several share one: "-1 [    |  2 1 ] +1".
+std::string dots(const std::vector<std::pair<std::string, double>>& by_scenario) {
+  constexpr int half = 20;
+  std::vector<int> places(2 * half + 1);
+  for (const auto& item : by_scenario) ++places[static_cast<std::size_t>(half + std::lround(item.second * half))];
+  std::string text = "-1 [";
+  for (std::size_t i = 0; i < places.size(); ++i)
+    text += places[i] > 9 ? "#" : places[i] > 0 ? std::to_string(places[i]) : i == half ? "|" : ".";
+  return text + "] +1";
+}
+
+std::string strip_text(const ClaimedDifference& d) {
+  const auto [least, most] = std::minmax_element(d.by_scenario.begin(), d.by_scenario.end(),
+                                                 [](const auto& a, const auto& b) { return a.second < b.second; });
+  return fmt::format("{}  {} {:+.2f}{}", dots(d.by_scenario), least->first, least->second,
+                     d.by_scenario.size() > 1 ? fmt::format(" to {} {:+.2f}", most->first, most->second) : "");
+}
+
+Json test_json(const Tested& t) {
+  const auto number = [&t](double value) { return t.change ? Json(value) : Json(nullptr); };
+  const Change change = t.change.value_or(Change());
+  return {{"verdict", to_string(t.verdict)},      {"reason", t.reason},    {"low", number(change.interval.low)},
+          {"high", number(change.interval.high)}, {"p", number(change.p)}, {"p_holm", number(t.p_holm)}};
+}
+
 }  // namespace
 
 std::string sample_text(const ClaimedDifference& d) {
@@ -31,13 +71,8 @@ std::string sample_text(const ClaimedDifference& d) {
   if (d.participants > 0) parts.push_back(counted(d.participants, "participant", "participants"));
   if (d.policies > 0) parts.push_back(counted(d.policies, "policy", "policies"));
   parts.push_back(counted(d.scenarios, "scenario", "scenarios"));
-  return fmt::format("{}", fmt::join(parts, ", "));
-}
-
-std::string claimed_text(const ClaimedDifference& d) {
-  return d.unit == "seconds" ? fmt::format("{:+.1f} s [{:+.1f}, {:+.1f}]", d.change->difference, d.change->interval.low,
-                                           d.change->interval.high)
-                             : change_text(*d.change);
+  if (d.scenes > 0) parts.push_back(counted(d.scenes, "scene", "scenes"));
+  return fmt::format("{}{}", fmt::join(parts, ", "), d.seeds == 1 ? ", for this training seed" : "");
 }
 
 Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
@@ -45,21 +80,21 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
   for (const Claim& claim : claims) {
     Json differences = Json::array();
     for (const ClaimedDifference& d : claim.differences) {
-      const auto number = [&d](double value) { return d.change ? Json(value) : Json(nullptr); };
-      const Change change = d.change.value_or(Change());
+      Json by_scenario = Json::array();
+      for (const auto& [scenario, difference] : d.by_scenario)
+        by_scenario.push_back({{"scenario", scenario}, {"difference", difference}});
       differences.push_back({{"above", d.above},
                              {"below", d.below},
                              {"arm", d.arm},
                              {"unit", d.unit},
                              {"demonstrations", d.demonstrations},
-                             {"verdict", to_string(d.verdict)},
-                             {"reason", d.reason},
-                             {"difference", number(change.difference)},
-                             {"low", number(change.interval.low)},
-                             {"high", number(change.interval.high)},
-                             {"p", number(change.p)},
-                             {"p_holm", number(d.p_holm)},
+                             {"difference", d.these.change ? Json(d.these.change->difference) : Json()},
+                             {"these_scenarios", test_json(d.these)},
+                             {"scenarios_like_these", test_json(d.alike)},
+                             {"by_scenario", by_scenario},
                              {"scenarios", d.scenarios},
+                             {"scenes", d.scenes},
+                             {"seeds", d.seeds},
                              {"policies", d.policies},
                              {"participants", d.participants}});
     }
@@ -69,6 +104,7 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
                    {"engine", claim.engine},
                    {"verdict", to_string(claim.verdict)},
                    {"reason", claim.reason},
+                   {"scenarios_like_these", {{"verdict", to_string(claim.alike)}, {"reason", claim.reason_alike}}},
                    {"differences", differences}});
   }
   return {{"suite", suite}, {"claims", all}};
@@ -81,40 +117,26 @@ std::string claims_text(const std::string& suite, const std::vector<Claim>& clai
         fmt::format("{}, layout {}, engine {}: the paper's claims\n\n", suite, claim.layout, claim.engine);
     if (here != field) text += (text.empty() ? "" : "\n") + here;
     field = here;
-    text += fmt::format("{}  {}\n      {}\n", claim.id, claim.statement, with_reason(claim.verdict, claim.reason));
+    text += fmt::format("{}  {}\n      these scenarios: {}\n", claim.id, claim.statement,
+                        with_reason(claim.verdict, claim.reason));
+    if (!claim.differences.empty())
+      text += fmt::format("      scenarios like these: {}\n", with_reason(claim.alike, claim.reason_alike));
     for (const ClaimedDifference& d : claim.differences) {
-      text += fmt::format("      {:<10}  {:<6} {:<10} {}", to_string(d.verdict), demonstrations_text(d, "n="), d.arm,
-                          rows_text(d));
-      text += d.change ? fmt::format("  {}  {} (Holm)  {}\n", claimed_text(d), p_text(d.p_holm), sample_text(d))
-                       : fmt::format("  {}\n", d.reason);
+      text += fmt::format("      {:<10}  {:<6} {:<10} {}  {}", to_string(d.these.verdict), demonstrations_text(d, "n="),
+                          d.arm, rows_text(d), tested_text(d, d.these));
+      if (!d.these.change) {
+        text += '\n';
+        continue;
+      }
+      text += fmt::format("  {}\n", sample_text(d));
+      if (d.unit == "seconds") continue;
+      text += fmt::format(
+          "        scenarios like these: {}\n        by scenario: {}\n",
+          d.alike.change ? fmt::format("{}  {}", to_string(d.alike.verdict), tested_text(d, d.alike)) : d.alike.reason,
+          strip_text(d));
     }
   }
   return text;
-}
-
-std::string claims_markdown(const std::vector<Claim>& claims) {
-  std::string text =
-      "\n## The paper's claims\n\n"
-      "| claim | | layout | engine | verdict |\n| --- | --- | --- | --- | --- |\n";
-  std::string details;
-  for (const Claim& claim : claims) {
-    text += fmt::format("| {} | {} | {} | {} | **{}**{} |\n", claim.id, claim.statement, plain(claim.layout),
-                        plain(claim.engine), to_string(claim.verdict),
-                        claim.reason.empty() ? "" : ": " + plain(claim.reason));
-    for (const ClaimedDifference& d : claim.differences)
-      if (d.change)
-        details += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", claim.id, plain(claim.layout),
-                               plain(claim.engine), plain(d.arm), demonstrations_text(d, ""), plain(rows_text(d)),
-                               claimed_text(d), p_text(d.p_holm), sample_text(d), to_string(d.verdict));
-  }
-  if (details.empty()) return text;
-  return text +
-         "\nEach difference, on the mean over scenarios, paired by training seed, participant and scene; p is Holm's "
-         "over the rows "
-         "compared in one arm at one number of demonstrations.\n\n"
-         "| claim | layout | engine | arm | demonstrations | difference | | | from | verdict |\n"
-         "| --- | --- | --- | --- | ---: | --- | --- | --- | --- | --- |\n" +
-         details;
 }
 
 }  // namespace lgabench::report

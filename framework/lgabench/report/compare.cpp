@@ -20,8 +20,8 @@ struct CellPair {
 };
 
 auto measures(const CellResult& c) {
-  return std::tuple(c.layout, c.engine, c.scenario, c.id, canonical(meaning_of(c.options)), c.demonstrations,
-                    c.training_seed, c.participant);
+  return std::tuple(c.layout, c.engine, c.scenario, c.id, canonical(meaning_of(c.options)),
+                    c.demonstrations * c.demonstrated_commands, c.training_seed, c.participant);
 }
 
 // Cells that finished in both runs; the others are counted.

@@ -131,12 +131,13 @@ std::string curves_script(const std::string& suite, const Table& table, const st
     for (const int n : columns) {
       if (const Row* row = table.find(arm, mean_scenario, methods[i], n); row && row->success)
         ours += fmt::format("{:.6g} {} {} {}\n", n + shift, *row->success, row->interval.low, row->interval.high);
-      if (const auto rate = paper.find(mean_scenario, name, n)) theirs += fmt::format("{} {}\n", n, *rate);
+      if (const auto rate = paper.find(mean_scenario, name, n))
+        theirs += fmt::format("{} {} {}\n", n, *rate, paper.error(mean_scenario, name, n).value_or(0));
     }
     script.add(ours, fmt::format("with yerrorlines lw 2 pt {} ps 0.9 lc rgb '{}' title {}", 5 + i % 5 * 2, color,
                                  quoted(name)));
-    script.add(theirs,
-               fmt::format("with lines lw 1.6 dt (6,4) lc rgb '{}' title {}", color, quoted(name + ", the paper")));
+    script.add(theirs, fmt::format("with yerrorlines lw 1.6 dt (6,4) pt 0 lc rgb '{}' title {}", color,
+                                   quoted(name + ", the paper")));
   }
   for (const std::string& id : table.references(mean_scenario)) {
     std::string levels;

@@ -16,8 +16,9 @@ struct Figure {
 };
 
 /// Draws the mean over scenarios with whiskers for the 95 % intervals. Several numbers of demonstrations: a figure an
-/// arm, of curves, the paper's dashed. One number: a single figure, bars grouped by arm. Reference rows are thin lines.
-/// Byte-stable for one version of gnuplot. A gnuplot that is missing or fails is the Figure's problem, not an error.
+/// arm, of curves, the paper's dashed, with its error bars. One number: a single figure, bars grouped by arm. Reference
+/// rows are thin lines. Byte-stable for one version of gnuplot. A gnuplot that is missing or fails is the Figure's
+/// problem, not an error.
 /// @throws InputError if a file cannot be written.
 std::vector<Figure> draw_figures(const fs::path& run, const std::string& suite, const Table& table,
                                  const PaperValues& paper);

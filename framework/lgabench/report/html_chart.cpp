@@ -85,10 +85,15 @@ std::string curve(const Table& table, const std::vector<Place>& along, const std
   const std::string name = escaped(display_name(id));
   for (const Place& place : along) {
     if (const auto rate = paper.find(scenario, display_name(id), place.demonstrations); rate && joined) {
+      const auto error = paper.error(scenario, display_name(id), place.demonstrations);
       theirs += fmt::format("{}{:.1f} {:.1f}", theirs.empty() ? "M" : "L", place.x, y_of(*rate));
       points += fmt::format(
-          "<g class=\"point theirs\" tabindex=0 role=img aria-label=\"{}, the paper’s, at {}: {:.3f}\">{}</g>", name,
-          escaped(place.label), *rate, mark(index, place.x, y_of(*rate), "class=\"hollow\""));
+          "<g class=\"point theirs\" tabindex=0 role=img aria-label=\"{}, the paper’s, at {}: {:.3f}{}\">{}{}</g>",
+          name, escaped(place.label), *rate, error ? fmt::format(" ± {:.3f}", *error) : "",
+          error ? fmt::format("<path class=\"whisker theirs\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", place.x,
+                              y_of(*rate - *error), y_of(*rate + *error))
+                : "",
+          mark(index, place.x, y_of(*rate), "class=\"hollow\""));
     }
     const Row* row = table.find(place.arm, scenario, id, place.demonstrations);
     if (!row || !row->success) continue;
@@ -151,7 +156,10 @@ std::string legend(const Table& table, const PaperValues& paper) {
   if (curves && paper.rates.count(mean_scenario) != 0)
     add("<g style=\"--c:currentColor\"><path class=\"line theirs\" d=\"M1 8H33\"/>" +
             mark(0, 17, 8, "class=\"hollow\"") + "</g>",
-        "hollow, dashed: the paper’s, over its own scenarios");
+        "hollow, dashed: the paper’s with its error bars, over its own scenarios");
+  for (const Mark& sign : table_marks)
+    if (std::any_of(table.rows.begin(), table.rows.end(), [&sign](const Row& row) { return row.marked(sign.word); }))
+      text += fmt::format("<li><b>{}</b> {}</li>", sign.sign, sign.meaning);
   return text + "</ul>";
 }
 

@@ -152,15 +152,15 @@ std::string attribution(const Summary& summary, const RowNumbers& numbers) {
                                          "share of failures",
                                          "<span class=\"swatch abstraction\"></span>abstraction",
                                          "<span class=\"swatch policy\"></span>policy"};
-    text += table(fmt::format("Failures laid to abstraction or policy, {}", escaped(table_.title())), heads, mean) +
-            "<details><summary>Each scenario</summary>" +
-            table(fmt::format("Each scenario’s failures, {}", escaped(table_.title())), heads, each, true) +
-            "</details>";
+    text +=
+        table(fmt::format("Failures attributed to abstraction or policy, {}", escaped(table_.title())), heads, mean) +
+        "<details><summary>Each scenario</summary>" +
+        table(fmt::format("Each scenario’s failures, {}", escaped(table_.title())), heads, each, true) + "</details>";
   }
   if (text.empty()) return "";
   return section(
       "attribution", "Abstraction or policy",
-      "<p class=hint>A failure is laid to the abstraction where the same policy wins the same scene with the "
+      "<p class=hint>A failure is attributed to the abstraction where the same policy wins the same scene with the "
       "true mask; else to the policy. Methods that select nothing are not listed.</p>" +
           text);
 }

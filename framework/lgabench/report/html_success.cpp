@@ -17,8 +17,7 @@ std::string signed_text(double x) {
 // One number of success with its interval, its marks and its change against the first arm. A click shows its episodes.
 std::string success_cell(const Row* row, const RowNumbers& numbers) {
   if (!row) return "";
-  const std::string marks =
-      fmt::format("{}{}", row->marked("baseline_not_learned") ? "†" : "", row->marked("incomplete") ? "‡" : "");
+  const std::string marks = marks_text(*row);
   if (!row->success) return "–" + marks;
   const auto value = [&](const char* member, double x) {
     return numbers.value(*row, member, fmt::format("{:.2f}", x));
@@ -40,8 +39,10 @@ std::string success_cell(const Row* row, const RowNumbers& numbers) {
                             change("shift/low", shift.interval.low), change("shift/high", shift.interval.high));
 }
 
-std::string paper_cell(const std::optional<double>& rate) {
-  return rate ? fmt::format("<i class=paper>{:.3f}</i>", *rate) : "";
+std::string paper_cell(const PaperValues& paper, const std::string& scenario, const std::string& method, int n) {
+  const auto rate = paper.find(scenario, method, n), error = paper.error(scenario, method, n);
+  if (!rate) return "";
+  return fmt::format("<i class=paper>{:.3f}{}</i>", *rate, error ? fmt::format(" ± {:.3f}", *error) : "");
 }
 
 // Columns for every method of `scenarios`.
@@ -66,7 +67,7 @@ std::string rates(const std::string& caption, const Table& table_, const std::ve
       if (!mean_alone) cells.insert(cells.begin(), escaped(scenario));
       for (const Column& c : columns)
         cells.push_back(success_cell(table_.find(c.arm, scenario, id, c.demonstrations), numbers));
-      if (beside) cells.push_back(paper_cell(paper.find(scenario, display_name(id), columns.front().demonstrations)));
+      if (beside) cells.push_back(paper_cell(paper, scenario, display_name(id), columns.front().demonstrations));
       body += row_of(cells, mean_alone ? 1 : 2);
     };
     const std::vector<std::string> methods = table_.methods(scenario);
@@ -77,9 +78,8 @@ std::string rates(const std::string& caption, const Table& table_, const std::ve
       std::vector<std::string> cells{
           fmt::format("<i class=theirs>{}, the paper</i>", escaped(display_name(methods[i])))};
       for (const Column& c : columns) {
-        const auto rate = paper.find(scenario, display_name(methods[i]), c.demonstrations);
-        published = published || rate;
-        cells.push_back(paper_cell(rate));
+        cells.push_back(paper_cell(paper, scenario, display_name(methods[i]), c.demonstrations));
+        published = published || !cells.back().empty();
       }
       if (published) body += row_of(cells);
     }
@@ -98,7 +98,7 @@ std::string of_paper(const PaperValues& paper, bool section_of_means) {
   return fmt::format(
       "<p class=hint>The paper’s values, <i class=paper>in italics</i>, are those of its figure {}, {}.</p>",
       escaped(paper.figure),
-      section_of_means ? "on the mean over its own scenarios, not only those of this run"
+      section_of_means ? "± its error bars, on the mean over its own scenarios, not only those of this run"
                        : "at 50 demonstrations, a scenario’s arms pooled; its scenes are not public");
 }
 
@@ -117,8 +117,8 @@ std::string success(const Summary& summary, const PaperValues& paper, const RowN
     text += "</div>";
     for (const View& view : views(table)) {
       if (table.arms.size() > 1) break;  // the next section's
-      text += rates(fmt::format("Success [95 % interval], {}, {}; columns: {}", table.title(mean_scenario),
-                                escaped(table.title()), corner(view, table)),
+      text += rates(fmt::format("Success [95 % interval over test scenes and training seeds], {}, {}; columns: {}",
+                                table.title(mean_scenario), escaped(table.title()), corner(view, table)),
                     table, view.columns, {mean_scenario}, paper, numbers);
     }
     text += "</div>";
@@ -131,12 +131,12 @@ std::string arms(const Summary& summary, const PaperValues& paper, const RowNumb
   for (const Table& table : summary.tables) {
     if (table.arms.size() == 1) continue;
     for (const View& view : views(table))
-      text +=
-          rates(fmt::format("Success [95 % interval], {}, and below it the change against {} where it is paired, {}; "
-                            "columns: {}",
-                            table.title(mean_scenario), escaped(table.arms.front()), escaped(table.title()),
-                            corner(view, table)),
-                table, view.columns, {mean_scenario}, paper, numbers);
+      text += rates(fmt::format("Success [95 % interval over test scenes and training seeds], {}, and below it the "
+                                "change against {} where it is paired, {}; "
+                                "columns: {}",
+                                table.title(mean_scenario), escaped(table.arms.front()), escaped(table.title()),
+                                corner(view, table)),
+                    table, view.columns, {mean_scenario}, paper, numbers);
   }
   return text.empty() ? "" : section("arms", "Arms side by side", text);
 }

@@ -63,16 +63,19 @@ std::string what_was_run(const RunResults& run) {
   return text + "\n" + head_of({"scenario", "command"}, 2) + fmt::format("{}", fmt::join(commands, ""));
 }
 
-std::string paper_text(const std::optional<double>& rate, int digits) {
-  return rate ? fmt::format("*{:.{}f}*", *rate, digits) : "";
+// "*0.293 ± 0.078*", with its error bar where the figure has one.
+std::string paper_text(const PaperValues& paper, const std::string& scenario, const std::string& id, int n,
+                       int digits) {
+  const auto rate = paper.find(scenario, display_name(id), n), error = paper.error(scenario, display_name(id), n);
+  if (!rate) return "";
+  return fmt::format("*{:.{}f}{}*", *rate, digits, error ? fmt::format(" ± {:.{}f}", *error, digits) : "");
 }
 
 // The method's values at the columns' numbers of demonstrations.
 std::vector<std::string> paper_texts(const PaperValues& paper, const std::string& scenario, const std::string& id,
                                      const std::vector<Column>& columns) {
   std::vector<std::string> texts;
-  for (const Column& c : columns)
-    texts.push_back(paper_text(paper.find(scenario, display_name(id), c.demonstrations), 3));
+  for (const Column& c : columns) texts.push_back(paper_text(paper, scenario, id, c.demonstrations, 3));
   return texts;
 }
 
@@ -82,7 +85,7 @@ std::string table_of(const Table& table, const std::vector<Column>& columns, std
   // Beside several arms the paper's value, pooled over its own, has a column; else its curve a row.
   const bool arms = table.arms.size() > 1;
   const auto pooled = [&](const std::string& scenario, const std::string& id) {
-    return paper_text(paper.find(scenario, display_name(id), columns.front().demonstrations), 2);
+    return paper_text(paper, scenario, id, columns.front().demonstrations, 2);
   };
   bool beside = false;
   for (const std::string& scenario : scenarios)
@@ -127,8 +130,9 @@ std::string success(const Summary& summary, const PaperValues& paper, const std:
     const std::vector<View> all = views(table);
     for (const View& view : all) {
       const char* gap = &view == &all.front() ? "" : "\n";
-      text += table.arms.size() > 1 ? fmt::format("{}### {}\n\nColumns: arms of the test.\n\n", gap, view.corner)
-                                    : "Columns: number of demonstrations.\n\n";
+      text += table.arms.size() > 1 ? fmt::format("{}### {}\n\nColumns: arms of the test. ", gap, view.corner)
+                                    : "Columns: number of demonstrations. ";
+      text += "Brackets: 95 % interval over test scenes and training seeds of these scenarios.\n\n";
       text += table_of(table, view.columns, success_text, {mean_scenario}, paper);
       text += "\nEach scenario:\n\n" + table_of(table, view.columns, success_text, each, paper);
       if (!view.shifted.empty())
@@ -248,7 +252,8 @@ std::string attribution(const Summary& summary) {
       text += row_of(cells);
     }
   if (text.empty()) return "";
-  return "\n## What failures are laid to\n\nThe abstraction, where the same policy wins the same scene with the true "
+  return "\n## What failures are attributed to\n\nThe abstraction, where the same policy wins the same scene with the "
+         "true "
          "mask; else the policy. Episodes over all scenarios, of methods that select.\n\n" +
          head_of({"table", "arm", "method", "demonstrations", "abstraction", "policy"}, 3) + text;
 }
@@ -269,12 +274,14 @@ std::string failed_cells(const Summary& summary) {
 constexpr const char* how_to_read =
     "\n## How to read the numbers\n\n"
     "- Success is the mean over scenarios of the mean over training seeds of the share of test episodes won.\n"
-    "- Brackets hold a 95 % interval: Wilson's where the number stands on one policy; otherwise a percentile interval "
-    "from a cluster bootstrap over scenarios, then training seeds (participants, where there are several; 10,000 "
-    "times), nowhere narrower than Wilson's on all episodes. With few seeds or scenarios it is rough.\n"
+    "- Brackets hold a 95 % interval: Wilson's where the number is one policy's in one scenario; otherwise a "
+    "percentile "
+    "interval of 2,000 resamples. The scenarios are taken as they are; in each, test scenes and training seeds "
+    "(participants, where there are several) are drawn again, crossed where the seeds share their scenes, else scenes "
+    "within seeds, and with them two imagined scenes, one won and one lost. Three seeds on the same 20 scenes count as "
+    "20 scenes. What other scenarios would do is not in it; claims test that apart.\n"
     "- A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired scene by "
-    "scene. Its interval is the cluster bootstrap's, nowhere narrower than Bonett and Price's for paired proportions "
-    "on all episodes.\n"
+    "scene. Its interval is found in the same way (one policy: Bonett and Price's for paired proportions).\n"
     "- A test input was seen in training where all that the policy is given, pictures and text, is there to the byte: "
     "a "
     "high share measures what was learned by heart. – where a policy does not tell.\n"
@@ -294,7 +301,7 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
   if (!paper.rates.empty())
     text += fmt::format("\nThe paper's values, in italics, are those of its figure {}, {}.\n", paper.figure,
                         paper.rates.count(mean_scenario)
-                            ? "on the mean over its own scenarios, not only those of this run"
+                            ? "± its error bars, on the mean over its own scenarios, not only those of this run"
                             : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public");
   return text + claims_markdown(claims) + phi(run, summary) + failures(summary) + attribution(summary) +
          agreement_markdown(agreements) + times(run) + failed_cells(summary) + how_to_read;

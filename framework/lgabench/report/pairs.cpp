@@ -30,17 +30,21 @@ PolicyPair pair_policies(const CellResult& first, const CellResult& second, cons
     pair.only_first += a[i].success && !b[i].success ? 1 : 0;
     pair.only_second += b[i].success && !a[i].success ? 1 : 0;
     pair.same_actions = pair.same_actions && a[i].action == b[i].action;
+    pair.scenes.push_back(a[i].scene);
+    pair.first.push_back(a[i].success ? 1 : 0);
+    pair.second.push_back(b[i].success ? 1 : 0);
   }
   return pair;
 }
 
 void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const std::string& participant) {
-  const std::size_t at = index_.emplace(scenario, differences_.size()).first->second;
-  for (auto* values : {&first_, &second_, &differences_})
-    if (at == values->size()) values->emplace_back();
-  first_[at].add(participant, static_cast<double>(pair.won_first) / pair.episodes);
-  second_[at].add(participant, static_cast<double>(pair.won_second) / pair.episodes);
-  differences_[at].add(participant, pair.difference());
+  auto row = std::find_if(rows_.begin(), rows_.end(), [&scenario](const Scenario& r) { return r.name == scenario; });
+  if (row == rows_.end()) row = rows_.insert(rows_.end(), Scenario{scenario, {}, {}, {}});
+  row->first.add(participant, pair.scenes, pair.first);
+  row->second.add(participant, pair.scenes, pair.second);
+  std::vector<double> differences = pair.second;
+  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= pair.first[i];
+  row->differences.add(participant, pair.scenes, std::move(differences));
   if (!participant.empty()) participants_.insert(participant);
   ++policies_;
   total_.episodes += pair.episodes;
@@ -51,17 +55,16 @@ void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const s
   total_.same_actions = total_.same_actions && pair.same_actions;
 }
 
-std::vector<Cluster> PairedRow::clusters(const std::vector<PolicyValues>& scenarios) {
-  std::vector<Cluster> all;
-  for (const PolicyValues& values : scenarios) all.push_back(values.cluster());
+Samples PairedRow::samples(Outcomes Scenario::*which) const {
+  Samples all;
+  for (const Scenario& row : rows_) all.push_back((row.*which).sample());
   return all;
 }
 
-Change PairedRow::change(const std::string& name) const {
-  const int n = std::max(participants(), 1);
-  const auto each = [n](int count) { return (count + n - 1) / n; };
-  return paired_change(clusters(differences_), each(total_.only_first), each(total_.only_second), each(total_.episodes),
-                       name);
+std::vector<std::pair<std::string, double>> PairedRow::by_scenario() const {
+  std::vector<std::pair<std::string, double>> all;
+  for (const Scenario& row : rows_) all.emplace_back(row.name, row.differences.sample().mean());
+  return all;
 }
 
 std::string change_text(const Change& change) {

@@ -1,12 +1,12 @@
 // Policies that played the same scenes, paired episode by episode.
 #pragma once
-#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/results.hpp>
-#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::report {
 
@@ -15,8 +15,9 @@ struct PolicyPair {
   int episodes = 0, won_first = 0, won_second = 0;
   int only_first = 0, only_second = 0;  // scenes that one alone won
   bool same_actions = true;             // in every scene the same, bit for bit
-
-  double difference() const { return static_cast<double>(only_second - only_first) / episodes; }
+  // Of each episode its scene's hash, and who won it, 1 or 0.
+  std::vector<std::string> scenes;
+  std::vector<double> first, second;
 };
 
 /// Why the two did not play the same scenes with the same commands in the arm, in one line; empty if they did. @pre
@@ -32,22 +33,28 @@ class PairedRow {
  public:
   void add(const std::string& scenario, const PolicyPair& pair, const std::string& participant = "");
 
-  const PolicyPair& total() const { return total_; }  // of all pairs
-  int scenarios() const { return static_cast<int>(differences_.size()); }
+  const PolicyPair& total() const { return total_; }  // counts over all pairs
+  int scenarios() const { return static_cast<int>(rows_.size()); }
   int policies() const { return policies_; }
   int participants() const { return static_cast<int>(participants_.size()); }
-  /// Mean over scenarios of the mean over training seeds (participants) of the policies' success.
-  double first_success() const { return cluster_mean(clusters(first_)); }
-  double second_success() const { return cluster_mean(clusters(second_)); }
-  /// paired_change of second minus first, with the episodes of one participant on the mean, as the other row's policy
-  /// may be the same in all their pairs; `name` seeds its random stream. @pre not empty
-  Change change(const std::string& name) const;
+  int scenes() const { return distinct_scenes(samples(&Scenario::differences)); }
+  /// Mean over scenarios of the mean over training seeds (participants) of the policies' success. @pre not empty
+  double first_success() const { return mean_outcome(samples(&Scenario::first)); }
+  double second_success() const { return mean_outcome(samples(&Scenario::second)); }
+  /// Second minus first in each scenario, in the order in which the scenarios were added.
+  std::vector<std::pair<std::string, double>> by_scenario() const;
+  /// paired_change of second minus first: these scenarios, other scenes and seeds. `name` seeds its random stream.
+  /// @pre not empty
+  Change change(const std::string& name) const { return paired_change(samples(&Scenario::differences), name); }
 
  private:
-  static std::vector<Cluster> clusters(const std::vector<PolicyValues>& scenarios);
+  struct Scenario {
+    std::string name;
+    Outcomes first, second, differences;
+  };
+  Samples samples(Outcomes Scenario::*which) const;
 
-  std::map<std::string, std::size_t> index_;  // of each scenario in what follows
-  std::vector<PolicyValues> first_, second_, differences_;
+  std::vector<Scenario> rows_;
   std::set<std::string> participants_;
   int policies_ = 0;
   PolicyPair total_;

@@ -55,8 +55,8 @@ std::string plain_text(const RunResults& run, const Summary& summary) {
   if (!text.empty()) text += '\n';
   for (const Table& table : summary.tables)
     for (const View& view : views(table)) {
-      text += fmt::format("{}, {}: success [95 % interval]\n\n{}\n", summary.suite, table.title(),
-                          block(table, view.corner, view.columns, success_text, table.scenarios()));
+      text += fmt::format("{}, {}: success [95 % interval over test scenes and training seeds]\n\n{}\n", summary.suite,
+                          table.title(), block(table, view.corner, view.columns, success_text, table.scenarios()));
       if (!view.shifted.empty())
         text += fmt::format("{}, {}: change against {} [95 % interval]\n\n{}\n", summary.suite, table.title(),
                             table.arms.front(), block(table, view.corner, view.shifted, shift_text, table.scenarios()));

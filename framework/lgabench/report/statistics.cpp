@@ -7,53 +7,13 @@
 #include <iterator>
 #include <numeric>
 
-#include <lgabench/core/random.hpp>
-
 namespace lgabench::report {
 namespace {
 
 constexpr double z = 1.959963984540054;  // standard normal quantile at .975
 
-constexpr std::size_t resamples = 10000;
-
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-bool one_policy(const std::vector<Cluster>& clusters) { return clusters.size() == 1 && clusters.front().size() == 1; }
-
-Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
-
-// cluster_mean of every resample, sorted.
-std::vector<double> resampled_means(const std::vector<Cluster>& clusters, std::string_view name) {
-  RandomStream random(name);
-  std::vector<double> means(resamples);
-  for (double& resampled : means) {
-    double sum = 0;
-    for (std::size_t i = 0; i < clusters.size(); ++i) {
-      const Cluster& rates = clusters[random.below(static_cast<std::uint32_t>(clusters.size()))];
-      const auto n = static_cast<std::uint32_t>(rates.size());
-      double within = 0;
-      for (std::uint32_t j = 0; j < n; ++j) within += rates[random.below(n)];
-      sum += within / n;
-    }
-    resampled = sum / static_cast<double>(clusters.size());
-  }
-  std::sort(means.begin(), means.end());
-  return means;
-}
-
-Interval percentile_interval(const std::vector<double>& sorted_means) {
-  constexpr std::size_t cut = resamples / 40;  // 2.5 % on either side
-  return {sorted_means[cut], sorted_means[resamples - 1 - cut]};
-}
-
-// Two-sided, that the mean is 0.
-double percentile_p(const std::vector<double>& sorted_means) {
-  constexpr double rounding = 1e-12;  // of a mean that is 0
-  const auto up_to_zero = std::upper_bound(sorted_means.begin(), sorted_means.end(), rounding) - sorted_means.begin();
-  const auto from_zero = sorted_means.end() - std::lower_bound(sorted_means.begin(), sorted_means.end(), -rounding);
-  return std::min(1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) / (resamples + 1));
 }
 
 // Of n ranks 1..n with random signs: the probability that the positive ones sum to `sum` at most.
@@ -91,39 +51,6 @@ Interval paired_difference(int only_first, int only_second, int episodes) {
   const double n = episodes + 2.0, first = (only_first + 1) / n, second = (only_second + 1) / n;
   const double centre = second - first, half = z * std::sqrt((first + second - centre * centre) / n);
   return {std::max(-1.0, centre - half), std::min(1.0, centre + half)};
-}
-
-Cluster PolicyValues::cluster() const {
-  if (values_.size() == 1) return values_.begin()->second;
-  Cluster means;
-  for (const auto& item : values_) means.push_back(mean(item.second));
-  return means;
-}
-
-double cluster_mean(const std::vector<Cluster>& clusters) {
-  double sum = 0;
-  for (const Cluster& rates : clusters) sum += mean(rates);
-  return sum / static_cast<double>(clusters.size());
-}
-
-Interval cluster_bootstrap(const std::vector<Cluster>& clusters, std::string_view name) {
-  return percentile_interval(resampled_means(clusters, name));
-}
-
-Interval success_interval(const std::vector<Cluster>& clusters, int episodes, std::string_view name) {
-  const Interval chance = wilson(cluster_mean(clusters) * episodes, episodes);
-  return one_policy(clusters) ? chance : hull(chance, cluster_bootstrap(clusters, name));
-}
-
-Change paired_change(const std::vector<Cluster>& differences, int only_first, int only_second, int episodes,
-                     std::string_view name) {
-  Change change{cluster_mean(differences), paired_difference(only_first, only_second, episodes),
-                mcnemar(only_first, only_second)};
-  if (one_policy(differences)) return change;
-  const std::vector<double> means = resampled_means(differences, name);
-  change.interval = hull(change.interval, percentile_interval(means));
-  change.p = std::max(change.p, percentile_p(means));
-  return change;
 }
 
 std::vector<double> holm(const std::vector<double>& p) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <tuple>
 
+#include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
@@ -15,12 +17,12 @@ namespace {
 struct Policy {
   std::string participant;
   int episodes = 0, successes = 0;
+  std::vector<std::string> scenes;  // of each episode
+  std::vector<double> won;          // 1 or 0
   // Beside the first arm, scene by scene:
-  bool paired = false;                // the arms give the same commands
-  int only_first = 0, only_here = 0;  // scenes won in one of the two alone
+  bool paired = false;             // the arms give the same commands
+  std::vector<double> difference;  // won here minus won there
   bool same_actions = false;
-  double rate() const { return static_cast<double>(successes) / episodes; }
-  double difference() const { return static_cast<double>(only_here - only_first) / episodes; }
 };
 
 using Episodes = std::vector<PlayedEpisode>;
@@ -28,7 +30,11 @@ using Episodes = std::vector<PlayedEpisode>;
 Policy played(const Episodes& episodes) {
   Policy policy;
   policy.episodes = static_cast<int>(episodes.size());
-  for (const PlayedEpisode& e : episodes) policy.successes += e.success ? 1 : 0;
+  for (const PlayedEpisode& e : episodes) {
+    policy.scenes.push_back(e.scene);
+    policy.won.push_back(e.success ? 1 : 0);
+    policy.successes += e.success ? 1 : 0;
+  }
   return policy;
 }
 
@@ -36,8 +42,7 @@ void pair(Policy& policy, const Episodes& first, const Episodes& here) {
   policy.paired = policy.same_actions = first.size() == here.size();
   for (std::size_t i = 0; policy.paired && i < here.size(); ++i) {
     policy.paired = first[i].command == here[i].command;
-    policy.only_first += first[i].success && !here[i].success ? 1 : 0;
-    policy.only_here += here[i].success && !first[i].success ? 1 : 0;
+    policy.difference.push_back((here[i].success ? 1 : 0) - (first[i].success ? 1 : 0));
     policy.same_actions = policy.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
   }
 }
@@ -137,31 +142,32 @@ std::string stream_name(const char* what, const Row& row) {
 
 // Success, its change against the first arm, and their intervals, from the policies.
 void estimate(Draft& draft, const std::string& first_arm) {
-  std::vector<Cluster> rates, differences;
-  Policy all;
-  all.paired = all.same_actions = true;
+  Samples rates, differences;
+  bool all_paired = true, same_actions = true;
+  for (const auto& policies : draft.scenarios)
+    for (const Policy& p : policies) {
+      all_paired = all_paired && p.paired;
+      same_actions = same_actions && p.same_actions;
+    }
+  Row& row = draft.row;
+  const bool shifts = row.arm != first_arm && all_paired;
   for (const auto& policies : draft.scenarios) {
     if (policies.empty()) continue;
-    PolicyValues rate, difference;
+    Outcomes won, difference;
     for (const Policy& p : policies) {
-      rate.add(p.participant, p.rate());
-      difference.add(p.participant, p.difference());
-      all.paired = all.paired && p.paired;
-      all.same_actions = all.same_actions && p.same_actions;
-      all.only_first += p.only_first;
-      all.only_here += p.only_here;
+      won.add(p.participant, p.scenes, p.won);
+      if (shifts) difference.add(p.participant, p.scenes, p.difference);
     }
-    rates.push_back(rate.cluster());
-    differences.push_back(difference.cluster());
+    rates.push_back(won.sample());
+    if (shifts) differences.push_back(difference.sample());
   }
   if (rates.empty()) return;
-  Row& row = draft.row;
-  row.success = cluster_mean(rates);
-  row.interval = success_interval(rates, row.episodes, stream_name("report", row));
-  if (row.arm == first_arm || !all.paired) return;
-  const Change change =
-      paired_change(differences, all.only_first, all.only_here, row.episodes, stream_name("report/shift", row));
-  row.shift = Shift{first_arm, change.difference, change.interval, all.same_actions};
+  row.scenes = distinct_scenes(rates);
+  row.success = mean_outcome(rates);
+  row.interval = success_interval(rates, stream_name("report", row));
+  if (!shifts) return;
+  const Change change = paired_change(differences, stream_name("report/shift", row), 2000);
+  row.shift = Shift{first_arm, change.difference, change.interval, same_actions};
 }
 
 // The row of `cells`: all seeds and participants of one (scenario, method, demonstrations).
@@ -215,7 +221,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   Row& row = mean.row = drafts.front()->row;
   row.scenario = mean_scenario;
   row.phi = nullptr;
-  row.seeds = row.episodes = row.successes = row.inputs_told = row.inputs_seen = row.n_error = 0;
+  row.seeds = row.scenes = row.episodes = row.successes = row.inputs_told = row.inputs_seen = row.n_error = 0;
   row.failures.clear();
   row.attribution = Row().attribution;
   row.marks.clear();
@@ -242,14 +248,39 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   return row;
 }
 
-// A method that learned less than what always does the same thing has learned nothing.
-void mark_not_learned(Table& table) {
+// What is below a reference row: a method that learned less than what always does the same thing has learned nothing,
+// and one that grips any object it sees needs no demonstration.
+void mark_low_rows(Table& table) {
   for (Row& row : table.rows) {
     if (row.is_reference() || !row.success) continue;
-    const Row* constant = table.find(row.arm, row.scenario, "constant_action", row.demonstrations);
-    if (constant && constant->success && *row.success < *constant->success)
-      row.marks.insert(row.marks.begin(), "baseline_not_learned");
+    std::vector<std::string> marks;
+    for (const auto& [reference, mark] :
+         {std::pair("constant_action", "baseline_not_learned"), {"random_object", "below_random_object"}})
+      if (const Row* low = table.find(row.arm, row.scenario, reference, row.demonstrations);
+          low && low->success && *row.success < *low->success)
+        marks.emplace_back(mark);
+    row.marks.insert(row.marks.begin(), marks.begin(), marks.end());
   }
+}
+
+std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
+  constexpr double error_bars = 1.5;
+  Nearness near;
+  for (const char* method : {"lga", "human", "gcbc_seg"})
+    for (const int n : table.demonstrations()) {
+      const std::string name = display_name(method);
+      const auto rate = paper.find(mean_scenario, name, n), error = paper.error(mean_scenario, name, n);
+      if (!rate || !error) continue;
+      const Row* row = table.find(table.arms.front(), mean_scenario, method, n);
+      if (!row || !row->success) return std::nullopt;
+      const double distance = std::abs(*row->success - *rate);
+      ++near.points;
+      near.near += distance <= error_bars * *error ? 1 : 0;
+      near.mean_distance += distance;
+    }
+  if (near.points == 0) return std::nullopt;
+  near.mean_distance /= near.points;
+  return near;
 }
 
 using Cells = std::vector<const CellResult*>;
@@ -284,7 +315,7 @@ Table make_table(const Cells& cells) {
     for (const auto& [place, rows] : over_scenarios)
       table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
   }
-  mark_not_learned(table);
+  mark_low_rows(table);
   return table;
 }
 
@@ -347,7 +378,11 @@ Summary summarize(const RunResults& run) {
     tables[{cell.layout, cell.engine}].push_back(&cell);
     if (cell.failed) summary.failed.push_back(cell);
   }
-  for (const auto& item : tables) summary.tables.push_back(make_table(item.second));
+  const PaperValues paper = paper_values(run.suite);
+  for (const auto& item : tables) {
+    summary.tables.push_back(make_table(item.second));
+    summary.tables.back().nearness = nearness(summary.tables.back(), paper);
+  }
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/report/paper.hpp>
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/statistics.hpp>
 
@@ -25,13 +26,13 @@ struct Shift {
 struct Row {
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
-  int seeds = 0, episodes = 0, successes = 0;
-  int participants = 0;           // whose answers the row stands on; 0 where nobody was asked
+  int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
+  int participants = 0;                                    // whose answers the row stands on; 0 where nobody was asked
   std::optional<double> success;  // mean over scenarios of the mean over training seeds (participants, where there are
                                   // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
-  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures laid to each
+  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each
   std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
   int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
   int n_error = 0;                       // episodes not played: the engine or the host failed
@@ -54,6 +55,7 @@ struct Table {
   std::vector<std::string> arms;
   int demonstrated_commands = 1;  // of each scenario, each with as many demonstrations; 0 where scenarios differ
   std::vector<Row> rows;
+  std::optional<Nearness> nearness;  // to the paper's curves; none unless the rows of all three methods are there
 
   std::vector<std::string> scenarios() const;  // in order, the mean last
   std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none

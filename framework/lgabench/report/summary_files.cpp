@@ -30,6 +30,7 @@ Json to_json(const Summary& summary) {
                       {"arm", row.arm},
                       {"seeds", row.seeds},
                       {"participants", row.participants},
+                      {"scenes", row.scenes},
                       {"episodes", row.episodes},
                       {"successes", row.successes},
                       {"success", row.success ? Json(*row.success) : Json()},
@@ -44,7 +45,15 @@ Json to_json(const Summary& summary) {
                       {"phi", row.phi}});
   for (const CellResult& cell : summary.failed)
     failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
-  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}};
+  Json nearness = Json::array();
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      nearness.push_back({{"layout", table.layout},
+                          {"engine", table.engine},
+                          {"points", near->points},
+                          {"near", near->near},
+                          {"mean_distance", near->mean_distance}});
+  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
 }
 
 std::string to_csv(const Summary& summary) {
@@ -60,7 +69,8 @@ std::string to_csv(const Summary& summary) {
 
   const std::vector<std::string> words = failure_words();
   std::string csv = fmt::format(
-      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,episodes,successes,success,low,"
+      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,scenes,episodes,successes,"
+      "success,low,"
       "high,"
       "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,{},{}\n",
       fmt::join(attributions, ","), fmt::join(words, ","));
@@ -70,9 +80,9 @@ std::string to_csv(const Summary& summary) {
       const bool shifted = row.shift.has_value();
       const Shift shift = row.shift.value_or(Shift());
       csv += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario), quoted(row.layout),
-          quoted(row.engine), quoted(row.method), row.kind, row.demonstrations, quoted(row.arm), row.seeds,
-          row.participants, row.episodes, row.successes, number(known, row.success.value_or(0)),
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
+          quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations, quoted(row.arm),
+          row.seeds, row.participants, row.scenes, row.episodes, row.successes, number(known, row.success.value_or(0)),
           number(known, row.interval.low), number(known, row.interval.high), quoted(shift.against),
           number(shifted, shift.difference), number(shifted, shift.interval.low), number(shifted, shift.interval.high),
           shifted ? canonical(shift.same_actions) : "",

@@ -44,10 +44,16 @@ std::vector<View> views(const Table& table) {
   return all;
 }
 
+std::string marks_text(const Row& row) {
+  std::string text;
+  for (const Mark& mark : table_marks)
+    if (row.marked(mark.word)) text += mark.sign;
+  return text;
+}
+
 std::string success_text(const Row* row) {
   if (!row) return "";
-  const std::string marks = fmt::format("{}{}{}", row->marked("baseline_not_learned") ? "†" : "",
-                                        row->marked("incomplete") ? "‡" : "", acts_the_same(*row) ? " =" : "");
+  const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
   if (!row->success) return "–" + marks;
   return fmt::format("{:.2f} [{:.2f}, {:.2f}]{}", *row->success, row->interval.low, row->interval.high, marks);
 }
@@ -74,7 +80,7 @@ bool any_seen(const Table& table) {
 }
 
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
-  bool not_learned = false, incomplete = false;
+  std::set<std::string> marked;
   std::set<std::string> same_as;              // arms
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
   std::set<std::string> models;               // behind cassettes
@@ -83,8 +89,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     if (cell.asks == "edit") edited.insert(cell.method);
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) {
-      not_learned = not_learned || row.marked("baseline_not_learned");
-      incomplete = incomplete || row.marked("incomplete");
+      marked.insert(row.marks.begin(), row.marks.end());
       if (acts_the_same(row)) same_as.insert(row.shift->against);
       for (const Json& phi : row.phi) {
         const std::string provenance = phi.at("provenance");
@@ -102,12 +107,18 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
                                 run.json.at("cells").size()));
   if (run.foreign > 0)
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
-  if (not_learned)
-    lines.emplace_back("† baseline not learned: below the best constant action with as many demonstrations.");
-  if (incomplete) lines.emplace_back("‡ incomplete: a cell failed, or the mean lacks a scenario.");
+  for (const Mark& mark : table_marks)
+    if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : same_as)
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
+  for (const Table& table : summary.tables)
+    if (const auto& near = table.nearness)
+      lines.push_back(
+          fmt::format("Beside the paper, {}, {}: {} of {} points of LGA, Human and GCBC-SEG lie within 1.5 of its "
+                      "error bars; the mean "
+                      "distance is {:.3f}.",
+                      table.title(), table.title(mean_scenario), near->near, near->points, near->mean_distance));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   return lines;

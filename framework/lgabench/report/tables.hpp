@@ -27,7 +27,19 @@ struct View {
 };
 std::vector<View> views(const Table& table);
 
-/// "0.85 [0.64, 0.95]", then †, ‡ and = for the row's marks; "–" for a row without episodes, "" where there is no row.
+/// A row's mark as tables show it.
+struct Mark {
+  const char *word, *sign, *meaning;
+};
+constexpr std::array<Mark, 3> table_marks{
+    {{"baseline_not_learned", "†", "baseline not learned: below the best constant action with as many demonstrations"},
+     {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
+     {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"}}};
+/// "†§": the row's.
+std::string marks_text(const Row& row);
+
+/// "0.85 [0.64, 0.95]", then †, §, ‡ and = for the row's marks; "–" for a row without episodes, "" where there is no
+/// row.
 std::string success_text(const Row* row);
 
 /// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
@@ -38,8 +50,8 @@ std::string seen_text(const Row* row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
-/// What a reader of the tables must know, one line each: what †, ‡ and = say, how many people made Selections or that
-/// none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
+/// What a reader of the tables must know, one line each: what †, §, ‡ and = say, how many people made Selections or
+/// that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
 /// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.

@@ -39,7 +39,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
 
 // A point's numbers, under the pointer or the focus.
 const tip = $("tip");
-for (const point of document.querySelectorAll(".point[aria-label]")) {
+for (const point of document.querySelectorAll(".point[aria-label], .strip g")) {
   const show = () => {
     const box = point.getBoundingClientRect();
     tip.textContent = point.getAttribute("aria-label");
@@ -90,7 +90,7 @@ const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`
 
 function card(e) {
   const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
-  const told = `<b>${e.failure}</b>${e.attribution ? `, laid to the ${e.attribution}` : ""}`;
+  const told = `<b>${e.failure}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
   const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
     (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
@@ -125,7 +125,7 @@ function show(row) {
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
   body.append(growing([...failed, ...all.filter((e) => !e.failure)], 100, (some) =>
     `<div class="frame"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +
-    ["scenario", "arm", "training seed", "scene", "command", "outcome", "laid to"]
+    ["scenario", "arm", "training seed", "scene", "command", "outcome", "attributed to"]
       .map((head) => `<th scope="col">${head}</th>`).join("") +
     `</tr></thead><tbody>${some.map(line).join("")}</tbody></table></div>`));
   tip.hidden = true;

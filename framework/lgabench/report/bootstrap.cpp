@@ -1,0 +1,169 @@
+#include <lgabench/report/bootstrap.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include <lgabench/core/random.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// One unit's outcomes by scene: their sum over its policies, and how many played it.
+using ByScene = std::map<std::string, std::pair<double, int>>;
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+bool one_policy(const Samples& scenarios) { return scenarios.size() == 1 && scenarios.front().units.size() == 1; }
+
+// How often one scene of many is drawn in as many draws as there are scenes: Poisson with mean 1.
+int times_drawn(RandomStream& random) {
+  const double u = random.uniform();
+  int times = 0;
+  for (double p = std::exp(-1.0), below = p; u >= below && p > 1e-12; p /= times, below += p) ++times;
+  return times;
+}
+
+double crossed_mean(const Outcomes::Sample& sample, RandomStream& random, std::vector<double>& sums) {
+  const auto units = static_cast<std::uint32_t>(sample.units.size()),
+             scenes = static_cast<std::uint32_t>(sample.scenes);
+  sums.assign(units, 0);
+  for (std::uint32_t j = 0; j < scenes; ++j) {
+    const std::uint32_t scene = random.below(scenes);
+    for (std::uint32_t i = 0; i < units; ++i) sums[i] += sample.units[i][scene];
+  }
+  double sum = 0;
+  for (std::uint32_t i = 0; i < units; ++i) sum += sums[random.below(units)];
+  return sum / units / scenes;
+}
+
+double nested_mean(const Outcomes::Sample& sample, RandomStream& random) {
+  const auto units = static_cast<std::uint32_t>(sample.units.size());
+  double sum = 0;
+  for (std::uint32_t i = 1; i < units; ++i) {
+    const std::vector<double>& values = sample.units[random.below(units)];
+    const auto scenes = static_cast<std::uint32_t>(values.size());
+    double within = 0;
+    for (std::uint32_t j = 0; j < scenes; ++j) within += values[random.below(scenes)];
+    sum += within / scenes;
+  }
+  return sum / (units - 1);
+}
+
+// The mean over scenarios in every resample, sorted. `other_side`: an outcome opposite to 1, as the second imagined
+// scene has it.
+std::vector<double> resampled_means(const Samples& scenarios, double other_side, std::string_view name, int resamples) {
+  RandomStream random(name);
+  const double scenes = distinct_scenes(scenarios);
+  std::vector<double> means(static_cast<std::size_t>(resamples)), sums;
+  for (double& resampled : means) {
+    double sum = 0;
+    for (const Outcomes::Sample& sample : scenarios)
+      sum += sample.shared ? crossed_mean(sample, random, sums) : nested_mean(sample, random);
+    const int one = times_drawn(random), other = times_drawn(random);
+    resampled =
+        (sum / static_cast<double>(scenarios.size()) * scenes + one + other_side * other) / (scenes + one + other);
+  }
+  std::sort(means.begin(), means.end());
+  return means;
+}
+
+Interval percentile_interval(const std::vector<double>& sorted) {
+  const std::size_t cut = sorted.size() / 40;  // 2.5 % on either side
+  return {sorted[cut], sorted[sorted.size() - 1 - cut]};
+}
+
+// Two-sided, that the mean is 0.
+double percentile_p(const std::vector<double>& sorted) {
+  constexpr double rounding = 1e-12;  // of a mean that is 0
+  const auto up_to_zero = std::upper_bound(sorted.begin(), sorted.end(), rounding) - sorted.begin();
+  const auto from_zero = sorted.end() - std::lower_bound(sorted.begin(), sorted.end(), -rounding);
+  return std::min(
+      1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) / (static_cast<double>(sorted.size()) + 1));
+}
+
+}  // namespace
+
+void Outcomes::add(const std::string& participant, std::vector<std::string> scenes, std::vector<double> values) {
+  policies_.push_back({participant, std::move(scenes), std::move(values)});
+}
+
+double Outcomes::Sample::mean() const {
+  double sum = 0;
+  for (const std::vector<double>& unit : units) sum += report::mean(unit);
+  return sum / static_cast<double>(units.size());
+}
+
+Outcomes::Sample Outcomes::sample() const {
+  std::set<std::string> participants;
+  for (const Policy& policy : policies_) participants.insert(policy.participant);
+  std::map<std::pair<std::string, std::size_t>, ByScene> units;
+  for (std::size_t i = 0; i < policies_.size(); ++i) {
+    const Policy& policy = policies_[i];
+    ByScene& unit = units[{policy.participant, participants.size() > 1 ? 0 : i}];
+    for (std::size_t j = 0; j < policy.scenes.size(); ++j) {
+      auto& [sum, played] = unit[policy.scenes[j]];
+      sum += policy.values[j];
+      ++played;
+    }
+  }
+  const ByScene& first = units.begin()->second;
+  const auto same_scenes = [&first](const ByScene& unit) {
+    return unit.size() == first.size() && std::equal(unit.begin(), unit.end(), first.begin(),
+                                                     [](const auto& a, const auto& b) { return a.first == b.first; });
+  };
+  Sample sample;
+  sample.shared = std::all_of(units.begin(), units.end(), [&](const auto& item) { return same_scenes(item.second); });
+  std::set<std::string> scenes;
+  for (const auto& item : units) {
+    std::vector<double>& values = sample.units.emplace_back();
+    for (const auto& [scene, outcome] : item.second) {
+      values.push_back(outcome.first / outcome.second);
+      if (!sample.shared) scenes.insert(scene);
+    }
+  }
+  sample.scenes = static_cast<int>(sample.shared ? first.size() : scenes.size());
+  return sample;
+}
+
+double mean_outcome(const Samples& scenarios) {
+  double sum = 0;
+  for (const Outcomes::Sample& sample : scenarios) sum += sample.mean();
+  return sum / static_cast<double>(scenarios.size());
+}
+
+int distinct_scenes(const Samples& scenarios) {
+  int scenes = 0;
+  for (const Outcomes::Sample& sample : scenarios) scenes += sample.scenes;
+  return scenes;
+}
+
+Interval success_interval(const Samples& scenarios, std::string_view name) {
+  constexpr int resamples = 2000;
+  const int scenes = distinct_scenes(scenarios);
+  if (one_policy(scenarios)) return wilson(mean_outcome(scenarios) * scenes, scenes);
+  return percentile_interval(resampled_means(scenarios, 0, name, resamples));
+}
+
+Change paired_change(const Samples& scenarios, std::string_view name, int resamples) {
+  Change change;
+  change.difference = mean_outcome(scenarios);
+  if (one_policy(scenarios)) {
+    const std::vector<double>& values = scenarios.front().units.front();
+    const auto only_first = static_cast<int>(std::count(values.begin(), values.end(), -1.0)),
+               only_second = static_cast<int>(std::count(values.begin(), values.end(), 1.0));
+    change.interval = paired_difference(only_first, only_second, scenarios.front().scenes);
+    change.p = mcnemar(only_first, only_second);
+    return change;
+  }
+  const std::vector<double> means = resampled_means(scenarios, -1, name, resamples);
+  change.interval = percentile_interval(means);
+  change.p = percentile_p(means);
+  return change;
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,161 @@
+#include <lgabench/report/claims_field.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include <lgabench/report/pairs.hpp>
+
+namespace lgabench::report {
+namespace {
+
+constexpr std::size_t scenarios_needed = 6;  // for a test over scenarios
+
+// The policy that stands on the participant's answers, or the one that stands on nobody's; nullptr where it did not
+// finish.
+const CellResult* finished(const Field::People& people, const std::string& participant) {
+  auto it = people.find(participant);
+  if (it == people.end()) it = people.find("");
+  return it == people.end() || it->second->failed ? nullptr : it->second;
+}
+
+// Whose answers the one or the other of two rows stands on; "" alone where both stand on nobody's.
+std::set<std::string> participants(const Field::People& one, const Field::People& other) {
+  std::set<std::string> names;
+  for (const Field::People* people : {&one, &other})
+    for (const auto& item : *people) names.insert(item.first);
+  if (names.size() > 1) names.erase("");
+  return names;
+}
+
+// An option's value as a row's name and a command line write it.
+std::string option_text(const Json& value) { return value.is_string() ? value.get<std::string>() : canonical(value); }
+
+// The options that a row's name tells: "lga+instances=first" one. A '+' before a digit belongs to a number.
+std::vector<std::string> named_options(const std::string& row) {
+  std::vector<std::string> options;
+  for (std::size_t i = row.find('+'); i < row.size(); ++i)
+    if (row[i] == '+' && i + 1 < row.size() && std::isalpha(static_cast<unsigned char>(row[i + 1])))
+      options.push_back(row.substr(i + 1, row.find('=', i) - i - 1));
+  return options;
+}
+
+bool is_method(const CellResult& cell, const ClaimedMethod& method) {
+  if (cell.id != method.id) return false;
+  for (const auto& [option, value] : method.options)
+    if (!cell.options.contains(option) || option_text(cell.options.at(option)) != value) return false;
+  const std::vector<std::string> named = named_options(cell.method);
+  return std::all_of(named.begin(), named.end(),
+                     [&method](const std::string& option) { return method.options.count(option) != 0; });
+}
+
+// Student's t on the scenarios' differences.
+Tested over_scenarios(const std::vector<std::pair<std::string, double>>& by_scenario) {
+  Tested tested;
+  if (by_scenario.size() < scenarios_needed) {
+    tested.reason = "none, six needed";
+    return tested;
+  }
+  std::vector<double> differences;
+  for (const auto& item : by_scenario) differences.push_back(item.second);
+  tested.change = paired_t(differences);
+  return tested;
+}
+
+}  // namespace
+
+void Field::add(const CellResult& cell) {
+  layout = cell.layout;
+  engine = cell.engine;
+  if (cell.is_reference()) return;
+  for (const std::string& arm : cell.arms)
+    if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
+  demonstrations.insert(cell.demonstrations);
+  rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}][cell.participant] = &cell;
+}
+
+const Field::Policies* Field::find(const std::string& row, int n) const {
+  const auto by_number = rows.find(row);
+  if (by_number == rows.end()) return nullptr;
+  const auto policies = by_number->second.find(n);
+  return policies == by_number->second.end() ? nullptr : &policies->second;
+}
+
+std::vector<const CellResult*> Field::cells() const {
+  std::vector<const CellResult*> all;
+  for (const auto& [row, by_number] : rows)
+    for (const auto& [n, policies] : by_number)
+      for (const auto& [which, people] : policies)
+        for (const auto& [participant, cell] : people) all.push_back(cell);
+  return all;
+}
+
+std::string ClaimedMethod::text() const {
+  std::string text = id;
+  for (const auto& [option, value] : options)
+    text += fmt::format("{}{}={}", text == id ? " with " : ", ", option, value);
+  return text;
+}
+
+std::string find_row(const Field& field, const ClaimedMethod& method) {
+  for (const auto& [row, by_number] : field.rows)
+    for (const auto& [n, policies] : by_number)
+      for (const auto& [which, people] : policies)
+        if (is_method(*people.begin()->second, method)) return row;
+  return "";
+}
+
+bool has_arm(const CellResult& cell, const std::string& arm) {
+  return std::find(cell.arms.begin(), cell.arms.end(), arm) != cell.arms.end();
+}
+
+ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
+                           const ClaimedMethod& below, const std::string& arm, int n) {
+  ClaimedDifference d;
+  d.arm = arm, d.demonstrations = n;
+  for (const auto& [row, method] : {std::pair(&d.above, &above), {&d.below, &below}}) {
+    *row = find_row(field, *method);
+    if (row->empty()) *row = method->id;
+    if (!field.find(*row, n) && d.these.reason.empty()) d.these.reason = fmt::format("no row {}", method->text());
+  }
+  d.alike.reason = d.these.reason;
+  if (!d.these.reason.empty()) return d;
+
+  const Field::Policies &high = *field.find(d.above, n), &low = *field.find(d.below, n);
+  Field::Policies all = high;
+  all.insert(low.begin(), low.end());
+  PairedRow pairs;
+  std::set<long long> seeds;
+  int wanted = 0;
+  const auto people = [](const Field::Policies& row, const Field::Policies::key_type& which) {
+    const auto found = row.find(which);
+    return found == row.end() ? Field::People() : found->second;
+  };
+  for (const auto& item : all) {
+    if (!has_arm(*item.second.begin()->second, arm)) continue;
+    const Field::People a = people(low, item.first), b = people(high, item.first);
+    for (const std::string& participant : participants(a, b)) {
+      ++wanted;
+      const CellResult *first = finished(a, participant), *second = finished(b, participant);
+      if (first && second) pairs.add(item.first.first, pair_policies(*first, *second, arm), participant);
+    }
+    seeds.insert(item.first.second);
+  }
+  if (pairs.policies() < wanted || wanted == 0) {
+    d.these.reason = d.alike.reason = fmt::format("{} of {} policies finished in both rows", pairs.policies(), wanted);
+    return d;
+  }
+  d.by_scenario = pairs.by_scenario();
+  d.scenarios = pairs.scenarios();
+  d.scenes = pairs.scenes();
+  d.seeds = static_cast<int>(seeds.size());
+  d.policies = pairs.policies();
+  d.participants = pairs.participants();
+  d.these.change = pairs.change(
+      fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, d.above, d.below, arm, n));
+  d.alike = over_scenarios(d.by_scenario);
+  return d;
+}
+
+}  // namespace lgabench::report
