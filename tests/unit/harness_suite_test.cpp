@@ -344,8 +344,8 @@ TEST_F(RunDirectories, KeepingReplacesAnEarlierAttempt) {
   directory.keep(k);
   write_file(directory.scratch(k) / "new", "");
   directory.keep(k);
-  EXPECT_TRUE(fs::exists(path / "run/cells/k/new"));
-  EXPECT_FALSE(fs::exists(path / "run/cells/k/old"));
+  EXPECT_TRUE(fs::exists(path / "run/cells" / k / "new"));
+  EXPECT_FALSE(fs::exists(path / "run/cells" / k / "old"));
   EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
 }
 
@@ -357,7 +357,7 @@ TEST_F(RunDirectories, HalfWrittenCellsGoAndOthersStay) {
     directory.keep(k);
   }
   const RunDirectory again(path / "run", run_of({k}), Existing::same);
-  EXPECT_TRUE(fs::exists(path / "run/cells/k/cell.json"));
+  EXPECT_TRUE(fs::exists(path / "run/cells" / k / "cell.json"));
   EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
 }
 
@@ -390,7 +390,7 @@ TEST_F(RunDirectories, FreshDropsTheRunAndNothingElse) {
     write_file(path / "run/notes.txt", "kept");
   }
   const RunDirectory directory(path / "run", run_of({k, l}), Existing::fresh);
-  EXPECT_FALSE(fs::exists(path / "run/cells/k"));
+  EXPECT_FALSE(fs::exists(path / "run/cells" / k));
   EXPECT_EQ(read_json(path / "run/run.json"), run_of({k, l}));
   EXPECT_EQ(read_file(path / "run/notes.txt"), "kept");
 }
