@@ -201,10 +201,10 @@ class Humans(Case):
 
     def test_a_cell_for_each_of_them(self):
         stand_ins = self.call(*self.RUN, "--out", "without")
-        self.assertIn("Human epochs=2: true φ̂: an upper bound, no human data.", stand_ins.stdout)
+        self.assertIn("Human: true φ̂: an upper bound, no human data.", stand_ins.stdout)
         table = self.call(*self.RUN, "--out", "out", "--humans", "people").stdout
-        self.assertIn("Human epochs=2: 3 participants.", table)
-        self.assertIn("LGA-HILL epochs=2: 3 participants, who edited a language model's φ̂.", table)
+        self.assertIn("Human: 3 participants.", table)
+        self.assertIn("LGA-HILL: 3 participants, who edited a language model's φ̂.", table)
         self.assertNotIn("no human data", table)
         self.assert_matches_schemas("out")
 
@@ -266,9 +266,9 @@ class Humans(Case):
         for person in ("made-up-2", "made-up-3"):
             (self.dir / "people" / (person + ".json")).unlink()
         one = self.call(*self.RUN, "--out", "one", "--humans", "people", "--no-reference").stdout
-        self.assertRegex(one, r"Human epochs=2 .*‡")  # a scenario is missing from the mean
+        self.assertRegex(one, r"Human .*‡")  # a scenario is missing from the mean
         refused = self.call(*self.RUN[:2], "--scenarios", "letter", *self.RUN[4:], "--out", "none", "--humans", "people", expect=2)
-        self.assertIn("--humans: expected answers for lga_hill+epochs=2 in a scenario of this run", refused.stderr)
+        self.assertIn("--humans: expected answers for lga_hill in a scenario of this run", refused.stderr)
 
     def test_what_was_edited_must_be_what_is_proposed(self):
         proposal = self.proposals["red_heart"][1]

@@ -372,8 +372,8 @@ class Engines(Case):
     def test_one_policy_on_two_and_where_they_part(self):
         # Pushes that are no oracle's: a block that turns under the blade is where the two differ.
         self.call("run", "q1", "--engines", "mujoco,kinematic", "--scenarios", "sweep_block_without_touching_pan",
-                  "--layout", "continuous", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "60",
-                  "--no-reference", "--out", "run")
+                  "--layout", "continuous", "--methods", "lga", "--set", "lga.network=plain", "--demos", "10",
+                  "--seeds", "0", "--episodes", "60", "--no-reference", "--out", "run")
         training = {cell["engine"]: (self.dir / "run/cells" / key / "training.jsonl").read_bytes()
                     for key, (cell, _) in self.cells("run").items()}
         self.assertEqual(training["mujoco"], training["kinematic"])
@@ -398,8 +398,8 @@ class Engines(Case):
         shipped = (BUILD / "lib/lgabench/plugins/kinematic.so").read_bytes()
         (plugins / "elsewhere.so").write_bytes(shipped.replace(b"kinematic\0", b"elsewhere\0"))
         self.call("run", "q1", "--engines", "mujoco,elsewhere", "--plugin-path", "plugins", "--scenarios",
-                  "sweep_block_without_touching_pan", "--layout", "continuous", "--methods", "lga", "--demos", "10",
-                  "--seeds", "0", "--episodes", "60", "--no-reference", "--out", "run")
+                  "sweep_block_without_touching_pan", "--layout", "continuous", "--methods", "lga", "--set",
+                  "lga.network=plain", "--demos", "10", "--seeds", "0", "--episodes", "60", "--no-reference", "--out", "run")
         page = (self.dir / "run/report.html").read_text()
         figures = re.findall(r"<figure class=engines>.*?</figure>", page, re.S)
         self.assertGreater(len(figures), 0)

@@ -180,7 +180,7 @@ class Compare(unittest.TestCase):
         self.assertRegex(refused.stderr, r"^lgabench: the runs cannot be compared: .*8 episodes an arm in A, 2 in B\n$")
 
     def test_claims(self):
-        self.assertIn("not tested: no row lga", self.call("report", "a", "--claims").stdout)
+        self.assertIn("not tested: no row gcbc_seg", self.call("report", "a", "--claims").stdout)
         self.make("a", "lga", False)
         self.make("a", "gcbc_dart", True)
         said = self.call("report", "a", "--claims", expect=1).stdout

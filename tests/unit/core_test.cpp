@@ -145,13 +145,21 @@ TEST(ReadFile, ReadsRegularFilesAlone) {
   EXPECT_SAYS(message_of<InputError>([] { read_file("/dev/zero"); }), "not a regular file");
   EXPECT_SAYS(message_of<InputError>([&] { read_file(directory.path); }), "not a regular file");
   EXPECT_SAYS(message_of<InputError>([&] { read_file(file, Links::followed, 4); }), "expected at most 4");
-  EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }), "a run holds");
+  fs::remove(link);
+  EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }), "pipe: expected a regular file");
+  fs::remove(pipe);
+  fs::create_symlink(file, link);
+  EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }),
+              "link: a symbolic link; a run holds");
 }
 
 TEST(Printable, LeavesNoControlSequence) {
   EXPECT_EQ(printable("plain, φ̂ – \U0001F600\n\ttext"), "plain, φ̂ – \U0001F600\n\ttext");
   EXPECT_EQ(printable("\x1b[31m\r\x07\x7f"), "\\x1b[31m\\x0d\\x07\\u007f");
-  EXPECT_EQ(printable("\xc2\x9b" "31m\xe2\x80\xae" "abc\xe2\x81\xa6"), "\\u009b31m\\u202eabc\\u2066");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "31m\xe2\x80\xae"
+                      "abc\xe2\x81\xa6"),
+            "\\u009b31m\\u202eabc\\u2066");
   EXPECT_EQ(printable("\xff\xc3(\xed\xa0\x80\xc0\x80\xe2\x82"), "\\xff\\xc3(\\xed\\xa0\\x80\\xc0\\x80\\xe2\\x82");
   EXPECT_EQ(one_line("a\nb\tc"), "a\\nb\\x09c");
 }

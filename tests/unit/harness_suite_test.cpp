@@ -293,6 +293,7 @@ Json run_of(const std::vector<std::string>& keys) {
 
 const std::string cell_text = "{\"n\":1}\n";
 const std::string k = sha256("{\"n\":1}").substr(0, 16);  // the key of a cell that reads so
+const std::string l(16, 'a');                             // of another
 
 // What a worker leaves behind.
 void finish(const fs::path& cell, const Json& build) {
@@ -338,43 +339,43 @@ TEST_F(RunDirectories, ResumingWithAnotherBuildSaysSoInRunJson) {
 }
 
 TEST_F(RunDirectories, KeepingReplacesAnEarlierAttempt) {
-  const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
-  write_file(directory.scratch("k") / "old", "");
-  directory.keep("k");
-  write_file(directory.scratch("k") / "new", "");
-  directory.keep("k");
-  EXPECT_TRUE(fs::exists(path / "run/cells/k/new"));
-  EXPECT_FALSE(fs::exists(path / "run/cells/k/old"));
+  const RunDirectory directory(path / "run", run_of({k}), Existing::same);
+  write_file(directory.scratch(k) / "old", "");
+  directory.keep(k);
+  write_file(directory.scratch(k) / "new", "");
+  directory.keep(k);
+  EXPECT_TRUE(fs::exists(path / "run/cells" / k / "new"));
+  EXPECT_FALSE(fs::exists(path / "run/cells" / k / "old"));
   EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
 }
 
 TEST_F(RunDirectories, HalfWrittenCellsGoAndOthersStay) {
   {
-    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
+    const RunDirectory directory(path / "run", run_of({k}), Existing::same);
     write_file(directory.scratch("half") / "cell.json", "{}");
-    write_file(directory.scratch("k") / "cell.json", "{}");
-    directory.keep("k");
+    write_file(directory.scratch(k) / "cell.json", "{}");
+    directory.keep(k);
   }
-  const RunDirectory again(path / "run", run_of({"k"}), Existing::same);
-  EXPECT_TRUE(fs::exists(path / "run/cells/k/cell.json"));
+  const RunDirectory again(path / "run", run_of({k}), Existing::same);
+  EXPECT_TRUE(fs::exists(path / "run/cells" / k / "cell.json"));
   EXPECT_EQ(std::distance(fs::directory_iterator(path / "run/cells"), fs::directory_iterator()), 1);
 }
 
 TEST_F(RunDirectories, RefusesWhatIsNotItsOwn) {
   {
-    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
-    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "run", run_of({"k"}), Existing::same); }),
+    const RunDirectory directory(path / "run", run_of({k}), Existing::same);
+    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "run", run_of({k}), Existing::same); }),
                 "another run is writing");
   }
   for (const Existing existing : {Existing::same, Existing::resume}) {
     EXPECT_SAYS(message_of<InputError>([&] {
-                  RunDirectory(path / "run", run_of({"k", "l"}), existing);
+                  RunDirectory(path / "run", run_of({k, l}), existing);
                 }),
                 "episodes 1 there, 2 wanted");
   }
   write_file(path / "other/letter.txt", "kept");
   for (const Existing existing : {Existing::same, Existing::resume, Existing::fresh}) {
-    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other", run_of({"k"}), existing); }), "not a run");
+    EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other", run_of({k}), existing); }), "not a run");
   }
   EXPECT_SAYS(message_of<InputError>([&] { RunDirectory(path / "other/letter.txt/run", run_of({}), Existing::same); }),
               "Not a directory");
@@ -383,14 +384,14 @@ TEST_F(RunDirectories, RefusesWhatIsNotItsOwn) {
 
 TEST_F(RunDirectories, FreshDropsTheRunAndNothingElse) {
   {
-    const RunDirectory directory(path / "run", run_of({"k"}), Existing::same);
-    finish(directory.scratch("k"), Json::object());
-    directory.keep("k");
+    const RunDirectory directory(path / "run", run_of({k}), Existing::same);
+    finish(directory.scratch(k), Json::object());
+    directory.keep(k);
     write_file(path / "run/notes.txt", "kept");
   }
-  const RunDirectory directory(path / "run", run_of({"k", "l"}), Existing::fresh);
-  EXPECT_FALSE(fs::exists(path / "run/cells/k"));
-  EXPECT_EQ(read_json(path / "run/run.json"), run_of({"k", "l"}));
+  const RunDirectory directory(path / "run", run_of({k, l}), Existing::fresh);
+  EXPECT_FALSE(fs::exists(path / "run/cells" / k));
+  EXPECT_EQ(read_json(path / "run/run.json"), run_of({k, l}));
   EXPECT_EQ(read_file(path / "run/notes.txt"), "kept");
 }
 

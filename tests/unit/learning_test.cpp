@@ -531,9 +531,10 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
                                            Case{"object_mask", true, true}, Case{"rgb", true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
     RecordedLanguageModel lm(scenario, scenario.recorded);
-    TruthAsHuman human({{scenario.commands[0].utterance, blue_stars}});
+    TruthAsHuman human(scenario.commands);
     Lines log;
     Services services{lm, human, options, 0, log};
+    services.truth = [&blue_stars](const Command&) { return blue_stars; };
     auto method = load_method(plugin);
     EXPECT_EQ(method->select(scenario.command(0), scenario.space, services).provenance, Provenance::recorded);
     const auto policy = method->learn(data, services);
@@ -631,7 +632,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedMethods,
                                          Shipped{"lga_hill", Provenance::simulated_edit, 112, false, true},
                                          Shipped{"human", Provenance::truth, 0, false, true},
                                          Shipped{"lga_s", Provenance::recorded, 112, true, true},
-                                         Shipped{"lga_l", Provenance::recorded, 112, false, false},
+                                         Shipped{"lga_l", Provenance::recorded, 112, true, true},
                                          Shipped{"gcbc_dart", Provenance::none, 0, true, true},
                                          Shipped{"gcbc_seg", Provenance::none, 0, true, true}),
                          [](const auto& instance) { return std::string(instance.param.id); });

@@ -1,6 +1,7 @@
 // A run directory written by a test, with known outcomes, as docs/formats describes it.
 #pragma once
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -67,7 +68,9 @@ class FabricatedRun : public TemporaryDirectory {
     std::istringstream words(s.method);
     std::string word;
     std::getline(words, word, '+');  // the id
-    while (std::getline(words, word, '+')) options[word.substr(0, word.find('='))] = word.substr(word.find('=') + 1);
+    while (std::getline(words, word, '+'))
+      if (const std::string option = word.substr(0, word.find('=')); !options.contains(option))
+        options[option] = word.substr(word.find('=') + 1);
     return options;
   }
 
@@ -101,6 +104,8 @@ class FabricatedRun : public TemporaryDirectory {
               {"answers", "recorded"},
               {"data", {{"answers", std::string(64, 'c')}}},
               {"smoke", true}};
+    const std::map<std::string, std::string> asks{{"human", "specify"}, {"lga_hill", "edit"}};
+    if (const auto whom = asks.find(s.method); whom != asks.end()) cell["method"]["asks"] = whom->second;
     if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
     return cell;
   }

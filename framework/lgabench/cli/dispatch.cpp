@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <sstream>
 #include <string_view>
 
 #include <lgabench/cli/verbs.hpp>
@@ -19,7 +20,9 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::Success& e) {
-      app.exit(e);  // --help, --version
+      std::ostringstream text;  // of --help, --version: std::cout would lose why it cannot be written
+      app.exit(e, text);
+      to_stdout("{}", text.str());
       flush_stdout();
       return ok;
     }

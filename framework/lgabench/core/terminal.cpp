@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <iostream>
 
 #include <lgabench/core/error.hpp>
 
@@ -66,9 +65,8 @@ void put(std::FILE* stream, std::string_view bytes) noexcept {
 }
 
 void flush_stdout() {
-  std::cout.flush();
   if (std::fflush(stdout) != 0 && stdout_error == 0) stdout_error = errno;
-  if (stdout_error == 0 && (std::ferror(stdout) != 0 || !std::cout)) stdout_error = EIO;
+  if (stdout_error == 0 && std::ferror(stdout) != 0) stdout_error = EIO;
   if (stdout_error != 0)
     throw InputError(fmt::format("standard output: cannot be written: {}", std::strerror(stdout_error)));
 }

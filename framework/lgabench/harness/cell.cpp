@@ -119,7 +119,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
   return methods;
 }
 
-// Those whose answers the method stands on in this scenario; one that is nobody where it asks no people, or where the
+// Those whose answers the method is based on in this scenario; one that is nobody where it asks no people, or where the
 // truth stands in for them.
 using Answering = std::vector<std::optional<CellParticipant>>;
 Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {

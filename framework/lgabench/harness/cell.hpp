@@ -25,7 +25,7 @@ struct Competitor {
   bool is_reference() const { return kind == "reference"; }
 };
 
-/// A person whose answers a cell stands on.
+/// A person whose answers a cell is based on.
 struct CellParticipant {
   std::string id, sha256;  // pseudonym; of the file
 };

@@ -114,7 +114,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
 }
 
 RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing existing) : path_(path) {
-  canonical(run);  // what is no UTF-8 is refused before anything is made
+  canonical(run);                                           // what is no UTF-8 is refused before anything is made
   if (existing != Existing::fresh) expect_plain_run(path);  // which removes a link, and never what it leads to
   const bool was_there = has_content(path);
   make_directory(path);

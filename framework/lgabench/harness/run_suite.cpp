@@ -99,6 +99,14 @@ double total_seconds(const fs::path& cell) {
   return JsonReader(timing, file.string()).at("total_s").number();
 }
 
+void add_phases(const fs::path& cell, TimeSpent& time) {
+  const fs::path file = cell / "timing.json";
+  const Json timing = read_json(file, Links::refused);
+  const JsonReader reader(timing, file.string());
+  for (const auto& phase : timing.items())
+    if (phase.key() != "total_s") time.phase_s[phase.key()] += reader.at(phase.key()).number();
+}
+
 // The shard's cells: those that are there, and those still to be computed. Says why one that was there is computed
 // again.
 struct ShardState {
@@ -239,6 +247,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
       reason = settle(cell, end, scratch[i], build, plan.pool.timeout_s);
       directory.keep(key(cell));
       directory.sync();
+      if (reason.empty()) add_phases(directory.cell(key(cell)), outcome.time);
     } catch (const InputError& e) {
       record_failure(directory, cell, reason = e.what(), "host", build);
     } catch (const std::exception& e) {
@@ -251,9 +260,6 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     if (reason.empty()) {
       ++outcome.computed;
       schedule.learn(cell, end.seconds);
-      const Json timing = read_json(kept / "timing.json");
-      for (const auto& phase : timing.items())
-        if (phase.key() != "total_s") outcome.time.phase_s[phase.key()] += phase.value().get<double>();
     } else {
       outcome.failed.push_back({cell.title(), reason, kept / "log.txt"});
       outcome.plugin_refused |= end.exit_code == refused && end.plugin_refused;

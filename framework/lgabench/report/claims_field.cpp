@@ -116,8 +116,9 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const C
   d.arm = arm, d.demonstrations = n;
   for (const auto& [row, method] : {std::pair(&d.above, &above), {&d.below, &below}}) {
     *row = find_row(field, *method);
-    if (row->empty()) *row = method->id;
-    if (!field.find(*row, n) && d.these.reason.empty()) d.these.reason = fmt::format("no row {}", method->text());
+    const bool found = field.find(*row, n) != nullptr;
+    if (row->empty()) *row = method->id;  // another row may have that very name
+    if (!found && d.these.reason.empty()) d.these.reason = fmt::format("no row {}", method->text());
   }
   d.alike.reason = d.these.reason;
   if (!d.these.reason.empty()) return d;

@@ -5,7 +5,7 @@
 
 namespace lgabench::report {
 
-// A method is named by its row: its id, then "+option=value" for each option that differs from the default.
+// A method is named by its row: its id, and "+option=value" where options tell it from other rows of that id.
 
 /// "lga_hill" -> "LGA-HILL", as the paper writes it; "lga+loss=squared" -> "LGA loss=squared". An id that is not known
 /// stays as it is.

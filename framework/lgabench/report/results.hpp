@@ -39,7 +39,7 @@ struct CellResult {
   Json options = Json::object();                            // of the method, all of them
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
-  std::string participant;  // whose answers it stands on; empty where nobody was asked
+  std::string participant;  // whose answers it is based on; empty where nobody was asked
   std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;

@@ -27,7 +27,7 @@ struct Row {
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
   int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
-  int participants = 0;                                    // whose answers the row stands on; 0 where nobody was asked
+  int participants = 0;           // whose answers the row is based on; 0 where nobody was asked
   std::optional<double> success;  // mean over scenarios of the mean over training seeds (participants, where there are
                                   // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
