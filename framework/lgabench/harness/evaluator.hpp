@@ -21,9 +21,10 @@ struct Episode {
   std::optional<ActionVector> action;  // none where the actor gave none
   std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
   std::optional<bool> input_seen;      // Policy::seen_in_training() of the action
+  std::string error;                   // of a method_error: what was thrown, as the method words it
 };
 
-/// A line of episodes.jsonl.
+/// A line of episodes.jsonl: without the error, whose words may hold an address.
 Json to_json(const Episode& episode);
 
 /// A test scene, and how it is seen.

@@ -127,9 +127,18 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   return scenes;
 }
 
+// What the first act() that failed threw, "" where none did.
+std::string first_error(const std::vector<Episode>& episodes) {
+  constexpr std::size_t longest = 2000;
+  for (const Episode& episode : episodes)
+    if (episode.failure == Failure::method_error) return one_line(episode.error.substr(0, longest));
+  return "";
+}
+
 // Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
 // `self` does: a plugin may have forked another one that came here as well.
-void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files) {
+void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files,
+            const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   Json hashes = Json::object();
   for (const auto& [name, bytes] : files) {
@@ -137,7 +146,8 @@ void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::str
     hashes[name] = sha256(bytes);
   }
   sync_directory(job.directory);
-  const Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  if (!error.empty()) status["method_error"] = error;
   write_file(job.directory / "status.json", canonical(status) + '\n');
   sync_directory(job.directory);
 }
@@ -239,7 +249,8 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
           {"selection.json", canonical({{"commands", commands}}) + '\n'},
           {"training.jsonl", training.lines},
           {"episodes.jsonl", episode_lines},
-          {"timing.json", canonical(phases.seconds()) + '\n'}});
+          {"timing.json", canonical(phases.seconds()) + '\n'}},
+         first_error(episodes));
 }
 
 }  // namespace lgabench

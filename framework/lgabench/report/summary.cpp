@@ -263,6 +263,12 @@ void mark_low_rows(Table& table) {
   }
 }
 
+// What counts as a failure of the policy was one of its code.
+void mark_errors(Table& table) {
+  for (Row& row : table.rows)
+    if (!row.is_reference() && row.failures.count("method_error") != 0) row.marks.emplace_back("method_error");
+}
+
 std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
   constexpr double error_bars = 1.5;
   Nearness near;
@@ -316,6 +322,7 @@ Table make_table(const Cells& cells) {
       table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
   }
   mark_low_rows(table);
+  mark_errors(table);
   return table;
 }
 

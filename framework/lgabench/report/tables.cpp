@@ -124,6 +124,33 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   return lines;
 }
 
+std::vector<std::string> method_errors(const RunResults& run, const fs::path& directory) {
+  struct Errors {
+    int episodes = 0, errors = 0;
+    const CellResult* first = nullptr;
+  };
+  std::map<std::string, Errors> all;  // by the row's name
+  for (const CellResult& cell : run.cells) {
+    if (cell.is_reference()) continue;
+    Errors& row = all[cell.method];
+    for (const auto& arm : cell.episodes)
+      for (const PlayedEpisode& e : arm.second) {
+        ++row.episodes;
+        if (e.failure != "method_error") continue;
+        ++row.errors;
+        if (!row.first) row.first = &cell;
+      }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [method, row] : all)
+    if (row.first)
+      lines.push_back(fmt::format("{} of {} episodes of {} are method_error: {} ({})", row.errors, row.episodes,
+                                  display_name(method),
+                                  row.first->method_error.empty() ? "no reason is recorded" : row.first->method_error,
+                                  (directory / "cells" / row.first->key / "log.txt").string()));
+  return lines;
+}
+
 std::vector<PhaseTimes> phase_times(const RunResults& run) {
   std::map<std::tuple<std::string, std::string, int, std::string>, PhaseTimes> all;  // layout, engine, rank, method
   for (const CellResult& cell : run.cells) {
