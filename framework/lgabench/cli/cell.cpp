@@ -20,6 +20,7 @@ void run(const JsonReader& reader, const Messages& messages) {
               reader.at("build").json()};
   job.confined = reader.at("confined").boolean();
   job.memory_bytes = reader.at("limits").at("data_bytes").integer(1, 1LL << 60);
+  if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
   if (reader.has("method")) job.method = job_plugin(reader.at("method"));
   if (job.cell.method.is_reference() == job.method.has_value())
     reader.at("cell").fail("a plugin for a method, and only there");

@@ -11,6 +11,7 @@
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/debug_cell.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 
@@ -18,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache,
+  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
                              shard = "1/1";
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
@@ -155,6 +156,7 @@ int run(Arguments a) {
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
 
+  if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
     to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
@@ -236,6 +238,10 @@ void add_run(CLI::App& app, int& exit) {
                    "A directory of participants' .json files: methods that ask people then have a cell for each");
   verb->add_flag("--unconfined", a->unconfined,
                  "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
+  verb->add_option("--debug", a->debug,
+                   "Play one cell of the run, named by the first digits of its directory's name in cells/, in the "
+                   "foreground and unconfined: a plugin under gdb, Python where breakpoint() works. Nothing is kept")
+      ->type_name("KEY");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->footer(

@@ -81,7 +81,8 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
                 job.scratch,
                 job.confined,
                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
-                job.memory_bytes});
+                job.memory_bytes,
+                job.debugger});
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }

@@ -200,6 +200,21 @@ std::string TimeSpent::text(int jobs) const {
                      wall_s > 0 ? 100 * workers_s / (jobs * wall_s) : 0, wall_s);
 }
 
+Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
+              const fs::path& answers, const fs::path& scratch) {
+  Json job{{"cell", to_json(cell)},
+           {"directory", fs::absolute(directory).string()},
+           {"cache", fs::absolute(plan.cache).string()},
+           {"answers", fs::absolute(answers).string()},
+           {"scratch", scratch.string()},
+           {"confined", plan.confined},
+           {"build", build_of(cell, catalogue)},
+           {"limits", worker_limits(plan.pool)},
+           {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
+  if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
+  return job;
+}
+
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
   keep_answers(plan.answers, plan.out);
@@ -219,17 +234,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     scratch[i] = directory.scratch(key(cell));
     const fs::path own = hosts.path / std::to_string(i);
     fs::create_directory(own);
-    Json job{{"cell", to_json(cell)},
-             {"directory", fs::absolute(scratch[i]).string()},
-             {"cache", fs::absolute(plan.cache).string()},
-             {"answers", fs::absolute(plan.out / "answers").string()},
-             {"scratch", own.string()},
-             {"confined", plan.confined},
-             {"build", build_of(cell, catalogue)},
-             {"limits", worker_limits(plan.pool)},
-             {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
-    if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
-    return WorkerTask{job, scratch[i] / "log.txt"};
+    return WorkerTask{cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own), scratch[i] / "log.txt"};
   };
   std::set<std::string> failed;
   PoolEvents events;

@@ -53,6 +53,10 @@ struct RunOutcome {
 /// another configuration or build never meets its results.
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
 
+/// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
+Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const std::filesystem::path& directory,
+              const std::filesystem::path& answers, const std::filesystem::path& scratch);
+
 /// Computes those of the shard's cells that the directory lacks, long ones first. A cell that fails is recorded as
 /// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.
 /// @throws InputError, with nothing overwritten, if the directory cannot be used; PluginError for a missing plugin.

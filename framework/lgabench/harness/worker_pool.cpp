@@ -280,6 +280,32 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   return true;
 }
 
+int run_in_foreground(const Json& job) {
+  const std::string program = (program_directory() / "lgabench-worker").string();
+  const Descriptor file = job_file(job);
+  const std::vector<std::string> variables = worker_environment();
+  std::vector<char*> environment;
+  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
+  environment.push_back(nullptr);
+  char cell[] = "cell";
+  char* const arguments[] = {const_cast<char*>(program.c_str()), cell, nullptr};
+  ::signal(SIGINT, SIG_IGN);
+  const pid_t pid = ::fork();
+  if (pid < 0) fail("fork");
+  if (pid == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int spare = ::fcntl(file.fd, F_DUPFD_CLOEXEC, 10);
+    ::dup2(0, persons_input);
+    ::dup2(spare, 0);
+    ::execve(program.c_str(), arguments, environment.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+  ::signal(SIGINT, SIG_DFL);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 Json plugin_json(const PluginInfo& plugin) {
   Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
   if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"python", plugin.python}});
