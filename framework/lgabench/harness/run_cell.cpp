@@ -73,16 +73,17 @@ class TrainingLines : public TrainingLog {
 
 // The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
-  if (job.method)
-    return std::make_unique<HostedMethod>(
-        HostJob{*job.method,
-                job.cell.method.options,
-                job.cell.training_seed,
-                job.scratch,
-                job.confined,
-                {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
-                job.memory_bytes,
-                job.debugger});
+  if (job.method) {
+    HostJob host{*job.method,
+                 job.cell.method.options,
+                 job.cell.training_seed,
+                 job.scratch,
+                 job.confined,
+                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
+                 job.memory_bytes};
+    host.debugger = job.debugger;
+    return std::make_unique<HostedMethod>(host);
+  }
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
