@@ -62,9 +62,9 @@ Actor reference_actor(const std::string& id);
 std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
                               const Actor& actor, const std::function<void(int)>& done);
 
-/// Says of every failed episode whether the Selection or the policy failed (PROTOCOL, section 5): "abstraction" where
-/// `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was selected;
-/// else "policy". Arguments as of evaluate(), `episodes` what it returned.
+/// Says of every failed episode whether the Selection or the policy failed (docs/protocol.md, section 5): "abstraction"
+/// where `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was
+/// selected; else "policy". Arguments as of evaluate(), `episodes` what it returned.
 /// @throws EngineError if the engine fails.
 void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
                         const Actor& with_truth, std::vector<Episode>& episodes);

@@ -211,6 +211,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.seeds = static_cast<int>(seeds.size());
   row.participants = static_cast<int>(draft.participants.size());
   if (policies.size() < cells.size()) row.marks.emplace_back("incomplete");
+  if (first.asks == "network") row.marks.emplace_back("network");
   estimate(draft, first_arm);
   return draft;
 }
@@ -244,6 +245,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   }
   row.participants = static_cast<int>(mean.participants.size());
   if (!complete) row.marks.emplace_back("incomplete");
+  if (drafts.front()->row.marked("network")) row.marks.emplace_back("network");
   estimate(mean, first_arm);
   return row;
 }
