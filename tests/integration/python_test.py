@@ -1,13 +1,15 @@
 """Methods in Python, as a person runs them. Skipped where the interpreter has no NumPy (LGABENCH_TEST_PYTHON names one)."""
 import json
 import os
+import pathlib
 import subprocess
 import sys
 import unittest
 
-from case import BUILD, Case, command_line
+from case import BUILD, Case, command_line, with_options
 
 PYTHON = os.environ.get("LGABENCH_TEST_PYTHON", sys.executable)
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
 HAS_NUMPY = subprocess.run([PYTHON, "-c", "import numpy"], capture_output=True).returncode == 0
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
@@ -133,6 +135,44 @@ class PythonMethods(Case):
         done = self.call("check-plugin", "my_method/my_method.py:MyMethod", "--python", PYTHON)
         self.assertIn("good", done.stdout)
         self.call(*RUN, "--methods", "my_method/my_method.py:MyMethod", "--out", "out")
+
+
+class PythonExamples(Case):
+    """examples/python, confined as any method; each where the interpreter has what it imports."""
+
+    def beside(self, other, module, example, *more):
+        """The rows of the run, by method, and the shared directory of each method's cell."""
+        if subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True).returncode != 0:
+            self.skipTest(f"{PYTHON} has no {module}")
+        self.call(*with_options(RUN, "--methods", f"{other},{EXAMPLES / example}", "--out", "out", *more))
+        self.assert_matches_schemas("out")
+        rows = {row["method"].partition("+")[0]: row for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]}
+        cells = {cell["method"]["id"]: self.dir / "out/cells" / key for key, (cell, _) in self.cells("out").items()}
+        return rows, cells
+
+    def test_lga_in_pytorch(self):
+        short = ("--set", "*.epochs=60", "--demos", "20", "--episodes", "10")
+        rows, cells = self.beside("lga+network=plain", "torch", "lga_torch.py:Lga", *short)
+        own, other = (json.loads((cells[name] / "selection.json").read_text()) for name in ("lga_torch", "lga"))
+        self.assertEqual(own, other)
+        seen, as_seen = ([json.loads(line)["input_seen"] for line in (cells[name] / "episodes.jsonl").read_text().splitlines()]
+                         for name in ("lga_torch", "lga"))
+        self.assertEqual(seen, as_seen)  # the same pictures, to the byte, in training and at test
+        losses = [[json.loads(line) for line in (cells[name] / "training.jsonl").read_text().splitlines()]
+                  for name in ("lga_torch", "lga")]
+        self.assertEqual(*([(line["epoch"], line["steps"]) for line in one] for one in losses))
+        self.assertLess(abs(losses[0][-1]["loss"] - losses[1][-1]["loss"]), .1 * losses[1][0]["loss"])
+        self.assertNotIn("method_error", rows["lga_torch"]["failures"])
+        self.call(*with_options(RUN, "--methods", f"{EXAMPLES}/lga_torch.py:Lga", "--out", "again", *short))
+        again, = self.cells("again")
+        self.assertEqual((self.dir / "again/cells" / again / "episodes.jsonl").read_bytes(),
+                         (cells["lga_torch"] / "episodes.jsonl").read_bytes())
+
+    def test_a_forest_in_scikit_learn(self):
+        rows, _ = self.beside("lga", "sklearn", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50",
+                              "--episodes", "10")
+        self.assertNotIn("method_error", rows["forest_sklearn"]["failures"])
+        self.assertGreater(rows["forest_sklearn"]["success"], rows["lga"]["success"])
 
 
 if __name__ == "__main__":
