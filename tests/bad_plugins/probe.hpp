@@ -127,7 +127,8 @@ class Probe : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 }  // namespace
 
-#define PROBE_OPTIONS R"({
+#define PROBE_OPTIONS \
+  R"({
   "how": {"default": "descriptors", "help": "what it tries", "source": "test fixture"},
   "path": {"default": "", "help": "of the file, or a port", "source": "test fixture"}
 })"

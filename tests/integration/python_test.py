@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import socket
 import subprocess
 import sys
 import unittest
@@ -15,6 +16,7 @@ RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--
        "--python", PYTHON]
 METHOD = '''
 import os
+import socket
 import numpy
 import helper
 from lgabench_method import Needs, Refused, Selection, select_features
@@ -31,6 +33,8 @@ class Mine:
         how = services.options["how"]
         if how == "raise":
             raise ValueError("its own failure")
+        if how.startswith("connect:"):
+            socket.create_connection(("localhost", int(how[8:])), 10).close()
         if how == "human":
             services.human.specify(command)
         if how == "rule":
@@ -121,6 +125,18 @@ class PythonMethods(Case):
             self.assertEqual((status["state"], status["fault"]), ("failed", "plugin"), how)
             self.assertIn(reason, status["reason"], how)
         self.assertIn("Traceback", (found["raise"][0] / "log.txt").read_text())
+
+    def test_the_network_for_a_method_that_declares_it(self):
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+        how = f"how=connect:{server.getsockname()[1]}"
+        (self.dir / "net.py").write_text(METHOD.replace('version = "0.3"', 'version = "0.3"\n    asks = "network"'))
+        done = self.call(*RUN, "--methods", f"mine.py:Mine+{how},net.py:Mine+{how}", "--out", "out", expect=3)
+        states = {cell["method"]["id"]: status for cell, status in self.cells("out").values()}
+        self.assertRegex(states["mine"]["reason"], "PermissionError: .*Operation not permitted")
+        self.assertEqual(states["net"]["state"], "ok")
+        self.assertIn("¶ reached the network on its own", done.stdout)
+        self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
 
     def test_refused_with_a_reason(self):
         for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",

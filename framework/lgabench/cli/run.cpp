@@ -7,6 +7,8 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/openai_options.hpp>
+#include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
@@ -20,11 +22,11 @@ namespace {
 
 struct Arguments {
   std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
-                             shard = "1/1";
+                             shard = "1/1", model, cassette;
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
-  int jobs = 0, limit = 0;  // 0: as many as there are cores, all cells
+  int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
   bool unconfined = false, resume = false, fresh = false, no_reference = false, json = false;
 };
@@ -90,6 +92,24 @@ Json participant_hashes(const std::vector<Participant>& participants) {
   return hashes;
 }
 
+// The server's model that --answers openai asks; none for other answers, which need no server.
+std::optional<LiveModel> live_model(const Arguments& a) {
+  if (a.answers != "openai") {
+    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0)
+      throw InputError("--model, --cassette and --max-queries: expected --answers openai with them");
+    return std::nullopt;
+  }
+  if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
+    throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
+  const Cassette readable(a.cassette);
+  LiveModel live;
+  live.cassette = a.cassette;
+  live.max_queries = a.max_queries;
+  live.about = {
+      {"model", a.model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
+  return live;
+}
+
 // The command that takes this run up again, wherever its default directory was.
 std::string resuming_command(const Arguments& a, const fs::path& out) {
   Words words = command_line();
@@ -119,7 +139,10 @@ int run(Arguments a) {
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan plan;
-  if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
+  plan.live = live_model(a);
+  if (plan.live) {
+    variation.answers = live_prefix + a.model;
+  } else if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
@@ -220,14 +243,24 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--answers", a->answers,
                    "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
                    "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
-                   "as lgabench select --suite keeps them")
+                   "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run")
       ->check([](const std::string& word) {
         const std::vector<std::string> sources = recorded_sources();
-        const bool known = word == "recorded" || word.rfind(cassette_prefix, 0) == 0 ||
+        const bool known = word == "recorded" || word == "openai" || word.rfind(cassette_prefix, 0) == 0 ||
                            std::find(sources.begin(), sources.end(), word) != sources.end();
         return known ? ""
-                     : fmt::format("expected recorded, {} or cassette:FILE, got {}", fmt::join(sources, ", "), word);
+                     : fmt::format("expected recorded, {}, openai or cassette:FILE, got {}", fmt::join(sources, ", "),
+                                   word);
       })
+      ->capture_default_str();
+  verb->add_option("--model", a->model, "With --answers openai: the server's model");
+  verb->add_option(
+      "--cassette", a->cassette,
+      "With --answers openai: file of its replies, which grows; runs may share it, and no question that it "
+      "answers is asked again");
+  verb->add_option("--max-queries", a->max_queries,
+                   "With --answers openai: questions that a cell may ask the server; -1: no limit")
+      ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb->add_option("--truth", a->truth,
                    "The true distributions: those that the paper's authors released with their code, or those printed "
@@ -248,6 +281,8 @@ void add_run(CLI::App& app, int& exit) {
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
       "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
+      "With a model asked now: lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl\n"
+      "  (the server named by OPENAI_BASE_URL, any that follows its API, with the key in OPENAI_API_KEY)\n"
       "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
       "as\n"
       "lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"

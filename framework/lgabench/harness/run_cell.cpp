@@ -11,7 +11,6 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
@@ -81,6 +80,7 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
                  job.confined,
                  {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
                  job.memory_bytes};
+    if (!job.live.cassette.empty()) host.hidden.push_back(job.live.cassette);
     host.debugger = job.debugger;
     return std::make_unique<HostedMethod>(host);
   }
@@ -160,7 +160,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const pid_t self = ::getpid();
   const Cell& cell = job.cell;
   const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
-  if (data_hashes(scenario) != cell.data)
+  if (data_hashes(scenario, cell.answers) != cell.data)
     throw InputError("cell: /data: the data directory changed since the run began");
   const std::string& id = cell.method.id;
   Phases phases(report);
@@ -168,7 +168,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  const Answers answers = answers_for(cell, scenario, job.answers);
+  const Answers answers = answers_for(cell, scenario, job.answers, job.live);
   TrainingLines training(phases);
   Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
   Needs needs;
@@ -211,7 +211,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
   if (learns) {
+    const SelectionCost before = answers.lm->cost();
     policy = guarded(id, [&] { return method->learn(demonstrations, services); });
+    instructions.front().selection.cost += answers.lm->cost() - before;  // nobody else's: it may ask of any command
     if (!policy) throw MethodError(fmt::format("plugin {}: learn returned no policy", id));
   }
   demonstrations.clear();

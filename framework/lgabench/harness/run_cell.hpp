@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -23,6 +24,7 @@ struct CellJob {
   bool confined = true;                                // the method's process, see host/confine.hpp
   long long memory_bytes = 0;                          // of it; 0: no limit
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
+  LiveModel live{};                                    // where the cell asks one
 };
 
 /// Says what the cell is doing: a phase (select, sample, demonstrate, learn, evaluate) and a count within it.

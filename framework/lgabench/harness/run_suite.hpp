@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct RunPlan {
   std::filesystem::path out;  // the run directory
   std::filesystem::path cache;
   std::vector<AnswerFile> answers{};  // that the cells name
+  std::optional<LiveModel> live{};    // that the cells ask
   Existing existing = Existing::same;
   PoolOptions pool;
   bool confined = true;  // methods' processes, see host/confine.hpp

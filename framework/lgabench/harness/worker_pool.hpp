@@ -55,7 +55,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 /// interrupt too. Returns the worker's exit status.
 int run_in_foreground(const Json& job);
 
-/// {"file", "sha256"}, for a method in Python also {"id", "python"}: a plugin, as a job names it to the worker.
+/// {"file", "sha256"}, for a method in Python also {"id", "asks", "python"}: a plugin, as a job names it to the worker.
 Json plugin_json(const PluginInfo& plugin);
 
 /// Of this machine's memory.

@@ -53,7 +53,8 @@ Reach reach_of(const HostJob& job) {
                "/sys/devices/system/cpu", "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib",
                job.method.file.parent_path()},
               {job.scratch, "/dev/null", "/dev/zero"},
-              job.hidden};
+              job.hidden,
+              job.method.asks == "network"};
   if (const Json& python = job.method.python; !python.is_null()) {
     reach.reads.push_back(python_package());
     reach.reads.push_back(python.at("interpreter").get<std::string>());

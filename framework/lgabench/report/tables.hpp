@@ -40,8 +40,8 @@ constexpr std::array<Mark, 5> table_marks{
 /// "†§": the row's.
 std::string marks_text(const Row& row);
 
-/// "0.85 [0.64, 0.95]", then †, §, ‡, !, ¶ and = for the row's marks; "–" for a row without episodes, "" where there is no
-/// row.
+/// "0.85 [0.64, 0.95]", then †, §, ‡, !, ¶ and = for the row's marks; "–" for a row without episodes, "" where there is
+/// no row.
 std::string success_text(const Row* row);
 
 /// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
@@ -52,8 +52,8 @@ std::string seen_text(const Row* row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
-/// What a reader of the tables must know, one line each: what †, §, ‡, !, ¶ and = say, how many people made Selections or
-/// that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
+/// What a reader of the tables must know, one line each: what †, §, ‡, !, ¶ and = say, how many people made Selections
+/// or that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
 /// "5 of 5 episodes of X are method_error: what the first one threw (DIRECTORY/cells/KEY/log.txt)" for each row's name
