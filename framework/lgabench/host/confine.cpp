@@ -11,10 +11,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include <lgabench/core/error.hpp>
 
@@ -150,13 +150,23 @@ std::string confinement_text() {
 }
 
 // What the C library, OpenSSL and Python read to find a server and to trust it, in Debian's places and Fedora's.
-constexpr std::array<const char*, 14> for_network{"/etc/resolv.conf",     "/etc/hosts",
-                                                  "/etc/host.conf",       "/etc/nsswitch.conf",
-                                                  "/etc/gai.conf",        "/etc/services",
-                                                  "/etc/protocols",       "/etc/ssl/certs",
-                                                  "/etc/ssl/cert.pem",    "/usr/share/ca-certificates",
-                                                  "/etc/pki/tls",         "/etc/pki/ca-trust",
-                                                  "/etc/ca-certificates", "/usr/local/share/ca-certificates"};
+constexpr const char* for_network[] = {
+    "/etc/resolv.conf",
+    "/etc/hosts",
+    "/etc/host.conf",
+    "/etc/nsswitch.conf",
+    "/etc/gai.conf",
+    "/etc/services",
+    "/etc/protocols",
+    "/etc/ssl/certs",
+    "/etc/ssl/cert.pem",
+    "/usr/share/ca-certificates",
+    "/usr/local/share/ca-certificates",
+    "/etc/ca-certificates",
+    "/etc/pki/tls/certs",
+    "/etc/pki/tls/cert.pem",
+    "/etc/pki/ca-trust/extracted",
+};
 
 Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   const int version = landlock_version();
@@ -166,7 +176,7 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   std::error_code not_there;
   for (const fs::path& path : reach.hidden) hidden.push_back(fs::weakly_canonical(path, not_there));
   std::vector<fs::path> reads = reach.reads;
-  if (network_) reads.insert(reads.end(), for_network.begin(), for_network.end());
+  if (network_) reads.insert(reads.end(), std::begin(for_network), std::end(for_network));
   for (const fs::path& path : reads) {
     const fs::path real = fs::canonical(path, not_there);
     if (!not_there) rules.add_visible(real, hidden);

@@ -164,8 +164,8 @@ class Host {
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       channel_.send(reply, protocol::to_bytes(action));
     } else if (frame.type() == "drop") {
-      const bool method = reader.at("what").string() == "method";
-      call([&] { method ? method_.reset() : policy_.reset(); });
+      const bool drops_method = reader.at("what").string() == "method";
+      call([&] { drops_method ? method_.reset() : policy_.reset(); });
       channel_.send({{"type", "dropped"}});
     } else if (frame.type() == "state") {
       ProcessState state = ProcessState::now().beyond(before_);
