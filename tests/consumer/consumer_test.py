@@ -43,7 +43,8 @@ class Consumer(unittest.TestCase):
 
     def call(self, *words, expect=0, cwd=None, typed=None, **environment):
         done = subprocess.run([*self.hide, *map(str, words)], capture_output=True, text=True, cwd=cwd or self.dir,
-                              input=typed, timeout=900, env=dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), **environment))
+                              input=typed, timeout=900,
+                              env=dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), **environment))
         self.assertEqual(done.returncode, expect, done.stdout[-3000:] + done.stderr[-3000:])
         return done
 
