@@ -69,10 +69,11 @@ class Documents(unittest.TestCase):
                     wrong.append(f"{page.relative_to(SOURCE)}: {target}")
         self.assertEqual(wrong, [])
 
-    def test_every_page_is_in_the_index(self):
-        index = (SOURCE / "docs/README.md").read_text()
+    def test_every_page_is_in_the_index_and_in_the_site(self):
+        index, site = (SOURCE / "docs/README.md").read_text(), (SOURCE / "mkdocs.yml").read_text()
         pages = [str(page.relative_to(SOURCE / "docs")) for page in PAGES if page.is_relative_to(SOURCE / "docs")]
         self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
+        self.assertEqual([page for page in pages if f": docs/{page}\n" not in site], [])
 
     def test_tables_render(self):
         """GitHub takes no table whose head and rule differ in cells, and drops what a row has too many."""
