@@ -43,7 +43,8 @@ function(lgabench_link_data)
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
                answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper formats:docs/formats
-               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates)
+               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
+               python:python)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)

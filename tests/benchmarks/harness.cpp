@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include <lgabench/cli/scratch.hpp>
+#include <lgabench/core/scratch.hpp>
 
 #include "benchmarks.hpp"
 
@@ -23,7 +23,7 @@ void list(benchmark::State& state) {
 // Two dozen cells of about the same length, demonstrations at hand: few would show how the last two happen to end, a
 // short run its start and its report, which q1 has once an hour.
 void workers(benchmark::State& state, int count) {
-  static const cli::Scratch scratch("benchmark");
+  static const Scratch scratch("benchmark");
   for (auto _ : state)
     execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 10 --seeds 0:12 --no-reference "
                                "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include <lgabench/cli/scratch.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <tabletop/objects.hpp>
@@ -39,7 +39,7 @@ std::string scene() {
 }
 
 void draw(benchmark::State& state) {
-  const cli::Scratch scratch("tinyrenderer");
+  const Scratch scratch("tinyrenderer");
   const fs::path path = scratch.path / "scene.json";
   write_file(path, scene());
   const std::string command =

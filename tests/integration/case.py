@@ -24,11 +24,23 @@ def command_line(*arguments):
     return [PROGRAM, *words] + ([flag, engine] if engine != "mujoco" and flag not in words else [])
 
 
+def with_options(words, *more):
+    """The words and `more`, whose options (of one value each) take the place of those that are there."""
+    kept, words = [], list(words)
+    while words:
+        word = words.pop(0)
+        if word in more and str(word).startswith("--"):
+            words.pop(0)
+        else:
+            kept.append(word)
+    return [*kept, *more]
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
-        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"))
+        self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), TMPDIR=str(self.dir))
 
     def call(self, *arguments, expect=0, **more):
         done = subprocess.run(command_line(*arguments), capture_output=True, text=True, env=self.environment,

@@ -30,7 +30,7 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "harness", "report", "cli"):
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "harness", "report", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
@@ -41,6 +41,9 @@ class IncludeGraph(unittest.TestCase):
 
     def test_learning_knows_core_and_abstraction(self):
         self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|tabletop/|mujoco")
+
+    def test_host_knows_core_and_plugin(self):
+        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|tabletop/|torch|ATen|opencv|mujoco")
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
@@ -66,7 +69,7 @@ class Needed(unittest.TestCase):
         self.assertEqual([n for n in needed(BUILD / file) if re.search(pattern, n)], [], f"{file} must not need {pattern}")
 
     def test_programs_do_not_link_torch(self):
-        for program in ("bin/lgabench", "bin/lgabench-worker"):
+        for program in ("bin/lgabench", "bin/lgabench-worker", "bin/lgabench-method"):
             self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):

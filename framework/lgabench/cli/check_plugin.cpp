@@ -6,18 +6,19 @@
 #include <array>
 #include <memory>
 
-#include <lgabench/cli/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/check.hpp>
 #include <lgabench/harness/worker_pool.hpp>
+#include <lgabench/host/python_method.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  fs::path file;
+  std::string file, python = "python3";
   std::vector<std::string> settings;
   double timeout_s = 600;
   bool json = false;
@@ -54,7 +55,11 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
              {"report", reports[i].string()},
              {"options", options},
              {"engine", plugin_json(is_method ? catalogue.find("engine", "mujoco") : plugin)}};
-    if (is_method) job["method"] = plugin_json(plugin);
+    if (is_method) {
+      const fs::path own = scratch.path / fmt::format("method{}", i);
+      fs::create_directory(own);
+      job.update({{"method", plugin_json(plugin)}, {"scratch", own.string()}});
+    }
     return WorkerTask{job, scratch.path / fmt::format("log{}.txt", i), "check-job"};
   };
   const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
@@ -67,10 +72,10 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
       found[i] = read_check_report(read_json(reports[i]), reports[i].string());
       continue;
     }
+    const bool said_why = !ends[i].complaint.is_null() && ends[i].host_signal == 0;
     const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
-    report.problem(
-        "process", why_it_ended(ends[i], a.timeout_s).reason,
-        !ends[i].complaint.is_null() || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
+    report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
+                   said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
     if (i == 0) return report;
   }
   report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
@@ -100,15 +105,17 @@ int check_plugin(const Arguments& a) {
   CheckReport report;
   PluginInfo plugin;
   try {
-    plugin = read_plugin(a.file);
+    plugin = is_python_method(a.file) ? describe_python(a.file, a.python) : read_plugin(a.file);
     report = check(plugin, scan_plugins(plugin_directories()), a);
   } catch (const PluginError& e) {
-    report.problem("descriptor", e.what(), "build it with lgabench_add_plugin() from this very lgabench's package");
+    report.problem("descriptor", e.what(),
+                   is_python_method(a.file) ? "see docs/add-a-method-in-python.md"
+                                            : "build it with lgabench_add_plugin() from this very lgabench's package");
   }
   const bool good = !has_problem(report);
   if (a.json) {
     Json json = to_json(report);
-    json["file"] = a.file.string();
+    json["file"] = a.file;
     json["plugin"] =
         plugin.id.empty() ? Json() : Json{{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}};
     json["good"] = good;
@@ -128,7 +135,10 @@ void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb =
       app.add_subcommand("check-plugin", "Look for what is wrong with a plugin, and say what to do about it");
-  verb->add_option("file", a->file, "The plugin's library")->required()->type_name("FILE.so");
+  verb->add_option("file", a->file, "The plugin's library, or a method in Python")
+      ->required()
+      ->type_name("FILE.so or FILE.py:Class");
+  verb->add_option("--python", a->python, "The interpreter of a method in Python")->capture_default_str();
   verb->add_option("--set", a->settings, "option=value of the plugin; may be given again")->allow_extra_args(false);
   verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
       ->check(within(1, 1e6))

@@ -11,6 +11,8 @@
 #include <new>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -39,13 +41,24 @@ Json read_job() {
 Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
 
 void Messages::send(const Json& message) const {
+  if (message.contains("phase")) phase_ = message["phase"];
   if (!open_) return;
   const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
 }
 
 PluginInfo job_plugin(const JsonReader& reader) {
-  PluginInfo info = read_plugin(reader.at("file").string());
+  PluginInfo info;
+  if (reader.has("python")) {
+    info.file = reader.at("file").string();
+    info.kind = "method";
+    info.id = reader.at("id").string();
+    info.asks = reader.at("asks").string();
+    info.sha256 = sha256_file(info.file);
+    info.python = reader.at("python").json();
+  } else {
+    info = read_plugin(reader.at("file").string());
+  }
   if (info.sha256 != reader.at("sha256").string())
     throw PluginError(fmt::format("{}: changed since the run began", info.file.string()));
   return info;
@@ -60,6 +73,10 @@ void do_job(const std::function<void(const JsonReader& job, const Messages& mess
   try {
     const Json job = read_job();
     work(JsonReader(job, "job"), messages);
+  } catch (const MethodGone& e) {
+    const MethodGone placed(fmt::format("{} in phase {}", e.what(), messages.phase()), e.signal);
+    messages.send({{"reason", placed.what()}, {"fault", "plugin"}, {"signal", e.signal}});
+    throw placed;
   } catch (const MethodError& e) {
     complain(e, "plugin");
     throw;

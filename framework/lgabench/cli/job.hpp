@@ -15,9 +15,12 @@ class Messages {
  public:
   Messages();
   void send(const Json& message) const;
+  /// The last phase that was told, or "".
+  const std::string& phase() const { return phase_; }
 
  private:
   bool open_;
+  mutable std::string phase_;
 };
 
 /// The plugin {"file", "sha256"}. @throws PluginError where it is refused, or another one by now.

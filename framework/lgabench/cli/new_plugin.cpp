@@ -62,6 +62,11 @@ void new_plugin(const Arguments& a) {
     write_file(directory / to, text);
     to_stdout("{}\n", (directory / to).string());
   };
+  if (a.kind == "python") {
+    write("python.py.in", a.name + ".py");
+    write("python.README.md.in", "README.md");
+    return;
+  }
   write(a.kind + ".cpp.in", a.name + ".cpp");
   write(a.kind + ".README.md.in", "README.md");
   write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
@@ -74,8 +79,8 @@ void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("new-plugin", "Write the project of a new plugin: it builds, and you change it");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
-  verb->add_option("--kind", a->kind, "method or engine")
-      ->check(CLI::IsMember({"method", "engine"}))
+  verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")
+      ->check(CLI::IsMember({"method", "engine", "python"}))
       ->capture_default_str();
   verb->add_option("--directory", a->directory, "Where; by default ./NAME, which must not be there yet");
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");

@@ -10,14 +10,15 @@
 #include <set>
 #include <thread>
 
-#include <lgabench/cli/scratch.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_suite.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/report/agreement.hpp>
 
 namespace lgabench::cli {
@@ -30,6 +31,8 @@ struct Arguments {
   bool all = false, strict = false, json = false;
   double timeout_s = 3600;
   std::vector<fs::path> plugin_path;
+  std::vector<std::string> methods;
+  std::string python = "python3";
 };
 
 struct Recorded {
@@ -118,7 +121,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
   const std::string file = (recorded.directory / "cell.json").string();
-  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"));
+  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"), cell.answers);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;
 }
@@ -243,9 +246,20 @@ int verify(const Arguments& a) {
     plan.out = scratch.path / "run";
     plan.cache = scratch.path / "cache";
     plan.answers = kept_answers(a.run);
+    if (is_live(cells.front().cell.answers)) {
+      const std::optional<AnswerFile> replies = kept_replies(a.run);
+      if (!replies)
+        throw InputError(fmt::format(
+            "{}: its language model's replies are not kept in answers/, as after a kill; give its command again: {}",
+            a.run.string(), JsonReader(record, "run.json").at("command").string()));
+      plan.live.emplace().cassette = replies->path;
+      plan.live->asks = false;
+    }
     plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     plan.pool.timeout_s = a.timeout_s;
-    if (run_suite(plan, scan_plugins(plugin_directories(a.plugin_path))).interrupted) return interrupted;
+    Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+    for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
+    if (run_suite(plan, catalogue).interrupted) return interrupted;
 
     const auto processor = [](const Json& run) {
       return JsonReader(run, "run.json").at("machine").at("processor").string();
@@ -294,6 +308,8 @@ void add_verify(CLI::App& app, int& exit) {
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
       ->check(within(1, 1e7))
       ->capture_default_str();
+  verb->add_option("--methods", a->methods, "FILE.py:Class of methods in Python; several with commas")->delimiter(',');
+  verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
   verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
   verb->add_flag("--json", a->json, "Print JSON instead of lines");
   verb->footer(

@@ -1,11 +1,27 @@
 #include <lgabench/core/run_layout.hpp>
 
 #include <algorithm>
+#include <string_view>
 
 namespace lgabench {
 
 const std::vector<std::string> cell_files{"cell.json",      "selection.json", "training.jsonl",
                                           "episodes.jsonl", "timing.json",    "log.txt"};
+
+std::vector<std::string> artefact_names(const fs::path& files) {
+  constexpr std::size_t most = 100, longest = 100;
+  constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  std::vector<std::string> names;
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(files, none_there)) {
+    const std::string name = entry.path().filename();
+    const bool plain = name[0] != '.' && name.size() <= longest && name.find_first_not_of(allowed) == std::string::npos;
+    if (plain && entry.symlink_status(none_there).type() == fs::file_type::regular) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  names.resize(std::min(names.size(), most));
+  return names;
+}
 
 bool is_cell_key(const std::string& text) {
   return text.size() == 16 &&

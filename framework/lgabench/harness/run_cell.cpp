@@ -11,11 +11,11 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
+#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -70,16 +70,28 @@ class TrainingLines : public TrainingLog {
   const Phases& phases_;
 };
 
-// The plugin's method, the constant action, or none for a row that learns nothing.
+// The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
-  if (job.method) return load_method(*job.method);
+  if (job.method) {
+    HostJob host{*job.method,
+                 job.cell.method.options,
+                 job.cell.training_seed,
+                 job.scratch,
+                 job.confined,
+                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
+                 job.memory_bytes};
+    if (!job.live.cassette.empty()) host.hidden.push_back(job.live.cassette);
+    host.debugger = job.debugger;
+    return std::make_unique<HostedMethod>(host);
+  }
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
 
 DemonstrationCache demonstration_cache(const CellJob& job) {
   Json builds = job.build;
-  for (const char* no_part_in_it : {"method", "liblgabench_learning.so"}) builds.erase(no_part_in_it);
+  for (const char* no_part_in_it : {"method", "python", "lgabench-method", "liblgabench_learning.so"})
+    builds.erase(no_part_in_it);
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 
@@ -117,9 +129,18 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   return scenes;
 }
 
+// What the first act() that failed threw, "" where none did.
+std::string first_error(const std::vector<Episode>& episodes) {
+  constexpr std::size_t longest = 2000;
+  for (const Episode& episode : episodes)
+    if (episode.failure == Failure::method_error) return one_line(episode.error.substr(0, longest));
+  return "";
+}
+
 // Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
 // `self` does: a plugin may have forked another one that came here as well.
-void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files) {
+void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files,
+            const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   Json hashes = Json::object();
   for (const auto& [name, bytes] : files) {
@@ -127,7 +148,8 @@ void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::str
     hashes[name] = sha256(bytes);
   }
   sync_directory(job.directory);
-  const Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  if (!error.empty()) status["method_error"] = error;
   write_file(job.directory / "status.json", canonical(status) + '\n');
   sync_directory(job.directory);
 }
@@ -138,7 +160,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const pid_t self = ::getpid();
   const Cell& cell = job.cell;
   const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
-  if (data_hashes(scenario) != cell.data)
+  if (data_hashes(scenario, cell.answers) != cell.data)
     throw InputError("cell: /data: the data directory changed since the run began");
   const std::string& id = cell.method.id;
   Phases phases(report);
@@ -146,7 +168,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  const Answers answers = answers_for(cell, scenario, job.answers);
+  const Answers answers = answers_for(cell, scenario, job.answers, job.live);
   TrainingLines training(phases);
   Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
   Needs needs;
@@ -189,7 +211,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
   if (learns) {
+    const SelectionCost before = answers.lm->cost();
     policy = guarded(id, [&] { return method->learn(demonstrations, services); });
+    instructions.front().selection.cost += answers.lm->cost() - before;  // nobody else's: it may ask of any command
     if (!policy) throw MethodError(fmt::format("plugin {}: learn returned no policy", id));
   }
   demonstrations.clear();
@@ -202,6 +226,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
                       : abstraction_empty ? Actor()
                                           : reference_actor(id);
   std::vector<Episode> episodes = evaluate(*environment, scenario.space, tests, actor, [&](int n) { phases.count(n); });
+  // What the method shows of itself is taken here: from now on it may be told the truth.
+  auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
+  const auto files = hosted ? hosted->files() : std::vector<std::pair<std::string, std::string>>();
   const auto selects = [](const Instruction& i) { return i.selection.provenance != Provenance::none; };
   if (std::all_of(instructions.begin(), instructions.end(), selects)) {  // else there is no abstraction to blame
     std::vector<Instruction> true_ones;
@@ -209,6 +236,8 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     attribute_failures(*environment, scenario.space, tests, policy ? policy_actor(*policy, true_ones, id) : Actor(),
                        episodes);
   }
+
+  if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.
   std::string episode_lines;
@@ -218,12 +247,14 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     commands.push_back({{"utterance", instructions[c].utterance},
                         {"selection", to_json(instructions[c].selection)},
                         {"quality", quality(instructions[c].selection, scenario.commands[c].truth)}});
+  for (const auto& [name, bytes] : files) write_file(job.directory / "files" / name, bytes);
   record(job, self,
          {{"cell.json", canonical(to_json(cell)) + '\n'},
           {"selection.json", canonical({{"commands", commands}}) + '\n'},
           {"training.jsonl", training.lines},
           {"episodes.jsonl", episode_lines},
-          {"timing.json", canonical(phases.seconds()) + '\n'}});
+          {"timing.json", canonical(phases.seconds()) + '\n'}},
+         first_error(episodes));
 }
 
 }  // namespace lgabench

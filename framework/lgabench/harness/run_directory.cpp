@@ -100,7 +100,8 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
-    Json hashes{{"lgabench-worker", sha256_file(bin / "lgabench-worker")}};
+    Json hashes;
+    for (const char* name : {"lgabench-worker", "lgabench-method"}) hashes[name] = sha256_file(bin / name);
     for (const char* name : {"liblgabench_core.so", "liblgabench_tabletop.so", "liblgabench_learning.so"})
       hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
     return hashes;
@@ -108,6 +109,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   Json build = programs;
   build["engine"] = engine.sha256;
   if (method) build["method"] = method->sha256;
+  if (method && !method->python.is_null()) build["python"] = canonical(method->python.at("versions"));
   return build;
 }
 
@@ -177,6 +179,13 @@ void RunDirectory::keep(const std::string& key) const {
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", there.string(), error.message()));
   remove_tree(old);
   remove_tree(made);
+}
+
+void RunDirectory::amend(const std::string& member, const Json& value) const {
+  Json record = read_json(path_ / "run.json", Links::refused);
+  if (record.value(member, Json()) == value) return;
+  record[member] = value;
+  write_file(path_ / "run.json", record.dump(1) + '\n');
 }
 
 void RunDirectory::sync() const { sync_directory(path_ / "cells"); }

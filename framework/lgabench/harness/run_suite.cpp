@@ -13,9 +13,11 @@
 #include <thread>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/progress.hpp>
+#include <lgabench/host/confine.hpp>
 
 namespace lgabench {
 namespace {
@@ -35,13 +37,45 @@ std::string processor() {
   return "unknown";
 }
 
+Json answers_json(const std::vector<AnswerFile>& files) {
+  Json answers = Json::array();
+  for (const AnswerFile& file : files) {
+    answers.push_back(file.about);
+    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
+  }
+  return answers;
+}
+
+// A run that goes on must find what its cells were told: what was asked is not asked again.
+void expect_replies_of(const RunPlan& plan) {
+  const std::optional<AnswerFile> kept = kept_replies(plan.out);
+  if (kept && (!fs::exists(plan.live->cassette) || !holds_lines(plan.live->cassette, kept->path)))
+    throw InputError(fmt::format("{}: lacks replies that {} is based on; they are in {}: copy that file there",
+                                 plan.live->cassette.string(), plan.out.string(), kept->path.string()));
+}
+
+// What the model said until now goes with the run. A full disk costs the copy, not the cells.
+void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
+  try {
+    const std::optional<AnswerFile> replies = keep_replies(*plan.live, plan.out);
+    if (!replies) return;
+    std::vector<AnswerFile> files = plan.answers;
+    files.push_back(*replies);
+    directory.amend("answers", answers_json(files));
+    drop_other_replies(replies->name, plan.out);
+  } catch (const InputError& e) {
+    to_stderr("the language model's replies are not kept with the run: {}\n", one_line(e.what()));
+  }
+}
+
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
   std::vector<std::string> keys;
   Json plugins = Json::array();
   std::set<std::string> named;
   const auto name = [&](const PluginInfo& info) {
-    if (named.insert(info.kind + info.id).second)
-      plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
+    if (!named.insert(info.kind + info.id).second) return;
+    plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
+    if (!info.asks.empty()) plugins.back()["asks"] = info.asks;
   };
   Json programs, settings = Json::object();
   for (const Cell& cell : plan.cells) {
@@ -54,12 +88,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     }
     programs = build_of(cell, catalogue);
   }
-  for (const char* plugin : {"engine", "method"}) programs.erase(plugin);
-  Json answers = Json::array();
-  for (const AnswerFile& file : plan.answers) {
-    answers.push_back(file.about);
-    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
-  }
+  for (const char* plugin : {"engine", "method", "python"}) programs.erase(plugin);
   utsname system{};
   ::uname(&system);
   return {{"suite", plan.request.at("suite")},
@@ -72,7 +101,8 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"build", programs},
           {"version", LGABENCH_VERSION},
           {"command", plan.command},
-          {"answers", answers},
+          {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
+          {"answers", answers_json(plan.answers)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",
            {{"processor", processor()},
@@ -84,7 +114,8 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
 // status.json of a worker that left none.
 Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
   const auto [reason, fault] = why_it_ended(end, timeout_s);
-  return {{"state", "failed"},        {"reason", reason}, {"signal", end.signal ? Json(end.signal) : Json(nullptr)},
+  const int signal = end.signal ? end.signal : end.host_signal;
+  return {{"state", "failed"},        {"reason", reason}, {"signal", signal ? Json(signal) : Json(nullptr)},
           {"fault", fault},           {"build", build},   {"files", Json::object()},
           {"log_tail", log_tail(log)}};
 }
@@ -196,9 +227,27 @@ std::string TimeSpent::text(int jobs) const {
                      wall_s > 0 ? 100 * workers_s / (jobs * wall_s) : 0, wall_s);
 }
 
+Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
+              const fs::path& answers, const fs::path& scratch) {
+  Json job{{"cell", to_json(cell)},
+           {"directory", fs::absolute(directory).string()},
+           {"cache", fs::absolute(plan.cache).string()},
+           {"answers", fs::absolute(answers).string()},
+           {"scratch", scratch.string()},
+           {"confined", plan.confined},
+           {"build", build_of(cell, catalogue)},
+           {"limits", worker_limits(plan.pool)},
+           {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
+  if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
+  if (plan.live) job["live"] = to_json(*plan.live);
+  return job;
+}
+
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
   keep_answers(plan.answers, plan.out);
+  const bool asks = plan.live && plan.live->asks;
+  if (asks) expect_replies_of(plan);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
   RunOutcome outcome;
   outcome.reused = complete.size();
@@ -208,19 +257,14 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   Progress progress(missing.size());
   std::vector<const Cell*> played(missing.size());
   std::vector<fs::path> scratch(missing.size());
+  const Scratch hosts("hosts");  // not below the run's directory: a method does not learn where that is
   const auto make = [&](std::size_t i) {
     played[i] = schedule.next();
     const Cell& cell = *played[i];
     scratch[i] = directory.scratch(key(cell));
-    Json job{{"cell", to_json(cell)},
-             {"directory", fs::absolute(scratch[i]).string()},
-             {"cache", fs::absolute(plan.cache).string()},
-             {"answers", fs::absolute(plan.out / "answers").string()},
-             {"build", build_of(cell, catalogue)},
-             {"limits", worker_limits(plan.pool)},
-             {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
-    if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
-    return WorkerTask{job, scratch[i] / "log.txt"};
+    const fs::path own = hosts.path / std::to_string(i);
+    fs::create_directory(own);
+    return WorkerTask{cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own), scratch[i] / "log.txt"};
   };
   std::set<std::string> failed;
   PoolEvents events;
@@ -244,6 +288,8 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     } catch (const std::exception& e) {
       record_failure(directory, cell, reason = e.what(), "plugin", build);
     }
+    std::error_code ignored;
+    fs::remove_all(hosts.path / std::to_string(i), ignored);
     outcome.time.workers_s += end.seconds;
     const fs::path kept = directory.cell(key(cell));
     if (reason.empty()) {
@@ -259,6 +305,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const auto start = std::chrono::steady_clock::now();
   outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
   outcome.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (asks) keep_replies_of(plan, directory);
   if (outcome.interrupted) return outcome;
   // The last word is the disk's: a cell that was there, or was computed, and is not as it was kept has failed.
   const auto expect_there = [&](const Cell& cell, std::size_t& count) {

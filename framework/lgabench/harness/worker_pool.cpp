@@ -20,6 +20,7 @@
 #include <utility>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/host/host_process.hpp>
 
 namespace lgabench {
 namespace {
@@ -27,18 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError(fmt::format("{}: {}", what, std::strerror(errno))); }
-
-// Owns a file descriptor.
-struct Descriptor {
-  int fd = -1;
-  explicit Descriptor(int f = -1) : fd(f) {}
-  Descriptor(Descriptor&& other) noexcept : fd(std::exchange(other.fd, -1)) {}
-  Descriptor& operator=(Descriptor&&) = delete;
-  ~Descriptor() { close(); }
-  void close() {
-    if (fd >= 0) ::close(std::exchange(fd, -1));
-  }
-};
 
 // SIGCHLD and the signals that end a run arrive in poll(); the mask is put back at the end. Once one of them came, more
 // of them are ignored: who presses Ctrl-C twice still gets the orderly end.
@@ -103,14 +92,15 @@ Descriptor job_file(const Json& job) {
 }
 
 // One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
-std::vector<std::string> worker_environment() {
-  // A secret of the person's is no plugin's business.
-  constexpr std::array<const char*, 2> not_theirs{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
+std::vector<std::string> worker_environment(const Json& job) {
+  // A secret of the person's stays here, but for a worker that asks a server with it.
+  constexpr std::array<const char*, 2> secret{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
+  const bool asks = job.contains("live") && job["live"].at("asks") == true;
   std::vector<std::string> all{"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
                                "LGABENCH_DATA=" + fs::absolute(data_directory()).string()};
   for (char** variable = environ; *variable; ++variable) {
     const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
-    if (std::find(not_theirs.begin(), not_theirs.end(), name) != not_theirs.end()) continue;
+    if (!asks && std::find(secret.begin(), secret.end(), name) != secret.end()) continue;
     if (std::none_of(all.begin(), all.begin() + 4, [&](const auto& ours) { return ours.rfind(name, 0) == 0; }))
       all.push_back(text);
   }
@@ -128,7 +118,8 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   Descriptor reading(ends[0]);
   const Descriptor writing(ends[1]);
   ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
-  const std::vector<std::string> variables = worker_environment();  // nothing is allocated between fork and exec
+  const std::vector<std::string> variables =
+      worker_environment(what.job);  // nothing is allocated between fork and exec
   std::vector<char*> environment;
   for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
   environment.push_back(nullptr);
@@ -169,6 +160,8 @@ void take_line(const std::string& line, Worker& worker, const PoolEvents& events
   };
   if (message.contains("reason")) {
     worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
+    const Json signal = message.value("signal", Json(0));
+    if (signal.is_number_integer()) worker.end.host_signal = signal.get<int>();
     worker.end.plugin_refused = message.value("refused", Json()) == true;
   }
   if (!message.contains("phase")) return;
@@ -212,14 +205,32 @@ bool reap(Worker& worker, const PoolEvents& events) {
   return true;
 }
 
+// What a method's process left behind when its worker was stopped: it became ours. No worker is meant by that.
+void kill_strays(const std::list<Worker>& workers) {
+  const auto is_worker = [&workers](pid_t pid) {
+    return std::any_of(workers.begin(), workers.end(), [pid](const Worker& worker) { return worker.pid == pid; });
+  };
+  for (bool some = true; some;) {
+    some = false;
+    for (const pid_t pid : children_of(::getpid())) {
+      if (is_worker(pid)) continue;
+      some = true;
+      ::kill(pid, SIGKILL);
+      ::waitpid(pid, nullptr, 0);
+    }
+  }
+}
+
 // However this is left, no worker stays behind.
 struct Crew {
+  Crew() { ::prctl(PR_SET_CHILD_SUBREAPER, 1); }
   std::list<Worker> workers;
   ~Crew() {
     for (Worker& worker : workers) {
       kill_group(worker);
       ::waitpid(worker.pid, nullptr, 0);
     }
+    kill_strays({});
   }
 };
 
@@ -263,6 +274,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
       }
       const Worker gone = std::move(*worker);
       worker = crew.workers.erase(worker);
+      kill_strays(crew.workers);
       events.ended(gone.task, gone.end);
     }
     events.tick();
@@ -270,8 +282,36 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   return true;
 }
 
+int run_in_foreground(const Json& job) {
+  const std::string program = (program_directory() / "lgabench-worker").string();
+  const Descriptor file = job_file(job);
+  const std::vector<std::string> variables = worker_environment(job);
+  std::vector<char*> environment;
+  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
+  environment.push_back(nullptr);
+  char cell[] = "cell";
+  char* const arguments[] = {const_cast<char*>(program.c_str()), cell, nullptr};
+  ::signal(SIGINT, SIG_IGN);
+  const pid_t pid = ::fork();
+  if (pid < 0) fail("fork");
+  if (pid == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int spare = ::fcntl(file.fd, F_DUPFD_CLOEXEC, 10);
+    ::dup2(0, persons_input);
+    ::dup2(spare, 0);
+    ::execve(program.c_str(), arguments, environment.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+  ::signal(SIGINT, SIG_DFL);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 Json plugin_json(const PluginInfo& plugin) {
-  return {{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
+  Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
+  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"asks", plugin.asks}, {"python", plugin.python}});
+  return json;
 }
 
 double machine_bytes() {

@@ -7,6 +7,8 @@
 
 namespace lgabench {
 
+MethodGone::~MethodGone() = default;
+
 std::string current_exception_text() {
   const std::type_info* type = abi::__cxa_current_exception_type();
   const std::string name = type ? boost::core::demangle(type->name()) : "something";

@@ -11,6 +11,17 @@
 
 namespace lgabench {
 
+/// The process that a method runs in ended, was stopped or broke the protocol: the cell fails, and the method is at
+/// fault.
+class MethodGone : public Error {
+ public:
+  /// `signal_number`: of what ended it, or 0.
+  MethodGone(const std::string& what, int signal_number) : Error(what), signal(signal_number) {}
+  ~MethodGone() override;
+
+  int signal;
+};
+
 /// The exception being handled, as one line: the first of what(), or the name of its type if it has none.
 std::string current_exception_text();
 
@@ -34,6 +45,8 @@ decltype(auto) guarded(std::string_view plugin_id, Call&& call) {
   const auto named = [plugin_id] { return "plugin " + std::string(plugin_id) + ": " + current_exception_text(); };
   try {
     return std::forward<Call>(call)();
+  } catch (const MethodGone& e) {
+    throw MethodGone("plugin " + std::string(plugin_id) + ": " + e.what(), e.signal);
   } catch (const InputError&) {
     throw InputError(named());
   } catch (const std::bad_alloc&) {

@@ -104,12 +104,6 @@ std::string text(const char (&field)[Size], const char* name) {
   return value;
 }
 
-bool is_name(const std::string& id) {
-  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
-  return !id.empty() && lower(id[0]) &&
-         std::all_of(id.begin(), id.end(), [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
-}
-
 bool offers(const Json& option, const Json& value) {
   const Json values = option.is_object() ? option.value("values", Json()) : Json();
   return values.is_array() && std::find(values.begin(), values.end(), value) != values.end();
@@ -126,6 +120,14 @@ void check_needs(const JsonReader& option, const Json& options) {
       for (const JsonReader& one : needs.at(value).at(other).elements())
         if (!offers(options.value(other, Json()), one.json())) one.fail(fmt::format("a value of option {}", other));
   }
+}
+
+}  // namespace
+
+bool is_name(const std::string& id) {
+  const auto lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !id.empty() && lower(id[0]) &&
+         std::all_of(id.begin(), id.end(), [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 // Complaints of InputError's kind are the plugin's fault here.
@@ -155,7 +157,13 @@ Json read_options(const std::string& options_json) {
   }
 }
 
-}  // namespace
+void check_asks(const std::string& kind, const std::string& asks) {
+  constexpr std::array<const char*, 5> known{"", "specify", "edit", "truth", "network"};
+  if (std::find(known.begin(), known.end(), asks) == known.end() || (kind == "engine" && !asks.empty()))
+    throw PluginError(fmt::format(
+        "descriptor: asks \"{}\", expected \"specify\", \"edit\", \"truth\" or \"network\" of a method, or \"\"",
+        asks));
+}
 
 PluginDescriptor find_descriptor(std::string_view bytes) {
   constexpr std::string_view magic(LGABENCH_PLUGIN_MAGIC, sizeof(PluginDescriptor::magic));
@@ -202,11 +210,7 @@ PluginInfo inspect_plugin(const fs::path& file) {
   if (plugin.kind != "method" && plugin.kind != "engine")
     throw PluginError(fmt::format("descriptor: kind \"{}\", expected \"method\" or \"engine\"", plugin.kind));
   plugin.asks = text(d.asks, "asks");
-  constexpr std::array<const char*, 4> known{"", "specify", "edit", "truth"};
-  if (std::find(known.begin(), known.end(), plugin.asks) == known.end() ||
-      (plugin.kind == "engine" && !plugin.asks.empty()))
-    throw PluginError(fmt::format(
-        "descriptor: asks \"{}\", expected \"specify\", \"edit\" or \"truth\" of a method, or \"\"", plugin.asks));
+  check_asks(plugin.kind, plugin.asks);
   plugin.id = text(d.id, "id");
   if (!is_name(plugin.id))
     throw PluginError(

@@ -10,6 +10,15 @@ namespace lgabench {
 /// The one descriptor in the bytes of a whole ELF library. @throws PluginError, also for another plugin interface.
 PluginDescriptor find_descriptor(std::string_view bytes);
 
+/// A descriptor's options, checked. @throws PluginError with the place of what is wrong.
+Json read_options(const std::string& options_json);
+
+/// Lower-case letters, digits and underscores, a letter first: a plugin's id.
+bool is_name(const std::string& id);
+
+/// Whom a method may say that it asks. @throws PluginError for another word.
+void check_asks(const std::string& kind, const std::string& asks);
+
 /// read_plugin without the file's name in errors.
 PluginInfo inspect_plugin(const fs::path& file);
 

@@ -32,10 +32,13 @@ namespace fs = std::filesystem;
   for (std::list<std::vector<char>> held;;) held.emplace_back(std::size_t{1} << 24, 'x');
 }
 
-// The directory that the worker's job names: where its results are written.
+std::string run;  // its directory, as an option tells
+
+// The directory that its cell is written into: the one hidden entry among the run's cells.
 fs::path scratch() {
-  std::ifstream job("/proc/self/fd/0");
-  return Json::parse(std::string(std::istreambuf_iterator<char>(job), {}))["directory"].get<std::string>();
+  for (const auto& entry : fs::directory_iterator(fs::path(run) / "cells"))
+    if (entry.path().filename().string()[0] == '.') return entry.path();
+  throw std::runtime_error("no cell is being written");
 }
 
 // What it does to the files of its run.
@@ -111,6 +114,7 @@ class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
   ~Faulty() override { misbehave(at_end_); }
   Selection select(const Command&, const FeatureSpace&, Services& services) override {
     const std::string so = how(services, "select");
+    run = services.options.at("run");
     misbehave(so);
     Selection selection;
     if (so == "cost") selection.cost.lm_queries = -5;
@@ -137,6 +141,7 @@ class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
 }  // namespace
 
 LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
+  "run": {"default": "", "help": "directory of the run that it damages", "source": "test fixture"},
   "where": {"default": "act", "help": "in which call", "source": "test fixture", "values": ["select", "learn", "act",
             "destroy"]},
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",

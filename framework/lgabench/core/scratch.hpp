@@ -10,7 +10,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 
-namespace lgabench::cli {
+namespace lgabench {
 
 /// A directory lgabench-NAME-XXXXXX among the system's temporary ones, which is gone when this is.
 struct Scratch {
@@ -28,4 +28,4 @@ struct Scratch {
   Scratch& operator=(const Scratch&) = delete;
 };
 
-}  // namespace lgabench::cli
+}  // namespace lgabench

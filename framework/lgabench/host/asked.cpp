@@ -1,0 +1,129 @@
+#include <lgabench/host/asked.hpp>
+
+#include <algorithm>
+#include <iterator>
+#include <tuple>
+
+#include <lgabench/host/messages.hpp>
+
+namespace lgabench {
+namespace {
+
+bool nothing_in(const Selection& s) {
+  const auto none = [](const FeatureSet& set) { return set.object_types.empty() && set.textures.empty(); };
+  return none(s.target) && (!s.avoid || none(*s.avoid));
+}
+
+bool same_distribution(const Selection& a, const Selection& b) {
+  return a.target == b.target && a.avoid.has_value() == b.avoid.has_value() && (!a.avoid || *a.avoid == *b.avoid);
+}
+
+// Names in the space's order, each once.
+std::vector<std::string> in_order(const std::vector<std::string>& names, const std::vector<std::string>& order) {
+  std::vector<std::string> sorted;
+  std::copy_if(order.begin(), order.end(), std::back_inserter(sorted), [&names](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  });
+  return sorted;
+}
+
+Selection in_order(Selection selection, const FeatureSpace& space) {
+  const auto sort = [&space](FeatureSet& set) {
+    set = {in_order(set.object_types, space.object_types), in_order(set.textures, space.textures)};
+  };
+  sort(selection.target);
+  if (selection.avoid) sort(*selection.avoid);
+  return selection;
+}
+
+}  // namespace
+
+Asked::Asked(const FeatureSpace& space, Services& services)
+    : space_(space), services_(services), before_(services.lm.cost()) {}
+
+bool Asked::answer(const Frame& frame, Channel& channel) {
+  const JsonReader reader(frame.header, "frame");
+  if (frame.type() != "ask" && frame.type() != "person") return false;
+  Json reply;
+  try {
+    reply = frame.type() == "ask" ? answer_questions(reader) : ask_person(reader);
+  } catch (const Malformed&) {
+    throw;
+  } catch (const std::exception& e) {
+    failure_ = std::current_exception();
+    reply = {{"type", "refused"}, {"reason", e.what()}};
+  }
+  channel.send(reply);
+  return true;
+}
+
+void Asked::rethrow() const {
+  if (failure_) std::rethrow_exception(failure_);
+}
+
+Json Asked::answer_questions(const JsonReader& reader) {
+  const auto [command, space, questions] = protocol::read_or_malformed([&] {
+    std::vector<Question> all;
+    for (const JsonReader& one : reader.at("questions").elements()) all.push_back(protocol::read_question(one));
+    return std::tuple(protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")), all);
+  });
+  LanguageModel& lm = services_.lm;
+  const std::vector<bool> answers = lm.answer(command, space, questions);
+  if (command.task == Task::sweep && !model_.avoid) model_.avoid.emplace();
+  for (std::size_t i = 0; i < std::min(answers.size(), questions.size()); ++i) {
+    if (!answers[i]) continue;
+    const bool avoid = questions[i].about == Question::About::avoid;
+    if (avoid && !model_.avoid) model_.avoid.emplace();
+    FeatureSet& set = avoid ? *model_.avoid : model_.target;
+    (questions[i].group == Question::Group::texture ? set.textures : set.object_types)
+        .push_back(questions[i].candidate);
+  }
+  model_.provenance = lm.provenance();
+  model_.source = lm.model();
+  model_.asked_as = lm.asked_as(command);
+  model_.cost = lm.cost() - before_;
+  keep(model_);
+  return {{"type", "answers"},           {"answers", answers},
+          {"model", lm.model()},         {"provenance", to_string(lm.provenance())},
+          {"asked_as", model_.asked_as}, {"cost", protocol::to_json(lm.cost())}};
+}
+
+Json Asked::ask_person(const JsonReader& reader) {
+  const auto [how, command, proposal] = protocol::read_or_malformed([&] {
+    const std::string word = reader.at("how").string();
+    if (word != "specify" && word != "edit" && word != "truth") reader.at("how").fail("specify, edit or truth");
+    return std::tuple(word, protocol::read_command(reader.at("command")),
+                      word == "edit" ? protocol::read_selection(reader.at("proposal")) : Selection());
+  });
+  const Selection answered = how == "edit"    ? services_.human.edit(command, account(proposal))
+                             : how == "truth" ? services_.truth(command)
+                                              : services_.human.specify(command);
+  keep(answered);
+  return {{"type", "person"}, {"selection", protocol::told(answered)}};
+}
+
+void Asked::keep(Selection answered) { answers_.push_back(in_order(std::move(answered), space_)); }
+
+Selection Asked::account(Selection selection) const {
+  const Selection ordered = in_order(selection, space_);
+  Selection from;
+  std::string edited;
+  if (!answers_.empty()) {
+    const auto same = std::find_if(answers_.rbegin(), answers_.rend(),
+                                   [&ordered](const Selection& answer) { return same_distribution(answer, ordered); });
+    from = same == answers_.rend() ? answers_.back() : *same;
+    if (same == answers_.rend()) edited = ", edited by the method";
+    from.cost = model_.cost;
+    for (const Selection& answer : answers_)
+      from.cost.human_seconds = std::max(from.cost.human_seconds, answer.cost.human_seconds);
+  } else if (!nothing_in(selection)) {
+    from.provenance = Provenance::rule;
+  }
+  selection.provenance = from.provenance;
+  selection.source = from.source + edited;
+  selection.asked_as = from.asked_as;
+  selection.cost = from.cost;
+  return selection;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,41 @@
+// What a method asked during one call, and what that says of the Selection it returns.
+#pragma once
+#include <exception>
+#include <optional>
+#include <string>
+
+#include <lgabench/core/method.hpp>
+#include <lgabench/host/frames.hpp>
+
+namespace lgabench {
+
+/// Answers the frames "ask" and "person" of one call with the host's services.
+class Asked {
+ public:
+  /// Holds references.
+  Asked(const FeatureSpace& space, Services& services);
+
+  /// Answers on the channel; false for a frame that is no question. What an answer throws is kept, and told to the
+  /// method, which may bear it. @throws InputError for a question that is malformed.
+  bool answer(const Frame& frame, Channel& channel);
+  /// Throws again what the last answer threw, if one did: then that is why the call failed.
+  void rethrow() const;
+
+  /// The Selection with provenance, source, wording and cost: those of the answers that it equals, the last ones first;
+  /// of the last ones, ", edited by the method", where it equals none. Nobody asked: rule, or none where it is empty.
+  Selection account(Selection selection) const;
+
+ private:
+  Json answer_questions(const JsonReader& reader);
+  Json ask_person(const JsonReader& reader);
+  void keep(Selection answered);
+
+  const FeatureSpace& space_;
+  Services& services_;
+  SelectionCost before_;
+  std::exception_ptr failure_;
+  Selection model_;                 // all that the language model said yes to
+  std::vector<Selection> answers_;  // the model's and people's, the last one at the end
+};
+
+}  // namespace lgabench

@@ -1,0 +1,200 @@
+#include <lgabench/host/confine.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <linux/landlock.h>
+#include <seccomp.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The kernel's interface, whose headers may be older than the kernel (include/uapi/linux/landlock.h).
+struct Ruleset {
+  std::uint64_t handled_access_fs, handled_access_net, scoped;
+};
+constexpr std::uint64_t execute = 1 << 0, write_file = 1 << 1, read_file = 1 << 2, read_dir = 1 << 3,
+                        truncate = 1 << 14, ioctl_dev = 1 << 15;
+constexpr std::uint64_t reading = execute | read_file | read_dir;
+constexpr std::uint64_t of_files = execute | write_file | read_file | truncate | ioctl_dev;  // what a file can have
+
+std::uint64_t handled_by(int version) {
+  const int bits = version >= 5 ? 16 : version >= 3 ? 15 : version >= 2 ? 14 : 13;
+  return (std::uint64_t{1} << bits) - 1;
+}
+
+std::size_t ruleset_bytes(int version) { return version >= 6 ? 24 : version >= 4 ? 16 : 8; }
+
+bool is_below(const fs::path& path, const fs::path& directory) {
+  const auto [end, ignored] = std::mismatch(directory.begin(), directory.end(), path.begin(), path.end());
+  return end == directory.end();
+}
+
+class Rules {
+ public:
+  Rules(int version, bool network) : handled_(handled_by(version)) {
+    constexpr std::uint64_t bind_and_connect_tcp = 3, signals_and_abstract_sockets = 3;
+    const Ruleset ruleset{handled_, version >= 4 && !network ? bind_and_connect_tcp : 0,
+                          version >= 6 ? signals_and_abstract_sockets : 0};
+    file = Descriptor(static_cast<int>(::syscall(SYS_landlock_create_ruleset, &ruleset, ruleset_bytes(version), 0)));
+    if (file.fd < 0) throw EngineError(fmt::format("Landlock: {}", std::strerror(errno)));
+  }
+
+  void add(const fs::path& path, std::uint64_t access, bool follow = true) const {
+    const Descriptor opened(::open(path.c_str(), O_PATH | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW)));
+    struct stat status {};
+    if (opened.fd < 0 || ::fstat(opened.fd, &status) != 0 || S_ISLNK(status.st_mode)) return;
+    const landlock_path_beneath_attr rule{(S_ISDIR(status.st_mode) ? access : access & of_files) & handled_, opened.fd};
+    if (::syscall(SYS_landlock_add_rule, file.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
+      throw EngineError(fmt::format("Landlock: {}: {}", path.string(), std::strerror(errno)));
+  }
+
+  // All of the directory but what is hidden: then its entries one by one, since a rule cannot take back another.
+  void add_visible(const fs::path& path, const std::vector<fs::path>& hidden) const {
+    const auto hides = [&path](const fs::path& one) { return is_below(path, one); };
+    if (std::any_of(hidden.begin(), hidden.end(), hides)) return;
+    const auto lies_below = [&path](const fs::path& one) { return is_below(one, path); };
+    if (std::none_of(hidden.begin(), hidden.end(), lies_below)) return add(path, reading, false);
+    std::error_code unreadable;
+    for (const auto& entry : fs::directory_iterator(path, unreadable)) add_visible(entry.path(), hidden);
+  }
+
+  Descriptor file;
+
+ private:
+  std::uint64_t handled_;
+};
+
+// Everything is allowed but what reaches out of the process. The process's own number stays its own over exec.
+bool forbid_system_calls(bool network) {
+  scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+  if (!filter) return false;
+  const std::uint32_t refused = SCMP_ACT_ERRNO(EPERM);
+  const auto self = static_cast<scmp_datum_t>(::getpid());
+  bool good = true;
+  const auto add = [&](int call, auto... conditions) {
+    if (call < 0) return;  // not of this architecture
+    good = seccomp_rule_add(filter, refused, call, sizeof...(conditions), conditions...) == 0 && good;
+  };
+  add(SCMP_SYS(socketpair), SCMP_A0(SCMP_CMP_NE, AF_UNIX));
+  if (!network) {
+    add(SCMP_SYS(socket));
+  } else {  // of IP alone: a rule compares an argument once, so every other family has its own
+    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_LT, AF_INET));
+    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_GT, AF_INET6));
+    for (unsigned family = AF_INET + 1; family < AF_INET6; ++family)
+      add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_EQ, family));
+  }
+  // To nobody else, by any of the ways to name a process.
+  add(SCMP_SYS(kill), SCMP_A0(SCMP_CMP_NE, self));
+  add(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_NE, self));
+  add(SCMP_SYS(rt_sigqueueinfo), SCMP_A0(SCMP_CMP_NE, self));
+  add(SCMP_SYS(rt_tgsigqueueinfo), SCMP_A0(SCMP_CMP_NE, self));
+  add(SCMP_SYS(prlimit64), SCMP_A0(SCMP_CMP_NE, 0));  // 0: itself
+  for (const int call :
+       {SCMP_SYS(tkill), SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidfd_getfd), SCMP_SYS(ptrace),
+        SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(process_madvise), SCMP_SYS(kcmp),
+        SCMP_SYS(bpf), SCMP_SYS(userfaultfd), SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
+        SCMP_SYS(io_uring_register), SCMP_SYS(keyctl), SCMP_SYS(add_key), SCMP_SYS(request_key),
+        SCMP_SYS(perf_event_open), SCMP_SYS(mount), SCMP_SYS(umount2), SCMP_SYS(pivot_root), SCMP_SYS(chroot),
+        SCMP_SYS(move_mount), SCMP_SYS(open_tree), SCMP_SYS(fsopen), SCMP_SYS(fsmount), SCMP_SYS(mount_setattr),
+        SCMP_SYS(unshare), SCMP_SYS(setns), SCMP_SYS(open_by_handle_at), SCMP_SYS(name_to_handle_at),
+        // What would count as nobody's memory, or outlive the process.
+        SCMP_SYS(memfd_create), SCMP_SYS(memfd_secret), SCMP_SYS(shmget), SCMP_SYS(msgget), SCMP_SYS(semget),
+        SCMP_SYS(mq_open), SCMP_SYS(init_module), SCMP_SYS(finit_module), SCMP_SYS(kexec_load), SCMP_SYS(reboot),
+        SCMP_SYS(swapon), SCMP_SYS(settimeofday), SCMP_SYS(clock_settime), SCMP_SYS(sethostname)})
+    add(call);
+  good = good && seccomp_load(filter) == 0;
+  seccomp_release(filter);
+  return good;
+}
+
+}  // namespace
+
+int landlock_version() {
+  constexpr unsigned version_flag = 1;
+  return std::max(0, static_cast<int>(::syscall(SYS_landlock_create_ruleset, nullptr, 0, version_flag)));
+}
+
+bool has_seccomp() {
+  constexpr unsigned get_action_avail = 2;
+  const std::uint32_t action = SCMP_ACT_ERRNO(0);
+  return ::syscall(SYS_seccomp, get_action_avail, 0, &action) == 0;
+}
+
+std::string confinement_text() {
+  std::string text = "no Landlock (files)";
+  if (const int version = landlock_version(); version > 0) {
+    std::vector<std::string> without;
+    if (version < 3) without.emplace_back("truncation");
+    if (version < 4) without.emplace_back("TCP");
+    if (version < 6) without.emplace_back("signals");
+    text = fmt::format("Landlock {}", version);
+    if (!without.empty()) text += fmt::format(" (without: {})", fmt::join(without, ", "));
+  }
+  return text + (has_seccomp() ? ", seccomp" : ", no seccomp (system calls)");
+}
+
+// What the C library, OpenSSL and Python read to find a server and to trust it, in Debian's places and Fedora's.
+constexpr const char* for_network[] = {
+    "/etc/resolv.conf",
+    "/etc/hosts",
+    "/etc/host.conf",
+    "/etc/nsswitch.conf",
+    "/etc/gai.conf",
+    "/etc/services",
+    "/etc/protocols",
+    "/etc/ssl/certs",
+    "/etc/ssl/cert.pem",
+    "/usr/share/ca-certificates",
+    "/usr/local/share/ca-certificates",
+    "/etc/ca-certificates",
+    "/etc/pki/tls/certs",
+    "/etc/pki/tls/cert.pem",
+    "/etc/pki/ca-trust/extracted",
+};
+
+Confinement::Confinement(const Reach& reach) : network_(reach.network) {
+  const int version = landlock_version();
+  if (version == 0) return;
+  Rules rules(version, network_);
+  std::vector<fs::path> hidden;
+  std::error_code not_there;
+  for (const fs::path& path : reach.hidden) hidden.push_back(fs::weakly_canonical(path, not_there));
+  std::vector<fs::path> reads = reach.reads;
+  if (network_) reads.insert(reads.end(), std::begin(for_network), std::end(for_network));
+  for (const fs::path& path : reads) {
+    const fs::path real = fs::canonical(path, not_there);
+    if (!not_there) rules.add_visible(real, hidden);
+  }
+  for (const fs::path& path : reach.writes) rules.add(path, ~std::uint64_t{0});
+  rules_ = std::move(rules.file);
+}
+
+bool Confinement::apply() const {
+  if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+  if (rules_.fd >= 0) {
+    // The process's own view of itself: its number is known only here.
+    const int itself = ::open("/proc/self", O_PATH | O_DIRECTORY | O_CLOEXEC);
+    const landlock_path_beneath_attr rule{reading, itself};
+    if (itself >= 0) ::syscall(SYS_landlock_add_rule, rules_.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+    if (::syscall(SYS_landlock_restrict_self, rules_.fd, 0) != 0) return false;
+  }
+  return !has_seccomp() || forbid_system_calls(network_);
+}
+
+}  // namespace lgabench

@@ -1,0 +1,63 @@
+// The process of a method, as the worker that starts it sees it. One thread.
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <lgabench/host/confine.hpp>
+
+namespace lgabench {
+
+/// Processes that a process started, and, if it is a subreaper, those below it whose own parent is gone.
+std::vector<pid_t> children_of(pid_t parent);
+
+/// What is started, and with what.
+struct HostCommand {
+  std::vector<std::string> words;            // an absolute path, and its arguments
+  std::filesystem::path scratch;             // its directory, HOME and TMPDIR; there already
+  std::vector<std::string> also_set;         // variables beside those of the allow-list, as NAME=value
+  const Confinement* confinement = nullptr;  // lent; none: it may reach what we may
+  long long memory_bytes = 0;                // of it and what it started, shared memory included; 0: no limit
+  bool in_foreground = false;                // on our terminal, until whoever debugs it ends it
+};
+
+/// Of a worker that a person debugs in: what that person types. Its own standard input is the job.
+constexpr int persons_input = 4;
+
+/// A process in a session of its own with the socket as descriptor 3. What it and its children print goes to our
+/// stdout, cut off at 16 MiB. It, and whatever it left behind, is gone when this is; in the foreground that is waited
+/// for.
+class HostProcess {
+ public:
+  /// @throws EngineError where no process can be started.
+  explicit HostProcess(const HostCommand& command);
+  ~HostProcess();
+  HostProcess(const HostProcess&) = delete;
+  HostProcess& operator=(const HostProcess&) = delete;
+
+  /// Our end; to be taken once.
+  Descriptor take_socket() { return std::move(socket_); }
+  /// Returns when the socket `fd` has one of the poll() events, or after a moment; passes on what the host prints.
+  /// @throws std::bad_alloc where it has more memory than it may; it is then gone.
+  void wait(int fd, short events);
+  /// The connection is at its end. @throws MethodGone that says how the process ended, always.
+  [[noreturn]] void explain();
+
+ private:
+  void pass_on_output();
+  void watch_memory();
+  void stop();
+
+  long long memory_bytes_;
+  bool in_foreground_;
+  std::chrono::steady_clock::time_point looked_{};
+  pid_t pid_ = -1;
+  bool reaped_ = false;
+  Descriptor socket_, output_;
+  std::size_t printed_ = 0;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,268 @@
+#include <lgabench/host/hosted_method.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <new>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/host/asked.hpp>
+#include <lgabench/host/host_process.hpp>
+#include <lgabench/host/messages.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+namespace {
+
+// An installed interpreter has no lgabench_method: it comes with lgabench's data.
+fs::path python_package() { return fs::canonical(data_directory() / "python"); }
+
+HostCommand command_of(const HostJob& job, const Confinement* confinement) {
+  HostCommand command{
+      {(program_directory() / "lgabench-method").string()}, job.scratch, {}, confinement, job.memory_bytes};
+  if (const Json& python = job.method.python; !python.is_null()) {
+    command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
+    command.also_set = {"PYTHONPATH=" + python_package().string(), "PYTHONUNBUFFERED=1"};
+  } else if (job.perturb != 0) {
+    command.words.insert(command.words.end(), {"--perturb", std::to_string(job.perturb)});
+  }
+  if (job.debugger) {
+    command.words.insert(command.words.begin(), job.debugger->begin(), job.debugger->end());
+    command.in_foreground = true;
+    if (const char* terminal = std::getenv("TERM")) command.also_set.push_back(std::string("TERM=") + terminal);
+  }
+  return command;
+}
+
+Json method_json(const PluginInfo& method) {
+  Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
+  if (!method.python.is_null()) json["class"] = method.python.at("class");
+  return json;
+}
+
+// Of lgabench's data what learners use; of the system what a library or an interpreter starts with.
+Reach reach_of(const HostJob& job) {
+  const fs::path data = data_directory(), bin = program_directory();
+  Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/ssl/openssl.cnf",
+               "/etc/localtime", "/usr/share/zoneinfo", "/usr/share/locale", "/proc/cpuinfo", "/proc/meminfo",
+               "/sys/devices/system/cpu", "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib",
+               job.method.file.parent_path()},
+              {job.scratch, "/dev/null", "/dev/zero"},
+              job.hidden,
+              job.method.asks == "network"};
+  if (const Json& python = job.method.python; !python.is_null()) {
+    reach.reads.push_back(python_package());
+    reach.reads.push_back(python.at("interpreter").get<std::string>());
+    for (const Json& path : python.at("reads")) reach.reads.push_back(path.get<std::string>());
+  }
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(data, none_there)) {
+    const std::string name = entry.path().filename();
+    const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
+    (readable ? reach.reads : reach.hidden).push_back(entry.path());
+  }
+  return reach;
+}
+
+}  // namespace
+
+// The connection, which the method and its policy share.
+class HostSession {
+ public:
+  explicit HostSession(const HostJob& job)
+      : confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
+        process_(command_of(job, confinement_.get())),
+        channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),
+        observation_(protocol::observation_bytes) {
+    Json hello{{"type", "hello"},
+               {"protocol", protocol_version},
+               {"method", method_json(job.method)},
+               {"options", job.options},
+               {"seed", job.seed},
+               {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
+    hello.update(protocol::layout());
+    const Frame answer = call(hello, "hello", {}, &observation_.file());
+    read([&] { return JsonReader(answer.header, "hello").at("protocol").integer(protocol_version, protocol_version); });
+  }
+
+  using Meanwhile = std::function<bool(const Frame& frame, Channel& channel)>;
+
+  /// Sends the request and returns the reply of that type. `meanwhile` takes the frames that come before it; one that
+  /// it does not know breaks the protocol.
+  Frame call(const Json& request, const char* reply, const Meanwhile& meanwhile = {},
+             const Descriptor* file = nullptr) {
+    return guarded_by_protocol([&] {
+      channel_.send(request, {}, file);
+      for (;;) {
+        std::optional<Frame> frame = channel_.receive();
+        if (!frame) process_.explain();
+        if (frame->type() == reply) return std::move(*frame);
+        if (frame->type() == "error") raise(JsonReader(frame->header, "error"));
+        broken_ = "was left in the middle of a call";  // by what the next line may throw
+        if (!meanwhile || !meanwhile(*frame, channel_))
+          throw Malformed(fmt::format("\"{}\", expected \"{}\"", frame->type().substr(0, 40), reply));
+        broken_.clear();
+      }
+    });
+  }
+
+  /// What a reply holds, or MethodGone.
+  template <class Call>
+  auto read(Call&& call) -> decltype(call()) {
+    return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });
+  }
+
+  protocol::SharedMemory& observation() { return observation_; }
+
+ private:
+  template <class Call>
+  auto guarded_by_protocol(Call&& call) -> decltype(call()) {
+    if (!broken_.empty()) throw MethodGone(broken_, 0);
+    try {
+      return call();
+    } catch (const MethodGone& e) {
+      broken_ = e.what();
+      throw;
+    } catch (const Malformed& e) {
+      broken_ = fmt::format("sent a malformed frame: {}", e.what());
+      throw MethodGone(broken_, 0);
+    }
+  }
+
+  [[noreturn]] static void raise(const JsonReader& error) {
+    constexpr std::size_t longest = 2000;
+    const auto [kind, reason] = protocol::read_or_malformed(
+        [&] { return std::pair(error.at("kind").string(), error.at("reason").string().substr(0, longest)); });
+    if (kind == "memory") throw std::bad_alloc();
+    if (kind == "plugin") throw PluginError(reason);
+    throw MethodError(reason);
+  }
+
+  std::unique_ptr<Confinement> confinement_;
+  HostProcess process_;
+  Channel channel_;
+  protocol::SharedMemory observation_;
+  std::string broken_;  // why nothing can be asked any more
+};
+
+namespace {
+
+class HostedPolicy : public Policy {
+ public:
+  explicit HostedPolicy(std::shared_ptr<HostSession> session) : session_(std::move(session)) {}
+
+  void reset() override { reset_ = true; }
+  Action act(const Observation& observation, const Instruction& instruction) override {
+    protocol::write(observation, session_->observation());
+    const Frame frame = session_->call({{"type", "act"},
+                                        {"reset", std::exchange(reset_, false)},
+                                        {"instruction", protocol::to_json(instruction)},
+                                        {"instances", protocol::instances_json(observation)}},
+                                       "action");
+    return session_->read([&] {
+      const JsonReader reader(frame.header, "action");
+      seen_.reset();
+      if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
+      return protocol::read_action(frame.payload);
+    });
+  }
+  std::optional<bool> seen_in_training() const override { return seen_; }
+
+ private:
+  std::shared_ptr<HostSession> session_;
+  bool reset_ = false;
+  std::optional<bool> seen_;
+};
+
+double number_of(const std::string& payload) {
+  double value = 0;
+  if (payload.size() != sizeof value) throw Malformed("epoch: expected a payload of one double");
+  std::memcpy(&value, payload.data(), sizeof value);
+  return value;
+}
+
+}  // namespace
+
+HostedMethod::HostedMethod(const HostJob& job) : files_(job.scratch / "files") {
+  fs::create_directory(files_);
+  session_ = std::make_shared<HostSession>(job);
+}
+HostedMethod::~HostedMethod() = default;
+
+Needs HostedMethod::needs(const Json&) const {
+  const Frame frame = session_->call({{"type", "needs"}}, "needs");
+  return session_->read([&] { return protocol::read_needs(JsonReader(frame.header, "needs")); });
+}
+
+Selection HostedMethod::select(const Command& command, const FeatureSpace& space, Services& services) {
+  Asked asked(space, services);
+  const auto answer = [&asked](const Frame& frame, Channel& channel) { return asked.answer(frame, channel); };
+  try {
+    const Frame frame = session_->call(
+        {{"type", "select"}, {"command", protocol::to_json(command)}, {"space", protocol::to_json(space)}}, "selection",
+        answer);
+    return asked.account(session_->read([&] {
+      const JsonReader reader(frame.header, "selection");
+      return protocol::read_selection(reader.at("selection"));
+    }));
+  } catch (const MethodError&) {
+    asked.rethrow();
+    throw;
+  }
+}
+
+std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
+  const FeatureSpace none;
+  Asked asked(none, services);
+  const auto answer = [&](const Frame& frame, Channel& channel) {
+    if (frame.type() != "epoch") return asked.answer(frame, channel);
+    const auto [epochs, steps] = protocol::read_or_malformed([&] {
+      const JsonReader reader(frame.header, "epoch");
+      return std::pair(static_cast<int>(reader.at("epochs").integer(0, 1 << 30)),
+                       reader.at("steps").integer(0, 1LL << 60));
+    });
+    services.log.epoch(epochs, steps, number_of(frame.payload));
+    return true;
+  };
+  const protocol::DemonstrationFile packed = protocol::pack(demonstrations);
+  Json request = packed.header;
+  request["type"] = "learn";
+  try {
+    session_->call(request, "learned", answer, &packed.memory->file());
+  } catch (const MethodError&) {
+    asked.rethrow();
+    throw;
+  }
+  return std::make_unique<HostedPolicy>(session_);
+}
+
+std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
+  constexpr std::uintmax_t most = 64 << 20;
+  std::vector<std::pair<std::string, std::string>> all;
+  std::uintmax_t bytes = 0;
+  for (const std::string& name : artefact_names(files_)) try {
+      all.emplace_back(name, read_file(files_ / name, Links::refused, most - bytes));
+      bytes += all.back().second.size();
+    } catch (const InputError& e) {  // too large, or changed by now
+      to_stdout("files/{} is not kept: {}\n", name, e.what());
+    }
+  return all;
+}
+
+void HostedMethod::end() { session_->call({{"type", "bye"}}, "bye"); }
+
+void HostedMethod::drop_method() { session_->call({{"type", "drop"}, {"what", "method"}}, "dropped"); }
+
+void HostedMethod::drop_policy() { session_->call({{"type", "drop"}, {"what", "policy"}}, "dropped"); }
+
+ProcessState HostedMethod::state() const {
+  const Frame frame = session_->call({{"type", "state"}}, "state");
+  return session_->read([&] { return protocol::read_state(JsonReader(frame.header, "state")); });
+}
+
+}  // namespace lgabench

@@ -1,0 +1,165 @@
+#include <lgabench/host/messages.hpp>
+
+#include <array>
+#include <cstring>
+
+namespace lgabench::protocol {
+namespace {
+
+using About = Question::About;
+using Group = Question::Group;
+
+constexpr std::array<Task, 3> tasks{Task::pick_and_place, Task::rotate, Task::sweep};
+
+FeatureSet read_set(const JsonReader& reader) {
+  reader.only({"object_types", "textures"});
+  return {reader.at("object_types").strings(), reader.at("textures").strings()};
+}
+
+std::array<double, 12> numbers(const Action& action) {
+  const auto& [p, q] = action;
+  return {p.position_m.x, p.position_m.y, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w,
+          q.position_m.x, q.position_m.y, q.rotation.x, q.rotation.y, q.rotation.z, q.rotation.w};
+}
+
+}  // namespace
+
+Json to_json(const Command& command) { return {{"utterance", command.utterance}, {"task", to_string(command.task)}}; }
+
+Command read_command(const JsonReader& reader) {
+  Command command{reader.at("utterance").string(), Task::pick_and_place};
+  const std::string word = reader.at("task").string();
+  for (const Task task : tasks)
+    if (to_string(task) == word) command.task = task;
+  if (to_string(command.task) != word) reader.at("task").fail("pick_and_place, rotate or sweep");
+  return command;
+}
+
+Json to_json(const FeatureSpace& space) {
+  return {{"id", space.id}, {"object_types", space.object_types}, {"textures", space.textures}};
+}
+
+FeatureSpace read_space(const JsonReader& reader) {
+  return {reader.at("id").string(), reader.at("object_types").strings(), reader.at("textures").strings()};
+}
+
+Json told(const Selection& selection) {
+  Json json = distribution_json(selection);
+  json.update({{"provenance", to_string(selection.provenance)},
+               {"source", selection.source},
+               {"asked_as", selection.asked_as}});
+  return json;
+}
+
+Selection read_selection(const JsonReader& reader) {
+  reader.only({"target", "avoid", "provenance", "source", "asked_as"});
+  Selection selection;
+  selection.target = read_set(reader.at("target"));
+  if (reader.has("avoid")) selection.avoid = read_set(reader.at("avoid"));
+  if (reader.has("provenance")) selection.provenance = provenance_from(reader.at("provenance").string());
+  if (reader.has("source")) selection.source = reader.at("source").string();
+  if (reader.has("asked_as")) selection.asked_as = reader.at("asked_as").string();
+  return selection;
+}
+
+Json to_json(const Instruction& instruction) {
+  return {{"utterance", instruction.utterance}, {"selection", told(instruction.selection)}};
+}
+
+Instruction read_instruction(const JsonReader& reader) {
+  return {reader.at("utterance").string(), read_selection(reader.at("selection"))};
+}
+
+Json to_json(const Needs& needs) {
+  return {{"targets", needs.targets == Needs::Targets::truth ? "truth" : "selected"},
+          {"noisy_per_clean", needs.noisy_per_clean},
+          {"noise_max", needs.noise_max}};
+}
+
+Needs read_needs(const JsonReader& reader) {
+  constexpr int most = 100;  // rollouts a demonstration: each is played by the oracle
+  Needs needs;
+  const std::string targets = reader.at("targets").string();
+  if (targets != "truth" && targets != "selected") reader.at("targets").fail("selected or truth");
+  if (targets == "truth") needs.targets = Needs::Targets::truth;
+  needs.noisy_per_clean = static_cast<int>(reader.at("noisy_per_clean").integer(0, most));
+  needs.noise_max = reader.at("noise_max").number();
+  return needs;
+}
+
+Json to_json(const Question& question) {
+  return {{"about", question.about == About::avoid ? "avoid" : "target"},
+          {"group", question.group == Group::texture ? "texture" : "object_type"},
+          {"candidate", question.candidate}};
+}
+
+Question read_question(const JsonReader& reader) {
+  const std::string about = reader.at("about").string(), group = reader.at("group").string();
+  if (about != "target" && about != "avoid") reader.at("about").fail("target or avoid");
+  if (group != "object_type" && group != "texture") reader.at("group").fail("object_type or texture");
+  return {about == "avoid" ? About::avoid : About::target, group == "texture" ? Group::texture : Group::object_type,
+          reader.at("candidate").string()};
+}
+
+Json to_json(const SelectionCost& cost) {
+  return {{"lm_queries", cost.lm_queries},
+          {"lm_tokens", cost.lm_tokens},
+          {"lm_seconds", cost.lm_seconds},
+          {"human_seconds", cost.human_seconds}};
+}
+
+SelectionCost read_cost(const JsonReader& reader) {
+  constexpr long long most = 1LL << 60;
+  return {static_cast<int>(reader.at("lm_queries").integer(0, 1 << 30)), reader.at("lm_tokens").integer(0, most),
+          reader.at("lm_seconds").number(), reader.at("human_seconds").number()};
+}
+
+Json to_json(const ProcessState& state) {
+  return {{"threads", state.threads},
+          {"descriptors", state.descriptors},
+          {"heap_bytes", state.heap_bytes},
+          {"flushed", state.flushed}};
+}
+
+ProcessState read_state(const JsonReader& reader) {
+  ProcessState state;
+  state.threads = reader.at("threads").strings();
+  state.descriptors = reader.at("descriptors").strings();
+  state.heap_bytes = reader.at("heap_bytes").integer(0, 1LL << 60);
+  state.flushed = reader.at("flushed").boolean();
+  return state;
+}
+
+std::string to_bytes(const Action& action) {
+  const std::array<double, 12> values = numbers(action);
+  return {reinterpret_cast<const char*>(values.data()), sizeof values};
+}
+
+Action read_action(const std::string& bytes) {
+  std::array<double, 12> v{};
+  if (bytes.size() != sizeof v)
+    throw InputError("action: expected 96 bytes, 12 doubles, got " + std::to_string(bytes.size()));
+  std::memcpy(v.data(), bytes.data(), sizeof v);
+  return {{{v[0], v[1]}, {v[2], v[3], v[4], v[5]}}, {{v[6], v[7]}, {v[8], v[9], v[10], v[11]}}};
+}
+
+Json layout() {
+  Json numbers = Json::array();
+  for (const char* pose : {"pose0", "pose1"}) {
+    const auto add = [&](const char* name, const char* unit, double low, double high) {
+      numbers.push_back({{"name", std::string(pose) + "." + name}, {"unit", unit}, {"low", low}, {"high", high}});
+    };
+    add("x", "m", Workspace::x_min, Workspace::x_max);
+    add("y", "m", Workspace::y_min, Workspace::y_max);
+    for (const char* name : {"qx", "qy", "qz", "qw"}) add(name, "", -1, 1);
+  }
+  return {{"observation",
+           {{"rows", Observation::rows},
+            {"columns", Observation::columns},
+            {"channels", 3},
+            {"x_m", {Workspace::x_min, Workspace::x_max}},
+            {"y_m", {Workspace::y_min, Workspace::y_max}}}},
+          {"action", numbers}};
+}
+
+}  // namespace lgabench::protocol

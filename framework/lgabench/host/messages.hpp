@@ -1,0 +1,95 @@
+// What frames and shared memory hold, written and read: the same code at both ends (docs/formats/method-protocol.md).
+// What reads throws InputError for a value of another kind; whoever reads knows whose fault that is.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/method.hpp>
+#include <lgabench/host/frames.hpp>
+#include <lgabench/host/process_state.hpp>
+
+namespace lgabench::protocol {
+
+/// Returns call(); an InputError becomes Malformed.
+template <class Call>
+auto read_or_malformed(Call&& call) {
+  try {
+    return call();
+  } catch (const InputError& e) {
+    throw Malformed(e.what());
+  }
+}
+
+Json to_json(const Command& command);
+Command read_command(const JsonReader& reader);
+
+Json to_json(const FeatureSpace& space);
+FeatureSpace read_space(const JsonReader& reader);
+
+/// As a method is told of one: with provenance, source and wording, and without cost.
+Json told(const Selection& selection);
+/// Reads that, or what a method returns: {"target", "avoid"?}. Names as they are.
+Selection read_selection(const JsonReader& reader);
+
+Json to_json(const Instruction& instruction);
+Instruction read_instruction(const JsonReader& reader);
+
+Json to_json(const Needs& needs);
+Needs read_needs(const JsonReader& reader);
+
+Json to_json(const Question& question);
+Question read_question(const JsonReader& reader);
+
+Json to_json(const SelectionCost& cost);
+SelectionCost read_cost(const JsonReader& reader);
+
+Json to_json(const ProcessState& state);
+ProcessState read_state(const JsonReader& reader);
+
+/// 12 doubles: pose0's position and rotation, then pose1's; NaN and infinity included.
+std::string to_bytes(const Action& action);
+/// @throws InputError for another number of bytes.
+Action read_action(const std::string& bytes);
+
+/// What an observation and an action are: rows, columns, channels, names, units and bounds.
+Json layout();
+
+/// A file in memory, mapped. The last of its maps and descriptors frees it.
+class SharedMemory {
+ public:
+  /// Of this size, filled with 0, writable here; no one who is sent it can write to it or change its size.
+  explicit SharedMemory(std::size_t size);
+  /// Likewise one that was sent, to be read. @throws InputError where it is smaller than `size`.
+  SharedMemory(const Descriptor& file, std::size_t size);
+  ~SharedMemory();
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+
+  std::uint8_t* data() { return static_cast<std::uint8_t*>(data_); }
+  const std::uint8_t* data() const { return static_cast<const std::uint8_t*>(data_); }
+  std::size_t size() const { return size_; }
+  const Descriptor& file() const { return file_; }
+
+ private:
+  Descriptor file_;
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// rgb, then ids.
+constexpr std::size_t observation_bytes = std::size_t{Observation::rows} * Observation::columns * 4;
+/// Copies the pictures; instances are instances_json().
+void write(const Observation& observation, SharedMemory& memory);
+Json instances_json(const Observation& observation);
+Observation read_observation(const SharedMemory& memory, const JsonReader& instances);
+
+/// All demonstrations as arrays in one file, and the JSON that says where each lies.
+struct DemonstrationFile {
+  Json header;
+  std::unique_ptr<SharedMemory> memory;
+};
+DemonstrationFile pack(const std::vector<Demonstration>& demonstrations);
+std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file);
+
+}  // namespace lgabench::protocol

@@ -1,0 +1,109 @@
+#include <lgabench/host/python_method.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scratch.hpp>
+#include <lgabench/plugin/reader.hpp>
+
+namespace lgabench {
+namespace {
+
+struct Output {
+  std::string out, error;
+  int status = 0;
+};
+
+// What the interpreter prints on the words, without a shell.
+Output output_of(const std::string& interpreter, const std::string& written) {
+  const Scratch scratch("python");
+  const std::string out = (scratch.path / "out").string(), error = (scratch.path / "error").string();
+  const std::string package = fs::weakly_canonical(data_directory() / "python").string();
+  const char* const arguments[] = {interpreter.c_str(), "-m", "lgabench_method", written.c_str(), nullptr};
+  const pid_t pid = ::fork();
+  if (pid < 0) throw EngineError(fmt::format("fork: {}", std::strerror(errno)));
+  if (pid == 0) {
+    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), 1);
+    ::dup2(::open(error.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), 2);
+    ::setenv("PYTHONPATH", package.c_str(), 1);
+    ::setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
+    ::execvp(arguments[0], const_cast<char* const*>(arguments));
+    ::_exit(127);
+  }
+  Output output;
+  ::waitpid(pid, &output.status, 0);
+  output.out = read_file(out);
+  output.error = read_file(error);
+  return output;
+}
+
+// The last line: a traceback's has the error.
+std::string last_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
+}
+
+}  // namespace
+
+bool is_python_method(const std::string& word) {
+  return word.substr(0, word.find('+')).find(".py:") != std::string::npos;
+}
+
+PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
+  const auto [out, error, status] = output_of(interpreter, written);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    throw PluginError(fmt::format("{}: cannot be started; --python names the interpreter", interpreter));
+  if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
+  PluginInfo plugin;
+  try {
+    const Json json = parse_json(out, written);
+    const JsonReader reader(json, written);
+    plugin.file = reader.at("file").string();
+    plugin.kind = "method";
+    plugin.id = reader.at("id").string();
+    plugin.version = reader.at("version").string();
+    plugin.summary = reader.at("summary").string();
+    plugin.asks = reader.at("asks").string();
+    plugin.sha256 = reader.at("sha256").string();
+    plugin.options = read_options(canonical(reader.at("options").json()));
+    for (const char* member : {"class", "interpreter", "reads", "versions"})
+      plugin.python[member] = reader.at(member).json();
+    plugin.fingerprint = canonical(plugin.python["versions"]);
+  } catch (const InputError& e) {
+    throw PluginError(fmt::format("{}: {}", written, e.what()));
+  } catch (const PluginError& e) {
+    throw PluginError(fmt::format("{}: {}", written, e.what()));
+  }
+  check_asks(plugin.kind, plugin.asks);
+  if (!is_name(plugin.id))
+    throw PluginError(fmt::format(
+        "{}: id \"{}\", expected lower-case letters, digits and underscores (an attribute id, else the file's name)",
+        written, plugin.id));
+  if (plugin.asks == "truth")
+    throw PluginError(fmt::format("{}: asks \"truth\", which no method of yours may", written));
+  return plugin;
+}
+
+std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue) {
+  if (!is_python_method(row)) return row;
+  const std::size_t options = std::min(row.find('+'), row.size());
+  const PluginInfo plugin = describe_python(row.substr(0, options), interpreter);
+  const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; };
+  const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
+  if (known == catalogue.plugins.end())
+    catalogue.plugins.push_back(plugin);
+  else if (known->file != plugin.file || known->python != plugin.python)
+    throw PluginError(
+        fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
+  return plugin.id + row.substr(options);
+}
+
+}  // namespace lgabench

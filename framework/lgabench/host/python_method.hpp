@@ -1,0 +1,20 @@
+// A method in Python: FILE.py:Class, described without running it.
+#pragma once
+#include <string>
+
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+
+/// The word names a method in Python: its part before the first '+' holds ".py:".
+bool is_python_method(const std::string& word);
+
+/// Asks the interpreter's own parser what the file says of the class (python/lgabench_method/describe.py).
+/// @throws PluginError with the interpreter's message, or naming what is wrong with id, options or asks.
+PluginInfo describe_python(const std::string& written, const std::string& interpreter);
+
+/// A row as the suite's reader knows it: where it is written FILE.py:Class+OPTION=VALUE, the method is described, added
+/// to the catalogue, and named by its id. @throws PluginError likewise, and for an id that another plugin has.
+std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue);
+
+}  // namespace lgabench

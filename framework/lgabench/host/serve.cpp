@@ -1,0 +1,264 @@
+#include <lgabench/host/serve.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include <lgabench/host/messages.hpp>
+#include <lgabench/plugin/guarded.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+namespace {
+
+// Asks a question in the middle of a call and waits for its answer. @throws MethodError where it is refused.
+Frame ask(Channel& channel, const Json& question, const char* expected) {
+  channel.send(question);
+  std::optional<Frame> frame = channel.receive();
+  if (!frame) ::_exit(1);  // the worker is gone
+  if (frame->type() == "refused") throw MethodError(JsonReader(frame->header, "refused").at("reason").string());
+  if (frame->type() != expected) throw MethodError(fmt::format("\"{}\", expected \"{}\"", frame->type(), expected));
+  return std::move(*frame);
+}
+
+class RemoteModel : public LanguageModel {
+ public:
+  explicit RemoteModel(Channel& channel) : channel_(channel) {}
+  std::vector<bool> answer(const Command& command, const FeatureSpace& space,
+                           const std::vector<Question>& questions) override {
+    Json all = Json::array();
+    for (const Question& question : questions) all.push_back(protocol::to_json(question));
+    const Frame frame = ask(channel_,
+                            {{"type", "ask"},
+                             {"command", protocol::to_json(command)},
+                             {"space", protocol::to_json(space)},
+                             {"questions", all}},
+                            "answers");
+    const JsonReader reader(frame.header, "answers");
+    model_ = reader.at("model").string();
+    provenance_ = provenance_from(reader.at("provenance").string());
+    cost_ = protocol::read_cost(reader.at("cost"));
+    asked_as_[command.utterance] = reader.at("asked_as").string();
+    std::vector<bool> answers;
+    for (const JsonReader& one : reader.at("answers").elements()) answers.push_back(one.boolean());
+    return answers;
+  }
+  std::string model() const override { return model_; }
+  std::string asked_as(const Command& command) const override {
+    const auto found = asked_as_.find(command.utterance);
+    return found == asked_as_.end() ? command.utterance : found->second;
+  }
+  Provenance provenance() const override { return provenance_; }
+  SelectionCost cost() const override { return cost_; }
+
+ private:
+  Channel& channel_;
+  std::string model_;
+  Provenance provenance_ = Provenance::none;
+  SelectionCost cost_;
+  std::map<std::string, std::string> asked_as_;  // by utterance
+};
+
+class RemoteHuman : public HumanAnswers {
+ public:
+  explicit RemoteHuman(Channel& channel) : channel_(channel) {}
+  Selection specify(const Command& command) override {
+    return person({{"type", "person"}, {"how", "specify"}, {"command", protocol::to_json(command)}});
+  }
+  Selection edit(const Command& command, const Selection& proposal) override {
+    return person({{"type", "person"},
+                   {"how", "edit"},
+                   {"command", protocol::to_json(command)},
+                   {"proposal", distribution_json(proposal)}});
+  }
+  Selection truth(const Command& command) {
+    return person({{"type", "person"}, {"how", "truth"}, {"command", protocol::to_json(command)}});
+  }
+
+ private:
+  Selection person(const Json& question) {
+    const Frame frame = ask(channel_, question, "person");
+    return protocol::read_selection(JsonReader(frame.header, "person").at("selection"));
+  }
+  Channel& channel_;
+};
+
+class RemoteLog : public TrainingLog {
+ public:
+  explicit RemoteLog(Channel& channel) : channel_(channel) {}
+  void epoch(int epochs, long long steps, double loss) override {
+    std::string bytes(sizeof loss, 0);
+    std::memcpy(bytes.data(), &loss, sizeof loss);
+    channel_.send({{"type", "epoch"}, {"epochs", epochs}, {"steps", steps}}, bytes);
+  }
+
+ private:
+  Channel& channel_;
+};
+
+void expect_this_layout(const JsonReader& hello) {
+  const Json ours = protocol::layout();
+  for (const auto& [name, value] : ours.items())
+    if (hello.at(name).json() != value)
+      throw PluginError(
+          fmt::format("/{}: {} (this program: {})", name, canonical(hello.at(name).json()), canonical(value)));
+  hello.at("protocol").integer(protocol_version, protocol_version);
+}
+
+// One plugin from loading to its end.
+class Host {
+ public:
+  Host(Channel& channel, const Frame& hello)
+      : channel_(channel),
+        model_(channel),
+        human_(channel),
+        log_(channel),
+        observation_(hello.file, protocol::observation_bytes) {
+    const JsonReader reader(hello.header, "hello");
+    expect_this_layout(reader);
+    options_ = reader.at("options").json();
+    seed_ = reader.at("seed").json().get<std::uint64_t>();
+    plugin_ = read_plugin(reader.at("method").at("file").string());
+    if (plugin_.sha256 != reader.at("method").at("sha256").string())
+      throw PluginError(fmt::format("{}: changed since the run began", plugin_.file.string()));
+    method_ = load_method(plugin_);
+    channel_.send(
+        {{"type", "hello"}, {"protocol", protocol_version}, {"id", plugin_.id}, {"version", plugin_.version}});
+  }
+
+  void answer(const Frame& frame) {
+    const JsonReader reader(frame.header, frame.type());
+    Services services{model_, human_, options_,
+                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
+                      files_};
+    if (frame.type() == "needs") {
+      Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
+      needs["type"] = "needs";
+      channel_.send(needs);
+    } else if (frame.type() == "select") {
+      const Command command = protocol::read_command(reader.at("command"));
+      const FeatureSpace space = protocol::read_space(reader.at("space"));
+      const Selection selection = call([&] { return method().select(command, space, services); });
+      channel_.send({{"type", "selection"}, {"selection", distribution_json(selection)}});
+    } else if (frame.type() == "learn") {
+      const std::vector<Demonstration> demonstrations = protocol::unpack(reader, frame.file);
+      policy_ = call([&] { return method().learn(demonstrations, services); });
+      if (!policy_) throw MethodError("learn returned no policy");
+      channel_.send({{"type", "learned"}});
+    } else if (frame.type() == "act") {
+      if (!policy_) throw MethodError("asked to act before it learned");
+      const Observation observation = protocol::read_observation(observation_, reader.at("instances"));
+      const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
+      const Action action = call([&] {
+        if (reader.at("reset").boolean()) policy_->reset();
+        return policy_->act(observation, instruction);
+      });
+      Json reply{{"type", "action"}};
+      if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
+      channel_.send(reply, protocol::to_bytes(action));
+    } else if (frame.type() == "drop") {
+      const bool drops_method = reader.at("what").string() == "method";
+      call([&] { drops_method ? method_.reset() : policy_.reset(); });
+      channel_.send({{"type", "dropped"}});
+    } else if (frame.type() == "state") {
+      ProcessState state = ProcessState::now().beyond(before_);
+      state.flushed = flushed_;
+      Json reply = protocol::to_json(state);
+      reply["type"] = "state";
+      channel_.send(reply);
+    } else {
+      throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
+    }
+  }
+
+  void end() {
+    policy_.reset();
+    method_.reset();
+    std::cout.flush();
+    std::fflush(nullptr);  // the worker ends this process once it has the answer
+    channel_.send({{"type", "bye"}});
+  }
+
+ private:
+  // Another one, where check-plugin had the first destroyed.
+  Method& method() {
+    if (!method_) method_ = load_method(plugin_);
+    return *method_;
+  }
+
+  // A plugin may have forked a process that came back as well: only the first one answers. What the processor's
+  // control register said before is put back.
+  template <class Call>
+  auto call(Call&& c) -> decltype(c()) {
+    struct OnlyTheFirst {
+      ~OnlyTheFirst() {
+        if (::getpid() != self) ::_exit(1);
+      }
+      pid_t self;
+    };
+    struct NotesFirst {
+      ~NotesFirst() { flushed = flushed && denormals_flushed(); }
+      bool& flushed;
+    };
+    const OnlyTheFirst on_every_way_out{self_};
+    const FlushDenormalsAgain likewise;
+    const NotesFirst how_it_was{flushed_};
+    return c();
+  }
+
+  Channel& channel_;
+  const pid_t self_ = ::getpid();
+  RemoteModel model_;
+  RemoteHuman human_;
+  RemoteLog log_;
+  protocol::SharedMemory observation_;
+  const ProcessState before_ = ProcessState::now();      // the plugin came
+  bool flushed_ = true;                                  // subnormal numbers, at the end of every call
+  const fs::path files_ = fs::current_path() / "files";  // wherever the plugin goes
+  Json options_;
+  std::uint64_t seed_ = 0;
+  PluginInfo plugin_;
+  std::unique_ptr<Method> method_;
+  std::unique_ptr<Policy> policy_;
+};
+
+// Tells the worker what `call` throws; true if nothing was thrown.
+template <class Call>
+bool told(Channel& channel, Call&& call) {
+  const auto tell = [&channel](const char* kind, const std::string& reason) {
+    channel.send({{"type", "error"}, {"kind", kind}, {"reason", reason.substr(0, 2000)}});
+  };
+  try {
+    call();
+    return true;
+  } catch (const std::bad_alloc&) {
+    tell("memory", "out of memory");
+  } catch (const PluginError& e) {
+    tell("plugin", e.what());
+  } catch (...) {
+    tell("method", current_exception_text());
+  }
+  return false;
+}
+
+}  // namespace
+
+void serve(Channel& channel) {
+  const std::optional<Frame> hello = channel.receive();
+  if (!hello) return;
+  std::optional<Host> host;
+  if (!told(channel, [&] { host.emplace(channel, *hello); })) return;
+  while (const std::optional<Frame> frame = channel.receive()) {
+    if (frame->type() == "bye") return host->end();
+    told(channel, [&] { host->answer(*frame); });
+  }
+}
+
+}  // namespace lgabench

@@ -1,0 +1,211 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+
+#include <lgabench/host/messages.hpp>
+
+#if !defined(F_SEAL_FUTURE_WRITE)
+#define F_SEAL_FUTURE_WRITE 0x0010
+#endif
+
+namespace lgabench::protocol {
+namespace {
+
+constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
+constexpr std::size_t action_numbers = 12, instance_numbers = 5;
+constexpr std::size_t most_bytes = std::size_t{1} << 36;
+
+[[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
+
+// Places arrays one after another, each at a multiple of 64 bytes.
+class Arrays {
+ public:
+  std::size_t add(const char* name, const char* type, std::size_t item_bytes, std::vector<std::size_t> shape) {
+    const std::size_t offset = size;
+    std::size_t bytes = item_bytes;
+    for (const std::size_t length : shape) bytes *= length;
+    json[name] = {{"offset", offset}, {"type", type}, {"shape", std::move(shape)}};
+    size = (offset + bytes + 63) / 64 * 64;
+    return offset;
+  }
+  Json json = Json::object();
+  std::size_t size = 0;
+};
+
+// An array that the header names: where it begins, checked to lie within the file.
+struct Array {
+  std::size_t offset;
+  std::vector<std::size_t> shape;
+};
+Array array_at(const JsonReader& arrays, const char* name, const char* type, std::size_t item_bytes,
+               std::size_t file_bytes) {
+  const JsonReader reader = arrays.at(name);
+  if (reader.at("type").string() != type) reader.at("type").fail(type);
+  Array array{static_cast<std::size_t>(reader.at("offset").integer(0, static_cast<long long>(file_bytes))), {}};
+  std::size_t bytes = item_bytes;
+  for (const JsonReader& length : reader.at("shape").elements()) {
+    array.shape.push_back(static_cast<std::size_t>(length.integer(0, 1LL << 31)));
+    if (array.shape.back() != 0 && bytes > file_bytes / array.shape.back()) reader.fail("an array within the file");
+    bytes *= array.shape.back();
+  }
+  if (bytes > file_bytes - array.offset) reader.fail("an array within the file");
+  return array;
+}
+
+template <class T>
+T value_at(const std::uint8_t* bytes, std::size_t index) {
+  T value;
+  std::memcpy(&value, bytes + index * sizeof value, sizeof value);
+  return value;
+}
+
+}  // namespace
+
+SharedMemory::SharedMemory(std::size_t size)
+    : file_(::memfd_create("array", MFD_CLOEXEC | MFD_ALLOW_SEALING)), size_(size) {
+  if (file_.fd < 0) fail("memfd_create");
+  if (::ftruncate(file_.fd, static_cast<off_t>(size)) != 0) fail("ftruncate");
+  if (size == 0) return;
+  data_ = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file_.fd, 0);
+  if (data_ == MAP_FAILED) fail("mmap");
+  // Our own map stays writable; every later one is not (Linux 5.1).
+  if (::fcntl(file_.fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
+    fail("seals");
+}
+
+SharedMemory::SharedMemory(const Descriptor& file, std::size_t size) : size_(size) {
+  struct stat status {};
+  if (::fstat(file.fd, &status) != 0 || static_cast<std::size_t>(status.st_size) < size)
+    throw InputError(fmt::format("shared memory: expected {} bytes", size));
+  if (size == 0) return;
+  data_ = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file.fd, 0);
+  if (data_ == MAP_FAILED) fail("mmap");
+}
+
+SharedMemory::~SharedMemory() {
+  if (data_) ::munmap(data_, size_);
+}
+
+void write(const Observation& observation, SharedMemory& memory) {
+  std::memcpy(memory.data(), observation.rgb.data(), 3 * pixels);
+  std::memcpy(memory.data() + 3 * pixels, observation.ids.data(), pixels);
+}
+
+Json instances_json(const Observation& observation) {
+  Json all = Json::array();
+  for (const Instance& i : observation.instances)
+    all.push_back({{"id", i.id}, {"object_type", i.object_type}, {"texture", i.texture}, {"pixels", i.pixels}});
+  return all;
+}
+
+Observation read_observation(const SharedMemory& memory, const JsonReader& instances) {
+  Observation observation;
+  observation.rgb.assign(memory.data(), memory.data() + 3 * pixels);
+  observation.ids.assign(memory.data() + 3 * pixels, memory.data() + 4 * pixels);
+  for (const JsonReader& one : instances.elements())
+    observation.instances.push_back({static_cast<std::uint8_t>(one.at("id").integer(0, 255)),
+                                     one.at("object_type").string(), one.at("texture").string(),
+                                     static_cast<int>(one.at("pixels").integer(0, pixels))});
+  return observation;
+}
+
+DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
+  std::size_t steps = 0, instances = 0;
+  Json instructions = Json::array();
+  for (const Demonstration& demonstration : demonstrations) {
+    instructions.push_back(to_json(demonstration.instruction));
+    steps += demonstration.steps.size();
+    for (const Step& step : demonstration.steps) instances += step.observation.instances.size();
+  }
+  Arrays arrays;
+  constexpr std::size_t rows = Observation::rows, columns = Observation::columns;
+  const std::size_t rgb = arrays.add("rgb", "u1", 1, {steps, rows, columns, 3});
+  const std::size_t ids = arrays.add("ids", "u1", 1, {steps, rows, columns});
+  const std::size_t labels = arrays.add("labels", "f8", 8, {steps, action_numbers});
+  const std::size_t owners = arrays.add("demonstration", "i4", 4, {steps});
+  const std::size_t table = arrays.add("instances", "i4", 4, {instances, instance_numbers});
+  auto memory = std::make_unique<SharedMemory>(arrays.size);
+
+  std::map<std::string, std::int32_t> indices;
+  Json words = Json::array();
+  const auto word = [&](const std::string& text) {
+    const auto [found, is_new] = indices.emplace(text, static_cast<std::int32_t>(words.size()));
+    if (is_new) words.push_back(text);
+    return found->second;
+  };
+  std::uint8_t* const data = memory->data();
+  std::size_t step = 0, instance = 0;
+  for (std::size_t d = 0; d < demonstrations.size(); ++d)
+    for (const Step& s : demonstrations[d].steps) {
+      const auto owner = static_cast<std::int32_t>(d), at = static_cast<std::int32_t>(step);
+      std::memcpy(data + rgb + step * 3 * pixels, s.observation.rgb.data(), 3 * pixels);
+      std::memcpy(data + ids + step * pixels, s.observation.ids.data(), pixels);
+      const std::string label = to_bytes(s.label);
+      std::memcpy(data + labels + step * label.size(), label.data(), label.size());
+      std::memcpy(data + owners + step * sizeof owner, &owner, sizeof owner);
+      for (const Instance& i : s.observation.instances) {
+        const std::int32_t row[instance_numbers] = {at, i.id, word(i.object_type), word(i.texture), i.pixels};
+        std::memcpy(data + table + instance++ * sizeof row, row, sizeof row);
+      }
+      ++step;
+    }
+  return {{{"instructions", std::move(instructions)}, {"words", std::move(words)}, {"arrays", std::move(arrays.json)}},
+          std::move(memory)};
+}
+
+std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file) {
+  struct stat status {};
+  if (::fstat(file.fd, &status) != 0) throw InputError("demonstrations: no file came with them");
+  const auto size = std::min(static_cast<std::size_t>(status.st_size), most_bytes);
+  const SharedMemory memory(file, size);
+  const std::vector<std::string> words = header.at("words").strings();
+  const JsonReader arrays = header.at("arrays");
+  const Array rgb = array_at(arrays, "rgb", "u1", 1, size), ids = array_at(arrays, "ids", "u1", 1, size),
+              labels = array_at(arrays, "labels", "f8", 8, size),
+              owners = array_at(arrays, "demonstration", "i4", 4, size),
+              table = array_at(arrays, "instances", "i4", 4, size);
+  constexpr std::size_t rows = Observation::rows, columns = Observation::columns;
+  const std::size_t steps = owners.shape.size() == 1 ? owners.shape[0] : 0;
+  using Shape = std::vector<std::size_t>;
+  if (rgb.shape != Shape{steps, rows, columns, 3} || ids.shape != Shape{steps, rows, columns} ||
+      labels.shape != Shape{steps, action_numbers} || table.shape.size() != 2 || table.shape[1] != instance_numbers)
+    arrays.fail("arrays of the shapes that the protocol names");
+
+  std::vector<Demonstration> all;
+  for (const JsonReader& instruction : header.at("instructions").elements())
+    all.push_back({read_instruction(instruction), {}});
+  std::vector<Step*> by_index;
+  std::vector<std::size_t> lengths(all.size());
+  for (std::size_t s = 0; s < steps; ++s)
+    ++lengths.at(static_cast<std::size_t>(value_at<std::int32_t>(memory.data() + owners.offset, s)));
+  for (std::size_t d = 0; d < all.size(); ++d) all[d].steps.reserve(lengths[d]);
+  for (std::size_t s = 0; s < steps; ++s) {
+    auto& owner = all.at(static_cast<std::size_t>(value_at<std::int32_t>(memory.data() + owners.offset, s))).steps;
+    Step step;
+    const std::uint8_t* const colours = memory.data() + rgb.offset + s * 3 * pixels;
+    const std::uint8_t* const labelled = memory.data() + ids.offset + s * pixels;
+    step.observation.rgb.assign(colours, colours + 3 * pixels);
+    step.observation.ids.assign(labelled, labelled + pixels);
+    const auto* const label = reinterpret_cast<const char*>(memory.data() + labels.offset + s * action_numbers * 8);
+    step.label = read_action({label, action_numbers * 8});
+    owner.push_back(std::move(step));
+    by_index.push_back(&owner.back());
+  }
+  for (std::size_t i = 0; i < table.shape[0]; ++i) {
+    std::int32_t row[instance_numbers];
+    std::memcpy(row, memory.data() + table.offset + i * sizeof row, sizeof row);
+    by_index.at(static_cast<std::size_t>(row[0]))
+        ->observation.instances.push_back({static_cast<std::uint8_t>(row[1]),
+                                           words.at(static_cast<std::size_t>(row[2])),
+                                           words.at(static_cast<std::size_t>(row[3])), row[4]});
+  }
+  return all;
+}
+
+}  // namespace lgabench::protocol

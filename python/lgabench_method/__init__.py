@@ -1,0 +1,148 @@
+"""Methods for lgabench in Python: what they are given, and what they return.
+
+A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod` runs it (docs/add-a-method-in-python.md):
+
+    class MyMethod:
+        version = "0.1"
+        summary = "what it does, in a line"
+        options = {"steps": {"default": 100, "help": "optimiser steps", "source": "chosen"}}
+
+        def needs(self, options): ...                # optional: a Needs
+        def select(self, command, space, services): ...    # a Selection
+        def learn(self, demonstrations, services): ...     # an object with act(observation, instruction), and maybe reset()
+
+Needs NumPy alone. One thread; the same seed must give the same bytes.
+"""
+from dataclasses import dataclass, field
+
+import numpy
+
+__all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "Instance", "Instruction", "Needs", "Observation",
+           "Refused", "Selection", "Services", "Step", "goal_mask", "select_features"]
+
+
+class Refused(RuntimeError):
+    """A question was not answered: nobody has answered it, or the method may not ask it."""
+
+
+@dataclass(frozen=True)
+class Command:
+    """What a method is told of the task: the words, and `pick_and_place`, `rotate` or `sweep`."""
+    utterance: str
+    task: str
+
+
+@dataclass(frozen=True)
+class FeatureSpace:
+    """What a scene can be described with (paper, section 4.1): object types x textures."""
+    id: str
+    object_types: list
+    textures: list
+
+
+@dataclass
+class FeatureSet:
+    """Object types and textures; an object belongs if both of its features do."""
+    object_types: list = field(default_factory=list)
+    textures: list = field(default_factory=list)
+
+    def contains(self, object_type, texture):
+        return object_type in self.object_types and texture in self.textures
+
+
+@dataclass
+class Selection:
+    """Which features matter (paper, section 3.1). For sweep, `avoid` describes the obstacle; else it is None.
+
+    `provenance`, `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
+    """
+    target: FeatureSet = field(default_factory=FeatureSet)
+    avoid: FeatureSet = None
+    provenance: str = "none"
+    source: str = ""
+    asked_as: str = ""
+
+    def keeps(self, object_type, texture):
+        """The object is kept in the goal mask."""
+        return (self.target.contains(object_type, texture)
+                or (self.avoid is not None and self.avoid.contains(object_type, texture)))
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """What a policy is conditioned on: the command's words and the Selection made for them."""
+    utterance: str
+    selection: Selection
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One textualized object; `id` is its value in Observation.ids, `pixels` how many are visible."""
+    id: int
+    object_type: str
+    texture: str
+    pixels: int
+
+
+@dataclass(frozen=True)
+class Observation:
+    """The view from above: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
+
+    Row 0 is at the smallest x, column 0 at the smallest y.
+    """
+    rgb: numpy.ndarray
+    ids: numpy.ndarray
+    instances: list
+
+
+@dataclass(frozen=True)
+class Step:
+    """An observation with the oracle's action for it: 12 doubles, two poses (x, y, quaternion x, y, z, w), in metres."""
+    observation: Observation
+    label: numpy.ndarray
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """The oracle's episode for one instruction; with Needs.noisy_per_clean the recovery steps follow the first."""
+    instruction: Instruction
+    steps: list
+
+
+@dataclass
+class Needs:
+    """What a method asks of the data it learns from, as lgabench::Needs in core/method.hpp."""
+    targets: str = "selected"  # or "truth"
+    noisy_per_clean: int = 0
+    noise_max: float = 0.0
+
+
+@dataclass
+class Services:
+    """What lgabench lends to a method for the length of a call."""
+    lm: object       # answer(command, space, questions) -> [bool]; a question is (about, group, candidate)
+    human: object    # specify(command), edit(command, proposal): for methods that declare that they ask people
+    options: dict    # every one
+    seed: int        # governs all that is random
+    log: object      # epoch(epochs, steps, loss), after each pass over the data
+    files: str       # a directory for pictures and curves of the method's own; kept with the cell
+    layout: dict     # "observation" and "action" of the protocol: rows, columns, bounds, units
+
+
+def select_features(command, space, lm):
+    """Asks of every object type and texture whether the target, and for sweep the obstacle, could have it."""
+    abouts = ["target", "avoid"] if command.task == "sweep" else ["target"]
+    questions = [(about, group, name) for about in abouts
+                 for group, names in (("object_type", space.object_types), ("texture", space.textures)) for name in names]
+    selection = Selection(avoid=FeatureSet() if "avoid" in abouts else None)
+    for (about, group, name), yes in zip(questions, lm.answer(command, space, questions)):
+        if yes:
+            chosen = selection.target if about == "target" else selection.avoid
+            (chosen.object_types if group == "object_type" else chosen.textures).append(name)
+    return selection
+
+
+def goal_mask(observation, selection):
+    """rows x columns of 0 and 1: 1 on every object that the Selection keeps (paper, section 3.1)."""
+    kept = [one.id for one in observation.instances if one.pixels > 0 and selection.keeps(one.object_type, one.texture)]
+    return numpy.isin(observation.ids, kept).astype(numpy.uint8)

@@ -1,0 +1,105 @@
+"""What a method's file says of itself, read without running it: class attributes that are written out."""
+import ast
+import hashlib
+import importlib.metadata
+import pathlib
+import sys
+import sysconfig
+
+
+class NoMethod(Exception):
+    """The file has no such method; one line for a person."""
+
+
+def _literals(body):
+    """Names that are assigned something written out, in the body of a class."""
+    found = {}
+    for statement in body:
+        if isinstance(statement, ast.Assign):
+            targets, value = statement.targets, statement.value
+        elif isinstance(statement, ast.AnnAssign) and statement.value is not None:
+            targets, value = [statement.target], statement.value
+        else:
+            continue
+        for target in targets:
+            if isinstance(target, ast.Name):
+                try:
+                    found[target.id] = ast.literal_eval(value)
+                except (ValueError, TypeError, SyntaxError):
+                    pass  # computed: not one of ours, or its check says that it is missing
+    return found
+
+
+def _imports(tree):
+    """Top-level modules that the file names anywhere."""
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            names.add(node.module.split(".")[0])
+    return names
+
+
+def _versions(tree):
+    """Versions of the distributions that these modules come from; the interpreter's own modules have its version."""
+    owners = importlib.metadata.packages_distributions()
+    versions = {"python": ".".join(map(str, sys.version_info[:3]))}
+    for module in sorted(_imports(tree) | {"numpy"}):
+        for owner in owners.get(module, []):
+            versions[owner] = importlib.metadata.version(owner)
+    return versions
+
+
+def _siblings(file, tree, seen):
+    """Modules beside the file that it, or one of them, imports: their hashes are part of what a cell depends on."""
+    hashes = {}
+    for module in sorted(_imports(tree)):
+        beside = file.parent / f"{module}.py"
+        if module in seen or not beside.is_file() or beside.resolve() == file.resolve():
+            continue
+        seen.add(module)
+        source = beside.read_bytes()
+        hashes[beside.name] = hashlib.sha256(source).hexdigest()
+        hashes.update(_siblings(beside, ast.parse(source, str(beside)), seen))
+    return hashes
+
+
+def _text(found, name, default, file):
+    value = found.get(name, default)
+    if not isinstance(value, str):
+        raise NoMethod(f"{file}: {name}: expected a text that is written out")
+    return value
+
+
+def describe(written):
+    """Of FILE.py:Class: the descriptor, what it depends on and where its interpreter reads."""
+    name, separator, class_name = written.rpartition(":")
+    file = pathlib.Path(name)
+    if not separator or not class_name.isidentifier():
+        raise NoMethod(f"{written}: expected FILE.py:Class")
+    try:
+        source = file.read_bytes()
+        tree = ast.parse(source, str(file))
+    except OSError as error:
+        raise NoMethod(f"{file}: cannot be read: {error.strerror}") from error
+    except (SyntaxError, ValueError) as error:
+        raise NoMethod(f"{file}: {error}") from error
+    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
+    if class_name not in classes:
+        raise NoMethod(f"{file}: no class {class_name}, it has: {', '.join(classes) or 'none'}")
+    found = _literals(classes[class_name].body)
+    options = found.get("options", {})
+    if not isinstance(options, dict):
+        raise NoMethod(f"{file}: options: expected a dictionary that is written out")
+    paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
+    if sys.prefix != sys.base_prefix:
+        paths |= {sys.prefix}
+    if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
+        paths |= {sys.base_prefix + "/lib"}
+    return {"file": str(file.resolve()), "class": class_name, "kind": "method",
+            "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
+            "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
+            "asks": _text(found, "asks", "", file), "options": options,
+            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file, tree, set())},
+            "interpreter": sys.executable, "reads": sorted(paths)}

@@ -1,0 +1,54 @@
+"""The frames of docs/formats/method-protocol.md, over a connected AF_UNIX socket."""
+import json
+import os
+import socket
+import struct
+import zlib
+
+MAGIC = b"LGA1"
+PREFIX = struct.Struct("<4sIII")
+MOST = 1 << 20
+
+
+class Malformed(Exception):
+    """What came is no frame, or is not the one that may come."""
+
+
+class Channel:
+    def __init__(self, connection):
+        self.socket = connection
+
+    def send(self, header, payload=b""):
+        text = json.dumps(header, allow_nan=False).encode()
+        if max(len(text), len(payload)) > MOST:
+            raise ValueError(f"a frame \"{header['type']}\" of {len(text)} and {len(payload)} bytes is over the limits")
+        self.socket.sendall(PREFIX.pack(MAGIC, len(text), len(payload), zlib.crc32(payload, zlib.crc32(text)))
+                            + text + payload)
+
+    def receive(self):
+        """(header, payload, descriptor or None); None once the worker is gone."""
+        files = []
+        prefix = self._take(PREFIX.size, files)
+        if prefix is None:
+            return None
+        magic, header_bytes, payload_bytes, crc = PREFIX.unpack(prefix)
+        if magic != MAGIC or max(header_bytes, payload_bytes) > MOST:
+            raise Malformed("no frame begins like that")
+        text, payload = self._take(header_bytes, files), self._take(payload_bytes, files)
+        if text is None or payload is None:
+            return None
+        if zlib.crc32(payload, zlib.crc32(text)) != crc:
+            raise Malformed("the checksum is another")
+        for extra in files[1:]:
+            os.close(extra)
+        return json.loads(text), payload, files[0] if files else None
+
+    def _take(self, size, files):
+        taken = bytearray()
+        while len(taken) < size:
+            data, descriptors, _, _ = socket.recv_fds(self.socket, size - len(taken), 1)
+            files += descriptors
+            if not data:
+                return None
+            taken += data
+        return bytes(taken)

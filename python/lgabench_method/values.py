@@ -1,0 +1,98 @@
+"""What frames and shared memory hold, as Python values and back."""
+import mmap
+import os
+
+import numpy
+
+from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Needs, Observation,
+                             Selection, Step)
+
+
+def command(json):
+    return Command(json["utterance"], json["task"])
+
+
+def command_json(value):
+    return {"utterance": value.utterance, "task": value.task}
+
+
+def space(json):
+    return FeatureSpace(json["id"], json["object_types"], json["textures"])
+
+
+def space_json(value):
+    return {"id": value.id, "object_types": list(value.object_types), "textures": list(value.textures)}
+
+
+def _set(json):
+    return FeatureSet(list(json["object_types"]), list(json["textures"]))
+
+
+def _set_json(value):
+    return {"object_types": [str(name) for name in value.object_types], "textures": [str(name) for name in value.textures]}
+
+
+def selection(json):
+    return Selection(_set(json["target"]), _set(json["avoid"]) if "avoid" in json else None,
+                     json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
+
+
+def selection_json(value):
+    if not isinstance(value, Selection):
+        raise TypeError(f"select() returned {type(value).__name__}, expected a lgabench_method.Selection")
+    json = {"target": _set_json(value.target)}
+    if value.avoid is not None:
+        json["avoid"] = _set_json(value.avoid)
+    return json
+
+
+def instruction(json):
+    return Instruction(json["utterance"], selection(json["selection"]))
+
+
+def needs_json(value):
+    if not isinstance(value, Needs):
+        raise TypeError(f"needs() returned {type(value).__name__}, expected a lgabench_method.Needs")
+    return {"targets": value.targets, "noisy_per_clean": int(value.noisy_per_clean), "noise_max": float(value.noise_max)}
+
+
+def action_bytes(value):
+    numbers = numpy.asarray(value, dtype="<f8")
+    if numbers.shape != (12,):
+        raise ValueError(f"act() returned an array of shape {numbers.shape}, expected 12 numbers")
+    return numbers.tobytes()
+
+
+class ObservationMemory:
+    """The shared memory that holds the observation of the act that came last."""
+
+    def __init__(self, descriptor, layout):
+        self.shape = layout["rows"], layout["columns"], layout["channels"]
+        rows, columns, channels = self.shape
+        self.memory = mmap.mmap(descriptor, rows * columns * (channels + 1), prot=mmap.PROT_READ)
+        os.close(descriptor)
+
+    def read(self, instances):
+        """A copy: the memory holds the next one soon."""
+        rows, columns, channels = self.shape
+        rgb = numpy.frombuffer(self.memory, numpy.uint8, rows * columns * channels).reshape(self.shape).copy()
+        ids = numpy.frombuffer(self.memory, numpy.uint8, rows * columns, rows * columns * channels)
+        return Observation(rgb, ids.reshape(rows, columns).copy(),
+                           [Instance(one["id"], one["object_type"], one["texture"], one["pixels"]) for one in instances])
+
+
+def demonstrations(header, descriptor):
+    """Pictures are views of the sealed file: they cannot be written to, and last as long as they are used."""
+    memory = mmap.mmap(descriptor, 0, prot=mmap.PROT_READ)
+    os.close(descriptor)
+    arrays = {name: numpy.frombuffer(memory, "<" + one["type"], int(numpy.prod(one["shape"])), one["offset"])
+              .reshape(one["shape"]) for name, one in header["arrays"].items()}
+    words = header["words"]
+    instances = [[] for _ in arrays["demonstration"]]
+    for step, number, object_type, texture, pixels in arrays["instances"].tolist():
+        instances[step].append(Instance(number, words[object_type], words[texture], pixels))
+    all_of_them = [Demonstration(instruction(json), []) for json in header["instructions"]]
+    for step, owner in enumerate(arrays["demonstration"].tolist()):
+        seen = Observation(arrays["rgb"][step], arrays["ids"][step], instances[step])
+        all_of_them[owner].steps.append(Step(seen, arrays["labels"][step]))
+    return all_of_them

@@ -1,0 +1,138 @@
+"""A method's process reaches nothing but what it is given: each part of docs/trust.md, tried from inside.
+
+One CTest entry a class; a part that the kernel lacks is skipped by its name.
+"""
+import json
+import os
+import pathlib
+import shutil
+import socket
+import unittest
+
+from case import BUILD, Case, FIXTURES
+
+RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference",
+       "--plugin-path", FIXTURES / "faulty"]
+IN_CI = os.environ.get("CI") == "true"
+
+
+class Confinement(Case):
+    def probes(self, words, *more, out="out", expect=3, fixture="fixture_probe"):
+        """how, or how+path=... -> what came of it."""
+        methods = ",".join(f"{fixture}+how={word}" for word in words)
+        self.call(*RUN, "--methods", methods, "--out", out, *more, expect=expect)
+        found = {}
+        for _, (cell, status) in self.cells(out).items():
+            options = cell["method"]["options"]
+            found[options["how"], options["path"]] = status.get("reason", status["state"]).rpartition(": ")[2]
+        self.parts = json.loads((self.dir / out / "run.json").read_text())["confinement"]
+        return found
+
+    def need(self, part):
+        if part not in self.parts:
+            (self.fail if IN_CI else self.skipTest)(f"this kernel has no {part}: {self.parts}")
+
+    def test_files(self):
+        share = BUILD / "share/lgabench"
+        hidden = [share / "scenarios/heart.json", share / "answers/claude.json", share / "suites/q1.json",
+                  self.dir / "out/run.json", pathlib.Path("/etc/passwd"), pathlib.Path("/root")]
+        readable = [share / "spaces/tabletop.json", FIXTURES / "faulty/fixture_probe.so"]
+        words = [f"read+path={path}" for path in hidden + readable] + [f"write+path={self.dir}/x", f"list+path={self.dir}"]
+        found = self.probes(words)
+        self.need("Landlock")
+        for path in hidden:
+            self.assertEqual(found["read", str(path)], "EACCES", path)
+        for path in readable:
+            self.assertEqual(found["read", str(path)], "reached", path)
+        self.assertEqual((found["write", f"{self.dir}/x"], found["list", str(self.dir)]), ("EACCES", "EACCES"))
+
+    def test_files_where_the_run_lies_beside_the_plugin(self):
+        shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
+        found = self.probes([f"read+path={self.dir}/mine/out/run.json", f"read+path={self.dir}/mine/fixture_probe.so"],
+                            "--plugin-path", "mine", "--out", "mine/out", out="mine/out")
+        self.need("Landlock")
+        self.assertEqual(found["read", f"{self.dir}/mine/out/run.json"], "EACCES")
+
+    def test_system_calls(self):
+        words = ["socket", "unix_socket", "ptrace", "kill", "kill_all", "prlimit", "memory_of_worker", "memfd",
+                 "socketpair", "raise"]
+        found = self.probes(words)
+        self.need(", seccomp")
+        for word in words[:-2]:
+            self.assertEqual(found[word, ""], "EPERM", word)
+        for word in words[-2:]:
+            self.assertEqual(found[word, ""], "reached", word)
+
+    def test_the_network_for_a_method_that_declares_it(self):
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+        port = f":{server.getsockname()[1]}"
+        refused = ["unix_socket", "packet_socket", "netlink_socket", "ptrace", "kill"]
+        files = [path for path in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs") if os.path.exists(path)]
+        words = [f"connect+path={port}", "socket6", *refused, *(f"read+path={path}" for path in files)]
+        declared = self.probes([*words, "read+path=/etc/passwd", "own_files"], out="declared", fixture="fixture_probe_network")
+        self.need(", seccomp")
+        self.assertEqual((declared["connect", port], declared["socket6", ""]), ("reached", "reached"))
+        for word in refused:
+            self.assertEqual(declared[word, ""], "EPERM", word)
+        undeclared = self.probes(words, out="undeclared")
+        for word in (("connect", port), ("socket6", "")):
+            self.assertEqual(undeclared[word], "EPERM", word)
+        if "Landlock" in self.parts:
+            self.assertEqual(declared["read", "/etc/passwd"], "EACCES")
+            for path in files:
+                self.assertEqual((declared["read", path], undeclared["read", path]), ("reached", "EACCES"), path)
+
+        table = self.call("report", "declared").stdout
+        self.assertIn("]¶", table.replace("†", "").replace("§", ""))
+        self.assertIn("¶ reached the network on its own", table)
+        self.assertNotIn("¶", self.call("report", "undeclared").stdout)
+        record = json.loads((self.dir / "declared/run.json").read_text())
+        self.assertEqual({p["id"]: p.get("asks") for p in record["plugins"]},
+                         {"fixture_probe_network": "network", os.environ["LGABENCH_TEST_ENGINE"]: None})
+        self.assert_matches_schemas("declared")
+
+    def test_what_it_inherits(self):
+        os.environ["A_SECRET"] = "x"
+        self.addCleanup(os.environ.pop, "A_SECRET")
+        self.environment["A_SECRET"] = "x"
+        found = self.probes(["descriptors", "environment", "stdin"])
+        self.assertEqual(found["descriptors", ""].split(), ["0", "1", "2", "3"])
+        self.assertNotIn("A_SECRET", found["environment", ""])
+        self.assertIn("HOME", found["environment", ""])
+        self.assertEqual(found["stdin", ""], "ENODATA")
+
+    def test_who_may_be_asked(self):
+        found = self.probes(["human", "truth"])
+        for word in ("human", "truth"):
+            self.assertNotIn("heart", found[word, ""].split(), word)
+
+    def test_nothing_survives(self):
+        self.probes(["daemon"], expect=0)
+        mark = f"HOME={self.dir}/".encode()
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                self.assertNotIn(mark, (process / "environ").read_bytes(), process)
+            except OSError:
+                pass
+
+    def test_shared_memory_counts(self):
+        found = self.probes(["shared_memory"], "--memory", "1")
+        self.assertIn("out of memory", found["shared_memory", ""])
+
+    def test_files_of_its_own_are_kept(self):
+        self.probes(["own_files"], expect=0)
+        cell = next((self.dir / "out/cells").iterdir())
+        self.assertEqual((cell / "files/curve.txt").read_text(), "a curve")
+        self.assertEqual([p.name for p in (cell / "files").iterdir()], ["curve.txt"])
+        self.call("merge", "merged", "out")
+        self.assertEqual((self.dir / "merged/cells" / cell.name / "files/curve.txt").read_text(), "a curve")
+
+    def test_unconfined_is_said(self):
+        found = self.probes([f"read+path={BUILD}/share/lgabench/scenarios/heart.json"], "--unconfined")
+        self.assertEqual(list(found.values()), ["reached"])
+        self.assertEqual(self.parts, "none, by --unconfined")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,195 @@
+"""Methods in Python, as a person runs them. Skipped where the interpreter has no NumPy (LGABENCH_TEST_PYTHON names one)."""
+import json
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import unittest
+
+from case import BUILD, Case, command_line, with_options
+
+PYTHON = os.environ.get("LGABENCH_TEST_PYTHON", sys.executable)
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
+HAS_NUMPY = subprocess.run([PYTHON, "-c", "import numpy"], capture_output=True).returncode == 0
+RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
+       "--python", PYTHON]
+METHOD = '''
+import os
+import socket
+import numpy
+import helper
+from lgabench_method import Needs, Refused, Selection, select_features
+
+class Mine:
+    version = "0.3"
+    summary = "a test's"
+    options = {"how": {"default": "", "help": "what it does", "source": "test"}}
+
+    def needs(self, options):
+        return Needs(targets="selected")
+
+    def select(self, command, space, services):
+        how = services.options["how"]
+        if how == "raise":
+            raise ValueError("its own failure")
+        if how.startswith("connect:"):
+            socket.create_connection(("localhost", int(how[8:])), 10).close()
+        if how == "human":
+            services.human.specify(command)
+        if how == "rule":
+            selection = Selection()
+            selection.target.object_types, selection.target.textures = ["heart"], list(space.textures)
+            return selection
+        if how == "read":
+            open(os.environ["LGABENCH_DATA"] + "/scenarios/heart.json")
+        selection = select_features(command, space, services.lm)
+        if how == "edit":
+            selection.target.object_types.append("star")
+        return selection
+
+    def learn(self, demonstrations, services):
+        assert demonstrations[0].steps[0].observation.rgb.shape == (128, 256, 3)
+        assert not demonstrations[0].steps[0].observation.rgb.flags.writeable
+        services.log.epoch(1, 10, float("nan") if services.options["how"] == "nan_loss" else 0.5)
+        open(os.path.join(services.files, "curve.csv"), "w").write("1")
+        if services.options["how"] == "exit":
+            os._exit(5)
+        return Policy(services.options["how"], demonstrations[0].steps[0].label)
+
+class Policy:
+    def __init__(self, how, label):
+        self.how, self.label = how, label
+
+    def act(self, observation, instruction):
+        if self.how == "nan":
+            return [float("nan")] * 12
+        if self.how == "short":
+            return [0.5]
+        return self.label
+'''
+
+
+@unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
+class PythonMethods(Case):
+    def setUp(self):
+        super().setUp()
+        (self.dir / "mine.py").write_text(METHOD)
+        (self.dir / "helper.py").write_text("x = 1\n")
+
+    def how(self, *words, expect=0):
+        methods = ",".join("mine.py:Mine" + (f"+how={word}" if word else "") for word in words)
+        done = self.call(*RUN, "--methods", methods, "--out", "out", expect=expect)
+        found = {}
+        for key, (cell, status) in self.cells("out").items():
+            found[cell["method"]["options"]["how"]] = self.dir / "out/cells" / key, status
+        return found, done
+
+    def test_a_row_beside_a_plugins(self):
+        self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out")
+        self.assert_matches_schemas("out")
+        own = {cell["method"]["id"]: (key, cell, status) for key, (cell, status) in self.cells("out").items()}
+        key, cell, status = own["mine"]
+        build = json.loads(status["build"]["python"])
+        self.assertIn("numpy", build)
+        self.assertIn("python", build)
+        self.assertEqual(len(build["helper.py"]), 64)
+        selection = json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"][0]["selection"]
+        other = json.loads((self.dir / "out/cells" / own["lga"][0] / "selection.json").read_text())["commands"][0]
+        self.assertEqual(selection, other["selection"])
+        self.assertEqual((self.dir / "out/cells" / key / "files/curve.csv").read_text(), "1")
+        again = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "again")
+        self.assert_same_results("out", "again")
+        self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
+        (self.dir / "helper.py").write_text("x = 2\n")
+        said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
+        self.assertIn("python differs", said.stderr)
+
+    def test_who_says_where_a_selection_comes_from(self):
+        found, _ = self.how("", "rule", "edit")
+        provenance = {}
+        for how, (cell, _) in found.items():
+            selection = json.loads((cell / "selection.json").read_text())["commands"][0]["selection"]
+            provenance[how] = selection["provenance"], selection["source"].endswith(", edited by the method")
+        self.assertEqual(provenance, {"": ("recorded", False), "rule": ("rule", False), "edit": ("recorded", True)})
+
+    def test_what_fails_costs_its_own_cell(self):
+        reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
+                   "exit": "exited with 5 in phase learn", "nan_loss": "training diverged", "read": "PermissionError"}
+        found, _ = self.how("", "nan", "short", *reasons, expect=3)
+        for how in ("nan", "short"):
+            episodes = [json.loads(line) for line in (found[how][0] / "episodes.jsonl").read_text().splitlines()]
+            self.assertEqual({e["failure"] for e in episodes}, {"method_error"}, how)
+        for how, reason in reasons.items():
+            cell, status = found[how]
+            self.assertEqual((status["state"], status["fault"]), ("failed", "plugin"), how)
+            self.assertIn(reason, status["reason"], how)
+        self.assertIn("Traceback", (found["raise"][0] / "log.txt").read_text())
+
+    def test_the_network_for_a_method_that_declares_it(self):
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+        how = f"how=connect:{server.getsockname()[1]}"
+        (self.dir / "net.py").write_text(METHOD.replace('version = "0.3"', 'version = "0.3"\n    asks = "network"'))
+        done = self.call(*RUN, "--methods", f"mine.py:Mine+{how},net.py:Mine+{how}", "--out", "out", expect=3)
+        states = {cell["method"]["id"]: status for cell, status in self.cells("out").values()}
+        self.assertRegex(states["mine"]["reason"], "PermissionError: .*Operation not permitted")
+        self.assertEqual(states["net"]["state"], "ok")
+        self.assertIn("¶ reached the network on its own", done.stdout)
+        self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
+
+    def test_refused_with_a_reason(self):
+        for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
+                           "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options"}.items():
+            (self.dir / "bad.py").write_text("class A(")
+            (self.dir / "named.py").write_text("class A:\n    id = 'Upper'\n")
+            (self.dir / "options.py").write_text("class A:\n    options = {'x': {'default': [1]}}\n")
+            self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
+
+    def test_new_plugin_and_check_plugin(self):
+        self.call("new-plugin", "my_method", "--kind", "python")
+        done = self.call("check-plugin", "my_method/my_method.py:MyMethod", "--python", PYTHON)
+        self.assertIn("good", done.stdout)
+        self.call(*RUN, "--methods", "my_method/my_method.py:MyMethod", "--out", "out")
+
+
+class PythonExamples(Case):
+    """examples/python, confined as any method; each where the interpreter has what it imports."""
+
+    def beside(self, other, module, example, *more):
+        """The rows of the run, by method, and the shared directory of each method's cell."""
+        if subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True).returncode != 0:
+            self.skipTest(f"{PYTHON} has no {module}")
+        self.call(*with_options(RUN, "--methods", f"{other},{EXAMPLES / example}", "--out", "out", *more))
+        self.assert_matches_schemas("out")
+        rows = {row["method"].partition("+")[0]: row for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]}
+        cells = {cell["method"]["id"]: self.dir / "out/cells" / key for key, (cell, _) in self.cells("out").items()}
+        return rows, cells
+
+    def test_lga_in_pytorch(self):
+        short = ("--set", "*.epochs=60", "--demos", "20", "--episodes", "10")
+        rows, cells = self.beside("lga+network=plain", "torch", "lga_torch.py:Lga", *short)
+        own, other = (json.loads((cells[name] / "selection.json").read_text()) for name in ("lga_torch", "lga"))
+        self.assertEqual(own, other)
+        seen, as_seen = ([json.loads(line)["input_seen"] for line in (cells[name] / "episodes.jsonl").read_text().splitlines()]
+                         for name in ("lga_torch", "lga"))
+        self.assertEqual(seen, as_seen)  # the same pictures, to the byte, in training and at test
+        losses = [[json.loads(line) for line in (cells[name] / "training.jsonl").read_text().splitlines()]
+                  for name in ("lga_torch", "lga")]
+        self.assertEqual(*([(line["epoch"], line["steps"]) for line in one] for one in losses))
+        self.assertLess(abs(losses[0][-1]["loss"] - losses[1][-1]["loss"]), .1 * losses[1][0]["loss"])
+        self.assertNotIn("method_error", rows["lga_torch"]["failures"])
+        self.call(*with_options(RUN, "--methods", f"{EXAMPLES}/lga_torch.py:Lga", "--out", "again", *short))
+        again, = self.cells("again")
+        self.assertEqual((self.dir / "again/cells" / again / "episodes.jsonl").read_bytes(),
+                         (cells["lga_torch"] / "episodes.jsonl").read_bytes())
+
+    def test_a_forest_in_scikit_learn(self):
+        rows, _ = self.beside("lga", "sklearn", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50",
+                              "--episodes", "10")
+        self.assertNotIn("method_error", rows["forest_sklearn"]["failures"])
+        self.assertGreater(rows["forest_sklearn"]["success"], rows["lga"]["success"])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,153 @@
+// Who says where a Selection comes from: the worker, by what was asked.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <lgabench/host/asked.hpp>
+#include <lgabench/host/messages.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+const FeatureSpace space{"tabletop", {"heart", "star", "pan"}, {"red", "blue"}};
+const Command command{"Bring me the heart.", Task::pick_and_place};
+
+// Says yes to hearts and to red; costs a token a question.
+class Yes : public LanguageModel {
+ public:
+  std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>& questions) override {
+    if (refuses) throw MethodError("no answer was recorded");
+    std::vector<bool> answers;
+    for (const Question& q : questions) answers.push_back(q.candidate == "heart" || q.candidate == "red");
+    cost_.lm_queries += static_cast<int>(questions.size());
+    return answers;
+  }
+  std::string model() const override { return "a model"; }
+  std::string asked_as(const Command&) const override { return "Fetch the heart."; }
+  Provenance provenance() const override { return Provenance::recorded; }
+  SelectionCost cost() const override { return cost_; }
+  bool refuses = false;
+
+ private:
+  SelectionCost cost_{100, 0, 0, 0};
+};
+
+// Adds the star to a proposal; costs seconds.
+class Person : public HumanAnswers {
+ public:
+  Selection specify(const Command&) override { return of(FeatureSet{{"heart"}, {"red"}}, 5); }
+  Selection edit(const Command&, const Selection& proposal) override {
+    proposed = proposal;
+    return of(FeatureSet{{"heart", "star"}, {"red"}}, 3);
+  }
+  Selection proposed;
+
+ private:
+  static Selection of(FeatureSet target, double seconds) {
+    Selection selection;
+    selection.target = std::move(target);
+    selection.provenance = Provenance::human;
+    selection.source = "p1";
+    selection.cost.human_seconds = seconds;
+    return selection;
+  }
+};
+
+struct NoLog : TrainingLog {
+  void epoch(int, long long, double) override {}
+};
+
+class AskedTest : public testing::Test {
+ protected:
+  AskedTest() {
+    int ends[2];
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    worker_ = std::make_unique<Channel>(Descriptor(ends[0]), [](short) {});
+    host_ = std::make_unique<Channel>(Descriptor(ends[1]), [](short) {});
+  }
+  Json say(const Json& question) {
+    EXPECT_TRUE(asked_.answer({question}, *worker_));
+    return host_->receive()->header;
+  }
+  Json ask_all() {
+    Json questions = Json::array();
+    for (const auto& type : space.object_types) questions.push_back(protocol::to_json(Question{{}, {}, type}));
+    for (const auto& texture : space.textures)
+      questions.push_back(protocol::to_json(Question{{}, Question::Group::texture, texture}));
+    return say({{"type", "ask"},
+                {"command", protocol::to_json(command)},
+                {"space", protocol::to_json(space)},
+                {"questions", questions}});
+  }
+  Json person(const char* how, const FeatureSet& proposal = {}) {
+    return say({{"type", "person"},
+                {"how", how},
+                {"command", protocol::to_json(command)},
+                {"proposal", {{"target", to_json(proposal)}}}});
+  }
+  Selection account(const FeatureSet& target) const {
+    Selection selection;
+    selection.target = target;
+    selection.provenance = Provenance::human;  // what a method says of itself does not count
+    selection.source = "myself";
+    selection.cost = {-5, -99, 1e9, 1e9};
+    return asked_.account(selection);
+  }
+
+  Yes model_;
+  Person person_;
+  NoLog log_;
+  Json options_ = Json::object();
+  Services services_{model_, person_, options_, 0, log_};
+  Asked asked_{space, services_};
+  std::unique_ptr<Channel> worker_, host_;
+};
+
+TEST_F(AskedTest, nobody_is_a_rule_or_nothing) {
+  EXPECT_EQ(account({{"heart"}, {"red"}}).provenance, Provenance::rule);
+  EXPECT_EQ(account({{"heart"}, {"red"}}).source, "");
+  EXPECT_EQ(account({{"heart"}, {"red"}}).cost.lm_queries, 0);
+  EXPECT_EQ(account({}).provenance, Provenance::none);
+}
+
+TEST_F(AskedTest, a_model_and_what_it_cost) {
+  EXPECT_EQ(ask_all()["answers"], Json({true, false, false, true, false}));
+  const Selection same = account({{"heart"}, {"red"}});
+  EXPECT_EQ(same.provenance, Provenance::recorded);
+  EXPECT_EQ(same.source, "a model");
+  EXPECT_EQ(same.asked_as, "Fetch the heart.");
+  EXPECT_EQ(same.cost.lm_queries, 5);
+  EXPECT_EQ(same.cost.human_seconds, 0);
+  EXPECT_EQ(account({{"star"}, {"red"}}).source, "a model, edited by the method");
+  EXPECT_EQ(account({}).provenance, Provenance::recorded);
+}
+
+TEST_F(AskedTest, a_person_after_the_model) {
+  ask_all();
+  person("edit", {{"heart"}, {"red"}});
+  EXPECT_EQ(person_.proposed.provenance, Provenance::recorded);
+  EXPECT_EQ(person_.proposed.cost.lm_queries, 5);
+  const Selection left = account({{"star", "heart"}, {"red"}});  // in any order
+  EXPECT_EQ(left.provenance, Provenance::human);
+  EXPECT_EQ(left.source, "p1");
+  EXPECT_EQ(left.cost.lm_queries, 5);
+  EXPECT_EQ(left.cost.human_seconds, 3);
+  EXPECT_EQ(account({{"heart"}, {"red"}}).provenance, Provenance::recorded);
+  EXPECT_EQ(account({{"pan"}, {"red"}}).source, "p1, edited by the method");
+}
+
+TEST_F(AskedTest, an_answer_that_fails_is_why_the_call_failed) {
+  model_.refuses = true;
+  EXPECT_EQ(ask_all()["type"], "refused");
+  EXPECT_SAYS(message_of<MethodError>([this] { asked_.rethrow(); }), "no answer was recorded");
+}
+
+TEST_F(AskedTest, a_malformed_question_breaks_the_protocol) {
+  EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "ask"}}); }), "expected");
+  EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "person"}, {"how", "guess"}}); }), "specify, edit or truth");
+  EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
+}
+
+}  // namespace
+}  // namespace lgabench

@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+
+#include <cmath>
+#include <limits>
+
+#include <lgabench/host/messages.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+void wait_for(int fd, short events) {
+  pollfd watched{fd, events, 0};
+  ::poll(&watched, 1, 1000);
+}
+
+// Two ends of a socket: one speaks frames, the other is written to by hand.
+struct Ends {
+  Ends() {
+    int ends[2];
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+    raw = Descriptor(ends[1]);
+    channel = std::make_unique<Channel>(Descriptor(ends[0]), [fd = ends[0]](short events) { wait_for(fd, events); });
+  }
+  void write(const std::string& bytes) const { EXPECT_EQ(::write(raw.fd, bytes.data(), bytes.size()), bytes.size()); }
+  std::string refusal() {
+    return message_of<Malformed>([this] { channel->receive(); });
+  }
+
+  std::unique_ptr<Channel> channel;
+  Descriptor raw;
+};
+
+std::string number(std::uint32_t value) { return {reinterpret_cast<const char*>(&value), sizeof value}; }
+
+// A frame as bytes, by way of a channel.
+std::string bytes_of(const Json& header, const std::string& payload = {}) {
+  Ends ends;
+  ends.channel->send(header, payload);
+  std::string bytes(1 << 16, 0);
+  bytes.resize(static_cast<std::size_t>(::read(ends.raw.fd, bytes.data(), bytes.size())));
+  return bytes;
+}
+
+TEST(Frames, arrive_as_they_were_sent) {
+  Ends ends;
+  const std::string bytes = bytes_of({{"type", "needs"}, {"x", {1, 2.5, "ü"}}}, std::string("\0\1", 2));
+  ends.write(bytes.substr(0, 7));
+  ends.write(bytes.substr(7) + bytes);
+  for (int i = 0; i < 2; ++i) {
+    const std::optional<Frame> frame = ends.channel->receive();
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->type(), "needs");
+    EXPECT_EQ(frame->header["x"], Json({1, 2.5, "ü"}));
+    EXPECT_EQ(frame->payload, std::string("\0\1", 2));
+  }
+  ends.raw.close();
+  EXPECT_FALSE(ends.channel->receive());
+}
+
+TEST(Frames, whose_peer_goes_in_the_middle_are_none) {
+  Ends ends;
+  const std::string bytes = bytes_of({{"type", "needs"}});
+  ends.write(bytes.substr(0, bytes.size() - 1));
+  ends.raw.close();
+  EXPECT_FALSE(ends.channel->receive());
+}
+
+TEST(Frames, that_are_malformed_are_refused_with_the_reason) {
+  const std::string good = bytes_of({{"type", "needs"}}, "12345678");
+  const auto refusal_of = [](const std::string& bytes) {
+    Ends ends;
+    ends.write(bytes);
+    return ends.refusal();
+  };
+  EXPECT_SAYS(refusal_of("{\"phase\": \"the fixture's own\"}\n"), "does not begin as one");
+  EXPECT_SAYS(refusal_of("LGA1" + number(2 << 20) + number(0) + number(0)),
+              "a header of 2097152 bytes, at most 1048576");
+  EXPECT_SAYS(refusal_of("LGA1" + number(2) + number(~0u) + number(0)), "a payload of 4294967295 bytes");
+  std::string other = good;
+  other.back() = 'x';
+  EXPECT_SAYS(refusal_of(other), "checksum");
+  for (const auto& header : {Json::array(), Json(3), Json::object(), Json({{"type", 3}})})
+    EXPECT_SAYS(refusal_of(bytes_of(header)), "\"type\"");
+  Json deep = {{"type", "needs"}};
+  for (int i = 0; i < 120; ++i) deep = {{"type", "needs"}, {"x", deep}};
+  EXPECT_SAYS(refusal_of(bytes_of(deep)), "100 levels");
+}
+
+TEST(Frames, over_the_limits_are_not_sent) {
+  Ends ends;
+  EXPECT_SAYS(message_of<MethodError>([&] {
+                ends.channel->send({{"type", "a"}}, std::string(2 << 20, 'x'));
+              }),
+              "over the limits");
+}
+
+TEST(Frames, carry_a_file_that_nobody_can_write_to) {
+  Ends ends;
+  protocol::SharedMemory memory(4096);
+  memory.data()[7] = 42;
+  Channel sender(std::move(ends.raw), [](short) {});
+  sender.send({{"type", "hello"}}, {}, &memory.file());
+  const std::optional<Frame> frame = ends.channel->receive();
+  ASSERT_TRUE(frame);
+  const protocol::SharedMemory read(frame->file, 4096);
+  EXPECT_EQ(read.data()[7], 42);
+  memory.data()[7] = 43;
+  EXPECT_EQ(read.data()[7], 43);
+  EXPECT_EQ(::mmap(nullptr, 4096, PROT_WRITE, MAP_SHARED, frame->file.fd, 0), MAP_FAILED);
+  EXPECT_LT(::pwrite(frame->file.fd, "x", 1, 0), 0);
+  EXPECT_SAYS(message_of<InputError>([&] { protocol::SharedMemory(frame->file, 4097); }), "4097");
+}
+
+TEST(Messages, actions_keep_what_is_no_number) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const Action action{{{.1, nan}, {0, 1, 2, infinity}}, {{-0.0, 1e-320}, {3, 4, 5, 6}}};
+  const Action back = protocol::read_action(protocol::to_bytes(action));
+  EXPECT_TRUE(std::isnan(back.pose0.position_m.y));
+  EXPECT_EQ(back.pose0.rotation.w, infinity);
+  EXPECT_TRUE(std::signbit(back.pose1.position_m.x));
+  EXPECT_EQ(protocol::to_bytes(back), protocol::to_bytes(action));
+  EXPECT_SAYS(message_of<InputError>([] { protocol::read_action("short"); }), "expected 96 bytes");
+}
+
+Observation observation(std::uint8_t colour) {
+  Observation o;
+  o.rgb.assign(std::size_t{3} * Observation::rows * Observation::columns, colour);
+  o.ids.assign(std::size_t{Observation::rows} * Observation::columns, 0);
+  o.ids[5] = 9;
+  o.instances = {{9, "heart", "red", 1}, {3, "pallet", "plain", 0}};
+  return o;
+}
+
+TEST(Messages, demonstrations_arrive_as_they_were_packed) {
+  Selection selection;
+  selection.target = {{"heart"}, {"red"}};
+  selection.avoid = FeatureSet{{}, {"blue"}};
+  selection.provenance = Provenance::cassette;
+  selection.source = "a model";
+  const std::vector<Demonstration> given{
+      {{"Bring me the heart.", selection},
+       {{observation(1), {{{.3, .1}, {}}, {{.4, .2}, {0, 0, 1, 0}}}}, {observation(2), {}}}},
+      {{"none", {}}, {}},
+      {{"other", {}}, {{observation(3), {}}}}};
+  const protocol::DemonstrationFile packed = protocol::pack(given);
+  const Json header = Json::parse(packed.header.dump());
+  const auto read = protocol::unpack(JsonReader(header, "learn"), packed.memory->file());
+  ASSERT_EQ(read.size(), given.size());
+  for (std::size_t d = 0; d < given.size(); ++d) {
+    EXPECT_EQ(read[d].instruction.utterance, given[d].instruction.utterance);
+    EXPECT_EQ(protocol::told(read[d].instruction.selection), protocol::told(given[d].instruction.selection));
+    ASSERT_EQ(read[d].steps.size(), given[d].steps.size());
+    for (std::size_t s = 0; s < given[d].steps.size(); ++s) {
+      const Step &a = read[d].steps[s], &b = given[d].steps[s];
+      EXPECT_EQ(a.observation.rgb, b.observation.rgb);
+      EXPECT_EQ(a.observation.ids, b.observation.ids);
+      EXPECT_EQ(protocol::instances_json(a.observation), protocol::instances_json(b.observation));
+      EXPECT_EQ(protocol::to_bytes(a.label), protocol::to_bytes(b.label));
+    }
+  }
+  Json beyond = header;
+  beyond["arrays"]["ids"]["offset"] = packed.memory->size();
+  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(JsonReader(beyond, "learn"), packed.memory->file()); }),
+              "an array within the file");
+}
+
+TEST(Messages, an_observation_arrives_through_shared_memory) {
+  protocol::SharedMemory memory(protocol::observation_bytes);
+  protocol::write(observation(7), memory);
+  const Json instances = protocol::instances_json(observation(7));
+  const Observation read = protocol::read_observation(memory, JsonReader(instances, "act"));
+  EXPECT_EQ(read.rgb, observation(7).rgb);
+  EXPECT_EQ(read.ids, observation(7).ids);
+  EXPECT_EQ(protocol::instances_json(read), instances);
+}
+
+}  // namespace
+}  // namespace lgabench
