@@ -93,6 +93,21 @@ class Documents(unittest.TestCase):
                     wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: a table without a head")
         self.assertEqual(wrong, [])
 
+    def test_documents_that_sources_name_are_there(self):
+        """And sections of docs/protocol.md; no other document, by a name in capitals."""
+        sections = re.findall(r"^## (\d)\. ", (SOURCE / "docs/protocol.md").read_text(), re.M)
+        wrong = []
+        for folder in "framework", "envs", "plugins", "baselines", "examples", "python", "tests", "cmake":
+            for file in (SOURCE / folder).rglob("*"):
+                if file.suffix not in (".cpp", ".hpp", ".py", ".in", ".cmake", ".txt") or file.samefile(__file__):
+                    continue
+                text = re.sub(r"\s*\n\s*(?://+|#)?\s*", " ", file.read_text())  # comments go on in the next line
+                names = re.findall(r"\b(?:PROTOCOL|DESIGN)(?:,? section|'s)", text)
+                names += [name for name in re.findall(r"\bdocs/[\w/-]+\.md", text) if not (SOURCE / name).exists()]
+                names += [n for n in re.findall(r"docs/protocol\.md, sections? (\d)", text) if n not in sections]
+                wrong += [f"{file.relative_to(SOURCE)}: {name}" for name in names]
+        self.assertEqual(wrong, [])
+
     def test_cited_as_it_is(self):
         said = re.search(r"^version: (.*)$", (SOURCE / "CITATION.cff").read_text(), re.M)[1]
         self.assertIn(f"version = {{{said}}}", (SOURCE / "docs/citing.md").read_text())
