@@ -1,4 +1,5 @@
-// Somebody else's run, reported, and compared with itself. No figure is drawn and no picture: those are processes.
+// Somebody else's run, reported, and compared with itself. Figures and pictures are made by processes: there is none of
+// the former, and a word in place of each of the latter.
 #include <lgabench/report/agreement.hpp>
 #include <lgabench/report/compare.hpp>
 #include <lgabench/report/html.hpp>
@@ -6,8 +7,21 @@
 
 #include "run_files.hpp"
 
+namespace {
+
+using namespace lgabench;
+
+report::Pictures all_pictures(const report::RunResults& results) {
+  report::Pictures pictures;
+  for (const report::CellResult& cell : results.cells)
+    for (const auto& arm : cell.episodes)
+      for (const report::PlayedEpisode& episode : arm.second) pictures.scenes[episode.scene] = "PNG";
+  return pictures;
+}
+
+}  // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace lgabench;
   const fs::path run = fuzz::directory() / "report";
   fuzz::write_run(run, fuzz::text_of(data, size));
   try {
@@ -22,8 +36,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     canonical(to_json(agreements));
     to_csv(summary);
     plain_text(results, summary);
-    markdown(results, summary, claims, agreements, paper, {});
-    html(results, summary, claims, agreements, paper, {});
+    const std::vector<std::vector<report::Figure>> no_figures(summary.tables.size());
+    markdown(results, summary, claims, agreements, paper, no_figures);
+    html(results, summary, claims, agreements, paper, all_pictures(results));
     for (const report::CellResult& cell : results.cells) {
       const fs::path directory = run / "cells" / cell.key;
       if (!cell.failed) report::compare_cells(directory, directory, true);
