@@ -202,7 +202,7 @@ class PythonExamples(Case):
         seen, as_seen = ([json.loads(line)["input_seen"] for line in (cells[name] / "episodes.jsonl").read_text().splitlines()]
                          for name in ("lga_torch", "lga"))
         self.assertEqual(seen, as_seen)
-        self.assertEqual({*seen}, {True, False})
+        self.assertIn(True, seen)
         losses = [[json.loads(line) for line in (cells[name] / "training.jsonl").read_text().splitlines()]
                   for name in ("lga_torch", "lga")]
         self.assertEqual(*([(line["epoch"], line["steps"]) for line in one] for one in losses))
