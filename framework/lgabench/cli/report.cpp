@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -39,10 +41,11 @@ void add_report(CLI::App& app, int& exit) {
       "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb->add_option("RUN", options->run, "The run's directory")->required();
   verb->add_option("--format", options->format, "What to print: text, md, json or csv")
-      ->check(CLI::IsMember({"text", "md", "json", "csv"}))
+      ->check(one_of("format", {"text", "md", "json", "csv"}))
       ->capture_default_str();
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
+  arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
       "claims.json and figures/.\n"
@@ -51,13 +54,14 @@ void add_report(CLI::App& app, int& exit) {
       "The paper's claims: lgabench report runs/q2 --claims");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
+    expect_run(run);
     const report::Report report = report::write_report(run);
     if (options->claims) {
       exit = print_claims(run, report, options->format);
       return;
     }
     if (options->format == "text")
-      to_stdout("{}{}", report::plain_text(report.run, report.summary), report::agreement_text(report.agreements));
+      print_tables(report);
     else if (options->format == "md")
       to_stdout("{}", read_file(run / "report.md"));
     else

@@ -1,0 +1,27 @@
+// All commands of `lgabench`, as a person sees them.
+#pragma once
+#include <array>
+#include <utility>
+
+#include <lgabench/cli/verbs.hpp>
+
+namespace lgabench::cli {
+
+inline constexpr const char* about = "A benchmark of state abstraction in imitation learning";
+
+/// Those that need an engine and are lgabench-worker's, with what they do.
+inline constexpr std::array<std::pair<const char*, const char*>, 3> worker_verbs{{
+    {"select", "Ask which features matter for a command, and print the Selection"},
+    {"demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5"},
+    {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG"},
+}};
+/// What a verb of worker_verbs does.
+const char* worker_summary(const char* verb);
+
+/// Adds all others, and what --help says around them.
+void add_commands(CLI::App& app, int& exit);
+
+/// Puts the commands that are there below their titles.
+void arrange_commands(CLI::App& app);
+
+}  // namespace lgabench::cli
