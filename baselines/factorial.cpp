@@ -1,6 +1,6 @@
 // What a Selection does to the data apart from what it does to the input: every pair of training scenes and picture
-// (PROTOCOL, section 4). No text input. With all defaults it is LGA. With policy=centroid, what an abstraction is worth
-// to a policy that need not learn where pixels are.
+// (docs/protocol.md, section 4). No text input. With all defaults it is LGA. With policy=centroid, what an abstraction
+// is worth to a policy that need not learn where pixels are.
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
@@ -41,10 +41,10 @@ LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
                        "{" LGABENCH_CLONING_OPTIONS R"(,
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
-             "source": "PROTOCOL, section 4"},
+             "source": "docs/protocol.md, section 4"},
   "input": {"default": "mask", "values": ["mask", "true_mask", "object_mask", "rgb"],
             "help": "the policy sees the mask of the Selection, of the true distribution, of any object but the pallet, or the picture",
-            "source": "PROTOCOL, section 4; object_mask: ours"},
+            "source": "docs/protocol.md, section 4; object_mask: ours"},
   "instances": {"default": "all", "values": ["all", "first"],
                 "help": "of several visible instances that match one role: all in the mask, or the first, row by row",
                 "source": "first: paper, section 3.2", "needs": {"first": {"input": ["mask", "true_mask"]}}},

@@ -34,4 +34,4 @@ LGABENCH_METHOD("gcbc_dart", "0.1",
                 "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
   "dart": {"default": "recovery", "values": ["recovery", "posthoc", "none"],
            "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads; posthoc: five copies of its action and 36 x 72 picture with Gaussian noise of .05 of their standard deviations",
-           "source": "paper, section 5; PROTOCOL, section 5; posthoc: released code"}})")
+           "source": "paper, section 5; docs/protocol.md, section 5; posthoc: released code"}})")

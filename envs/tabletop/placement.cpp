@@ -123,8 +123,8 @@ void place_freely(const Layout& layout, std::vector<SceneObject>& objects, const
   throw Error(fmt::format("layout {}: no room found for {} objects in {} tries", layout.id, objects.size(), tries));
 }
 
-// PROTOCOL, sections 3 and 4: obstacles bar one side of the target's row, distractors stand in the other row, or where
-// they bar the way themselves opposite the obstacle.
+// docs/protocol.md, section 3 and 4: obstacles bar one side of the target's row, distractors stand in the other row, or
+// where they bar the way themselves opposite the obstacle.
 void place_for_sweep(const Layout& layout, const SceneContent& content, std::vector<SceneObject>& objects,
                      const Streams& stream) {
   constexpr double distractor_y_m = .16;
@@ -173,7 +173,7 @@ const Layout& find_layout(Task task, const std::string& id) {
   for (const Layout& layout : all_layouts())
     if (layout.task == task && layout.id == id) return layout;
   throw InputError(
-      fmt::format("layout \"{}\": expected one of {} has: {}", id, to_string(task), fmt::join(layouts(task), ", ")));
+      fmt::format("layout \"{}\": expected one of {} (task {})", id, fmt::join(layouts(task), ", "), to_string(task)));
 }
 
 void place(const Layout& layout, const SceneContent& content, std::vector<SceneObject>& objects,

@@ -11,7 +11,7 @@
 
 namespace lgabench::tabletop {
 
-/// Where objects of a task may stand (PROTOCOL, section 3). Without places: anywhere, at any yaw.
+/// Where objects of a task may stand (docs/protocol.md, section 3). Without places: anywhere, at any yaw.
 struct Layout {
   Task task;
   std::string id;

@@ -1,4 +1,4 @@
-// Success and failure: what an episode's end says about it (PROTOCOL, section 2).
+// Success and failure: what an episode's end says about it (docs/protocol.md, section 2).
 #pragma once
 #include <vector>
 

@@ -9,9 +9,9 @@
 
 namespace lgabench::tabletop {
 
-/// The suction disc (PROTOCOL, section 2).
+/// The suction disc (docs/protocol.md, section 2).
 constexpr double suction_radius_m = 0.01;
-/// Along the blade, through it, upright. The width is PROTOCOL's.
+/// Along the blade, through it, upright. The width: docs/protocol.md, section 2.
 constexpr Vec3 spatula_size_m{0.12, 0.01, 0.05};
 
 /// The bodies of a scene, in the order in which they were placed.

@@ -1,4 +1,5 @@
-// The top view that every engine shares: colours and ids in one pass, on the processor (Embree), no display.
+// The top view that every engine shares: colours and ids, rasterised on the processor; rays (Embree) for shadows on
+// objects. No display.
 #pragma once
 #include <memory>
 #include <string>
@@ -33,7 +34,7 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Fills rgb, ids and the instance table (ordered as `objects`), one ray a pixel and a hard shadow. A lit level
+  /// Fills rgb, ids and the instance table (ordered as `objects`), with hard shadows. A lit level
   /// surface shows its texture's colour as it is. What lies outside the picture or below the table is not seen.
   /// @throws InputError for an unknown object type or texture, an instance id that is 0 or given twice, or a pose that
   /// is not finite.

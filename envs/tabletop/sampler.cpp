@@ -78,7 +78,7 @@ struct Request {
   Selection meant;  // distractors stay out of it
 };
 
-// PROTOCOL, section 3: objects that don't satisfy the command.
+// docs/protocol.md, section 3: objects that don't satisfy the command.
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
   const FeatureSpace& space = request.scenario.space;
   const SceneContent& content = request.content;
@@ -131,7 +131,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   return distractors;
 }
 
-// PROTOCOL, section 4 (q3): all types of the choice, in random order, but a target first.
+// docs/protocol.md, section 4 (q3): all types of the choice, in random order, but a target first.
 std::vector<SceneObject> sample_choice(const Request& request, RandomStream random) {
   const bool sweep = request.layout.task == Task::sweep;
   const FeatureSet& right = sweep ? *request.meant.avoid : request.meant.target;

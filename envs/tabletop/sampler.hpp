@@ -9,7 +9,7 @@
 
 namespace lgabench::tabletop {
 
-/// All that a scene depends on (PROTOCOL, section 3): not engine, method, thread or host.
+/// All that a scene depends on (docs/protocol.md, section 3): not engine, method, thread or host.
 struct SceneRequest {
   std::string layout;  // one of layouts(task)
   std::string split;   // train, dev or test

@@ -1,4 +1,4 @@
-// Sweep's goal: two strips painted on the table, |y| in [.34, .48], over its whole depth (PROTOCOL, section 3).
+// Sweep's goal: two strips painted on the table, |y| in [.34, .48], over its whole depth (docs/protocol.md, section 3).
 #pragma once
 #include <cmath>
 

@@ -2,6 +2,7 @@
 
 lgabench does the rest: with --serve, on a socket as descriptor 3, this is the process that the method runs in.
 """
+import faulthandler
 import json
 import os
 import socket
@@ -10,6 +11,7 @@ import sys
 
 def main(words):
     if words == ["--serve"]:
+        faulthandler.enable()  # a crash in a library leaves a traceback in the log
         from lgabench_method import frames, serve
         serve.serve(frames.Channel(socket.socket(fileno=3)))
         sys.stdout.flush()

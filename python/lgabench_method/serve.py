@@ -83,13 +83,16 @@ class Host:
         files = os.path.join(os.environ.get("HOME", "."), "files")
         self.services = Services(_Model(channel), _Human(channel), hello["options"], hello["seed"], _Log(channel), files,
                                  layout)
-        self.method = load(hello["method"]["file"], hello["method"]["class"], hello["method"]["sha256"])()
+        self.kind = load(hello["method"]["file"], hello["method"]["class"], hello["method"]["sha256"])
+        self.method = self.kind()
         self.policy = None
 
     def hello(self, header, payload, descriptor):
         self.channel.send({"type": "hello", "protocol": PROTOCOL})
 
     def needs(self, header, payload, descriptor):
+        if self.method is None:
+            self.method = self.kind()
         needs = self.method.needs(self.services.options) if hasattr(self.method, "needs") else Needs()
         self.channel.send({"type": "needs", **values.needs_json(needs)})
 
@@ -112,6 +115,10 @@ class Host:
         if getattr(self.policy, "seen_in_training", None) is not None:
             reply["seen_in_training"] = bool(self.policy.seen_in_training)
         self.channel.send(reply, action)
+
+    def drop(self, header, payload, descriptor):
+        setattr(self, "method" if header["what"] == "method" else "policy", None)
+        self.channel.send({"type": "dropped"})
 
     def bye(self, header, payload, descriptor):
         self.policy = self.method = None
@@ -142,7 +149,7 @@ def serve(channel):
     host = _told(channel, "plugin", Host, channel, frame[0], frame[2])
     if host is None:
         return
-    answers = {name: getattr(host, name) for name in ("hello", "needs", "select", "learn", "act", "bye")}
+    answers = {name: getattr(host, name) for name in ("hello", "needs", "select", "learn", "act", "drop", "bye")}
     while frame is not None:
         kind = frame[0]["type"]
         if kind not in answers:

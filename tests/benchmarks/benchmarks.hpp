@@ -14,7 +14,7 @@ void register_tinyrenderer();
 void register_plugin();
 void register_harness();
 
-/// A promise of DESIGN, section 9: what `measured` must be beside `reference`, both names of benchmarks.
+/// A promise of docs/performance.md: what `measured` must be beside `reference`, both names of benchmarks.
 struct Promise {
   std::string what, measured, reference;
   enum class Unit { times_as_fast, times_as_long } unit;

@@ -5,12 +5,17 @@ LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 a
 import hashlib
 import http.server
 import json
+import os
+import pathlib
 import re
 import shlex
+import shutil
+import signal
 import threading
+import time
 import unittest
 
-from case import BUILD, Case
+from case import BUILD, Case, FIXTURES
 
 DATA = BUILD / "share/lgabench"
 SECRET = "sk-secret-1234567890"
@@ -23,7 +28,7 @@ class Server(http.server.ThreadingHTTPServer):
 
     def __init__(self, yes):
         super().__init__(("127.0.0.1", 0), Handler)
-        self.yes, self.asked = yes, []
+        self.yes, self.asked, self.seconds, self.out_of_order = yes, [], 0, False
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
 
@@ -32,6 +37,10 @@ class Handler(http.server.BaseHTTPRequestHandler):
         request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         question = request["messages"][1]["content"]
         self.server.asked.append(question)
+        if self.server.out_of_order:
+            self.send_error(400, "out of order")
+            return
+        time.sleep(self.server.seconds)
         candidate = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)[1]
         text = "Final answer: " + ("yes" if candidate in self.server.yes else "no")
         body = json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop"}],
@@ -46,7 +55,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
         pass
 
 
-class Cassettes(Case):
+class Asking(Case):
+    """A suite of two scenarios, and a server to ask about them."""
     def setUp(self):
         super().setUp()
         suite = json.loads((DATA / "suites/q1.json").read_text())
@@ -57,6 +67,8 @@ class Cassettes(Case):
         self.addCleanup(self.server.server_close)
         self.addCleanup(self.server.shutdown)
 
+
+class Cassettes(Asking):
     def ask(self, *more, **options):
         self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{self.server.server_port}/v1", OPENAI_API_KEY=SECRET)
         return self.call("select", "--suite", self.suite, "--answers", "openai", "--model", "made-up-1", "--cassette",
@@ -117,7 +129,7 @@ class Cassettes(Case):
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):
-            self.assertIn("--answers: expected recorded, claude, gpt4_released, gpt4_study or cassette:FILE",
+            self.assertIn("--answers: expected recorded, claude, gpt4_released, gpt4_study, openai or cassette:FILE",
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
@@ -125,6 +137,122 @@ class Cassettes(Case):
         (self.dir / "two.jsonl").write_text("".join(json.dumps(dict(line, model=m, key=m)) + "\n" for m in "ab"))
         self.assertIn("it has those of a, b", self.call(*run, "cassette:two.jsonl", expect=2).stderr)
         self.assertIn("expected a command", self.call("select", expect=2).stderr)
+
+
+def selections(run):
+    """Row and scenario -> the Selections of its cells, in the order of their keys."""
+    found = {}
+    for path in sorted((run / "cells").iterdir()):
+        cell = json.loads((path / "cell.json").read_text())
+        if cell["method"]["kind"] == "method":
+            command, = json.loads((path / "selection.json").read_text())["commands"]
+            found.setdefault((cell["method"]["name"], cell["scenario"]["id"]), []).append(command["selection"])
+    return found
+
+
+class Live(Asking):
+    ANSWERS = ["--answers", "openai", "--model", "made-up-1", "--cassette", "tape.jsonl"]
+
+    def setUp(self):
+        super().setUp()
+        self.environment.update(OPENAI_BASE_URL=f"http://me:{SECRET}@127.0.0.1:{self.server.server_port}/v1",
+                                OPENAI_API_KEY=SECRET)
+        self.run_it = ["run", self.suite, "--methods", "lga", "--demos", "10", "--seeds", "0,1", "--episodes", "2", "--set",
+                       "lga.epochs=2", "--no-reference", "--jobs", "2"]
+
+    def play(self, *more, **options):
+        return self.call(*self.run_it, *self.ANSWERS, "--out", "out", *more, **options)
+
+    def test_cells_ask_and_pay_once(self):
+        table = self.play().stdout
+        self.assertEqual(len(self.server.asked), 224, "two cells of each scenario, at once")
+        self.assertEqual(len(set(self.server.asked)), 224)
+        self.assertIn("Language model: made-up-1, asked during the run; its replies are in answers/.", table)
+        self.assert_matches_schemas("out")
+        tape = (self.dir / "tape.jsonl").read_bytes()
+        digest = hashlib.sha256(tape).hexdigest()
+        self.assertEqual([path.name for path in (self.dir / "out/answers").iterdir()], [digest + ".jsonl"])
+        answers, = json.loads((self.dir / "out/run.json").read_text())["answers"]
+        prompt = hashlib.sha256((DATA / "prompts/selection.txt").read_bytes()).hexdigest()
+        self.assertEqual(answers, {"name": digest + ".jsonl", "file": "tape.jsonl", "model": "made-up-1", "prompt": prompt,
+                                   "provider": f"http://127.0.0.1:{self.server.server_port}/v1"})
+        for cell, _ in self.cells("out").values():
+            self.assertEqual((cell["answers"], cell["data"]["prompt"]), ("openai:made-up-1", prompt))
+        for path in (self.dir / "out").rglob("*"):
+            self.assertFalse(path.is_file() and SECRET.encode() in path.read_bytes(), path)
+        for both in selections(self.dir / "out").values():
+            self.assertEqual(both[0], both[1], "who asked first makes no difference")
+            self.assertEqual((both[0]["provenance"], both[0]["source"]), ("live", "made-up-1"))
+            self.assertEqual((both[0]["cost"]["lm_queries"], both[0]["cost"]["lm_tokens"]), (112, 112 * 9))
+            self.assertGreater(both[0]["cost"]["lm_seconds"], 0)
+
+        # With the replies alone, and with nobody to ask.
+        self.server.shutdown()
+        del self.environment["OPENAI_BASE_URL"], self.environment["OPENAI_API_KEY"]
+        before = self.results("out")
+        (self.dir / "tape.jsonl").rename(self.dir / "elsewhere.jsonl")
+        self.assertIn("4 bit-identical", self.call("verify", "out", "--all").stdout)
+        shutil.rmtree(next((self.dir / "out/cells").iterdir()))
+        self.assertIn(f"tape.jsonl: lacks replies that out is based on; they are in out/answers/{digest}.jsonl",
+                      self.play("--resume", expect=2).stderr)
+        shutil.copy(self.dir / f"out/answers/{digest}.jsonl", self.dir / "tape.jsonl")
+        self.play("--resume")
+        self.assertEqual(self.results("out"), before)
+        self.assertEqual(len(self.server.asked), 224)
+        kept = self.dir / "out/answers" / (digest + ".jsonl")
+        kept.rename(self.dir / "kept.jsonl")
+        self.assertIn("its language model's replies are not kept in answers/", self.call("verify", "out", expect=2).stderr)
+        kept.write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
+        self.assertIn("does not have the bytes that its name says", self.call("verify", "out", expect=2).stderr)
+
+    def test_shards_on_one_cassette_are_one_run(self):
+        for i in (1, 2):
+            self.call(*self.run_it, *self.ANSWERS, "--shard", f"{i}/2", "--out", f"part{i}")
+        self.assertEqual(len(self.server.asked), 224)
+        self.call("merge", "merged", "part1", "part2")
+        self.assert_matches_schemas("merged")
+        self.assertIn("4 bit-identical", self.call("verify", "merged", "--all").stdout)
+        self.call(*self.run_it, *self.ANSWERS[:-1], "other.jsonl", "--shard", "2/2", "--out", "apart")
+        self.assertIn("asked the same twice, on two cassettes", self.call("merge", "both", "part1", "apart", expect=2).stderr)
+        self.assertFalse((self.dir / "both").exists())
+
+    def test_questions_while_learning_are_paid_for_too(self):
+        self.call("run", "q1", "--scenarios", "heart", "--methods", "fixture_probe+how=ask_in_learn", "--demos", "10",
+                  "--seeds", "0", "--episodes", "2", "--no-reference", "--plugin-path", FIXTURES / "faulty", "--out", "out",
+                  *self.ANSWERS)
+        self.assertEqual(len(self.server.asked), 2)
+        ((selection,),) = selections(self.dir / "out").values()
+        self.assertEqual((selection["cost"]["lm_queries"], selection["cost"]["lm_tokens"]), (2, 18))
+
+    def test_a_server_that_fails_is_nobodys_fault(self):
+        self.server.out_of_order = True
+        self.play(expect=3)
+        for _, status in self.cells("out").values():
+            self.assertEqual((status["state"], status["fault"]), ("failed", "host"))
+            self.assertRegex(status["reason"], 'made-up-1, asked about "[a-z ]+": status 400')
+        self.server.out_of_order = False
+        self.assertIn("takes 112 queries, expected no more than 100", self.play("--max-queries", "100", expect=3).stderr)
+        self.play()
+        self.assertIn("expected --model MODEL and --cassette FILE too",
+                      self.call(*self.run_it, "--answers", "openai", expect=2).stderr)
+        self.assertIn("expected --answers openai with them", self.call(*self.run_it, "--model", "m", expect=2).stderr)
+
+    def test_a_worker_that_is_killed_leaves_a_cassette_that_goes_on(self):
+        self.server.seconds = 0.05
+        run = self.start(*self.run_it, *self.ANSWERS, "--out", "out")
+        while len(self.server.asked) < 30:
+            time.sleep(0.01)
+        workers = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
+        for worker in workers:
+            os.kill(int(worker), signal.SIGKILL)
+        run.communicate(timeout=120)
+        self.assertEqual(run.returncode, 3)
+        self.server.seconds = 0
+        self.play()
+        self.assertLessEqual(len(self.server.asked), 224 + 4 * len(workers), "but for those under way")
+        self.assertEqual(len(set(self.server.asked)), 224)
+        lines = (self.dir / "tape.jsonl").read_text().splitlines()
+        self.assertEqual((len(lines), len({json.loads(line)["key"] for line in lines})), (224, 224))
 
 
 class Recorded(Case):

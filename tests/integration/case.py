@@ -24,6 +24,18 @@ def command_line(*arguments):
     return [PROGRAM, *words] + ([flag, engine] if engine != "mujoco" and flag not in words else [])
 
 
+def with_options(words, *more):
+    """The words and `more`, whose options (of one value each) take the place of those that are there."""
+    kept, words = [], list(words)
+    while words:
+        word = words.pop(0)
+        if word in more and str(word).startswith("--"):
+            words.pop(0)
+        else:
+            kept.append(word)
+    return [*kept, *more]
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         self.dir = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))

@@ -25,7 +25,6 @@ class CheckPlugin(Case):
             "remembers": {"order of scenes"},
             "address": {"two processes"},
             "leak": {"memory of act"},
-            "uncounted": {"cost"},
             "outside": {"Selection"},
             "thread": {"threads"},
             "descriptor": {"descriptors"},
@@ -37,6 +36,14 @@ class CheckPlugin(Case):
                     problems.pop("same actions", None)
                 self.assertEqual(set(problems), checks)
                 self.assertTrue(all(problem["fix"] for problem in problems.values()))
+
+    def test_a_method_is_confined_as_in_a_run(self):
+        probe = FIXTURES / "faulty/fixture_probe.so"
+        detail = self.check(probe, "how=socket")["select"]["detail"]
+        self.assertEqual(detail, "plugin fixture_probe: socket: EPERM")
+        said = self.check(probe, "how=read", f"path={BUILD}/share/lgabench/scenarios/heart.json")["select"]["detail"]
+        self.assertEqual(said, "plugin fixture_probe: read: EACCES")
+        self.assertEqual(list(self.check(FIXTURES / "faulty/fixture_denormals.so")), ["rounding mode"])
 
     def test_outlives_what_crashes_throws_and_never_returns(self):
         for where, how, check, says in [

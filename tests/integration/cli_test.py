@@ -39,7 +39,7 @@ class Help(Case):
                 self.assertIn("Example", said)
         said = self.call("run", "--help").stdout
         titles = re.findall(r"^(\w.*)\n  -", said, re.M)
-        self.assertEqual(titles[:4], ["What is computed", "How much of it", "With what", "Where it goes"])
+        self.assertEqual(titles[:4], ["What is computed", "With what", "How much of it", "Where it goes"])
         self.assertLess(len(titles), 6)
 
     def test_version(self):

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import shutil
+import socket
 import unittest
 
 from case import BUILD, Case, FIXTURES
@@ -16,9 +17,9 @@ IN_CI = os.environ.get("CI") == "true"
 
 
 class Confinement(Case):
-    def probes(self, words, *more, out="out", expect=3):
+    def probes(self, words, *more, out="out", expect=3, fixture="fixture_probe"):
         """how, or how+path=... -> what came of it."""
-        methods = ",".join(f"fixture_probe+how={word}" for word in words)
+        methods = ",".join(f"{fixture}+how={word}" for word in words)
         self.call(*RUN, "--methods", methods, "--out", out, *more, expect=expect)
         found = {}
         for _, (cell, status) in self.cells(out).items():
@@ -61,6 +62,35 @@ class Confinement(Case):
             self.assertEqual(found[word, ""], "EPERM", word)
         for word in words[-2:]:
             self.assertEqual(found[word, ""], "reached", word)
+
+    def test_the_network_for_a_method_that_declares_it(self):
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+        port = str(server.getsockname()[1])
+        refused = ["unix_socket", "packet_socket", "netlink_socket", "ptrace", "kill"]
+        files = [path for path in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs") if os.path.exists(path)]
+        words = [f"connect+path={port}", "socket6", *refused, *(f"read+path={path}" for path in files)]
+        declared = self.probes([*words, "read+path=/etc/passwd", "own_files"], out="declared", fixture="fixture_probe_network")
+        self.need(", seccomp")
+        self.assertEqual((declared["connect", port], declared["socket6", ""]), ("reached", "reached"))
+        for word in refused:
+            self.assertEqual(declared[word, ""], "EPERM", word)
+        undeclared = self.probes(words, out="undeclared")
+        for word in (("connect", port), ("socket6", "")):
+            self.assertEqual(undeclared[word], "EPERM", word)
+        if "Landlock" in self.parts:
+            self.assertEqual(declared["read", "/etc/passwd"], "EACCES")
+            for path in files:
+                self.assertEqual((declared["read", path], undeclared["read", path]), ("reached", "EACCES"), path)
+
+        table = self.call("report", "declared").stdout
+        self.assertIn("]¶", table.replace("†", "").replace("§", ""))
+        self.assertIn("¶ reached the network on its own", table)
+        self.assertNotIn("¶", self.call("report", "undeclared").stdout)
+        record = json.loads((self.dir / "declared/run.json").read_text())
+        self.assertEqual({p["id"]: p.get("asks") for p in record["plugins"]},
+                         {"fixture_probe_network": "network", os.environ["LGABENCH_TEST_ENGINE"]: None})
+        self.assert_matches_schemas("declared")
 
     def test_what_it_inherits(self):
         os.environ["A_SECRET"] = "x"

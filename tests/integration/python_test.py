@@ -1,18 +1,22 @@
 """Methods in Python, as a person runs them. Skipped where the interpreter has no NumPy (LGABENCH_TEST_PYTHON names one)."""
 import json
 import os
+import pathlib
+import socket
 import subprocess
 import sys
 import unittest
 
-from case import BUILD, Case, command_line
+from case import BUILD, Case, command_line, with_options
 
 PYTHON = os.environ.get("LGABENCH_TEST_PYTHON", sys.executable)
+EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
 HAS_NUMPY = subprocess.run([PYTHON, "-c", "import numpy"], capture_output=True).returncode == 0
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
 METHOD = '''
 import os
+import socket
 import numpy
 import helper
 from lgabench_method import Needs, Refused, Selection, select_features
@@ -29,6 +33,8 @@ class Mine:
         how = services.options["how"]
         if how == "raise":
             raise ValueError("its own failure")
+        if how.startswith("connect:"):
+            socket.create_connection(("localhost", int(how[8:])), 10).close()
         if how == "human":
             services.human.specify(command)
         if how == "rule":
@@ -120,6 +126,18 @@ class PythonMethods(Case):
             self.assertIn(reason, status["reason"], how)
         self.assertIn("Traceback", (found["raise"][0] / "log.txt").read_text())
 
+    def test_the_network_for_a_method_that_declares_it(self):
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+        how = f"how=connect:{server.getsockname()[1]}"
+        (self.dir / "net.py").write_text(METHOD.replace('version = "0.3"', 'version = "0.3"\n    asks = "network"'))
+        done = self.call(*RUN, "--methods", f"mine.py:Mine+{how},net.py:Mine+{how}", "--out", "out", expect=3)
+        states = {cell["method"]["id"]: status for cell, status in self.cells("out").values()}
+        self.assertRegex(states["mine"]["reason"], "PermissionError: .*Operation not permitted")
+        self.assertEqual(states["net"]["state"], "ok")
+        self.assertIn("¶ reached the network on its own", done.stdout)
+        self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
+
     def test_refused_with_a_reason(self):
         for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
                            "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options"}.items():
@@ -133,6 +151,44 @@ class PythonMethods(Case):
         done = self.call("check-plugin", "my_method/my_method.py:MyMethod", "--python", PYTHON)
         self.assertIn("good", done.stdout)
         self.call(*RUN, "--methods", "my_method/my_method.py:MyMethod", "--out", "out")
+
+
+class PythonExamples(Case):
+    """examples/python, confined as any method; each where the interpreter has what it imports."""
+
+    def beside(self, other, module, example, *more):
+        """The rows of the run, by method, and the shared directory of each method's cell."""
+        if subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True).returncode != 0:
+            self.skipTest(f"{PYTHON} has no {module}")
+        self.call(*with_options(RUN, "--methods", f"{other},{EXAMPLES / example}", "--out", "out", *more))
+        self.assert_matches_schemas("out")
+        rows = {row["method"].partition("+")[0]: row for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]}
+        cells = {cell["method"]["id"]: self.dir / "out/cells" / key for key, (cell, _) in self.cells("out").items()}
+        return rows, cells
+
+    def test_lga_in_pytorch(self):
+        short = ("--set", "*.epochs=60", "--demos", "20", "--episodes", "10")
+        rows, cells = self.beside("lga+network=plain", "torch", "lga_torch.py:Lga", *short)
+        own, other = (json.loads((cells[name] / "selection.json").read_text()) for name in ("lga_torch", "lga"))
+        self.assertEqual(own, other)
+        seen, as_seen = ([json.loads(line)["input_seen"] for line in (cells[name] / "episodes.jsonl").read_text().splitlines()]
+                         for name in ("lga_torch", "lga"))
+        self.assertEqual(seen, as_seen)  # the same pictures, to the byte, in training and at test
+        losses = [[json.loads(line) for line in (cells[name] / "training.jsonl").read_text().splitlines()]
+                  for name in ("lga_torch", "lga")]
+        self.assertEqual(*([(line["epoch"], line["steps"]) for line in one] for one in losses))
+        self.assertLess(abs(losses[0][-1]["loss"] - losses[1][-1]["loss"]), .1 * losses[1][0]["loss"])
+        self.assertNotIn("method_error", rows["lga_torch"]["failures"])
+        self.call(*with_options(RUN, "--methods", f"{EXAMPLES}/lga_torch.py:Lga", "--out", "again", *short))
+        again, = self.cells("again")
+        self.assertEqual((self.dir / "again/cells" / again / "episodes.jsonl").read_bytes(),
+                         (cells["lga_torch"] / "episodes.jsonl").read_bytes())
+
+    def test_a_forest_in_scikit_learn(self):
+        rows, _ = self.beside("lga", "sklearn", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50",
+                              "--episodes", "10")
+        self.assertNotIn("method_error", rows["forest_sklearn"]["failures"])
+        self.assertGreater(rows["forest_sklearn"]["success"], rows["lga"]["success"])
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The programs as a person uses them: bad input, determinism, shards, demonstrations, gallery.
 
-LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py Killed
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py BadInput
 """
 import base64
 import hashlib

@@ -188,6 +188,11 @@ class Compare(unittest.TestCase):
         claims = json.loads(self.call("report", "a", "--claims", "--format", "json", expect=1).stdout)["claims"]
         self.assertEqual([claim["verdict"] for claim in claims], ["reversed"] + 4 * ["not tested"])
         self.call("report", "a")
+        said = self.call("report", "a", "--difference", "gcbc_dart,lga").stdout
+        self.assertRegex(said, r"two rows, paired\n(.*\n)+ +held +n=10 +test +GCBC-DART − LGA  \+1.00 \[")
+        self.call("report", "a", "--difference", "lga,gcbc_dart", expect=1)
+        self.assertIn("no row nobody, the run has: gcbc_dart, lga",
+                      self.call("report", "a", "--difference", "lga,nobody", expect=2).stderr)
 
 
 if __name__ == "__main__":

@@ -26,6 +26,9 @@ class Pages(unittest.TestCase):
         for example in (SOURCE / "examples").glob("*/*.cpp"):
             if "LGABENCH_METHOD(" in example.read_text():
                 self.assertIn(f"`{example.stem}`", self.page)
+        in_python = (SOURCE / "docs/add-a-method-in-python.md").read_text()
+        for example in (SOURCE / "examples/python").glob("*.py"):
+            self.assertIn(f"`examples/python/{example.name}`", in_python)
 
 
 @unittest.skipUnless(shutil.which("doxygen"), "doxygen is not installed")

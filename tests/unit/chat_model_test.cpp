@@ -310,6 +310,18 @@ TEST_F(Chat, TheKeyIsInNoMessageAndNoReply) {
   ask(&odd);
 }
 
+TEST(Provider, IsNamedWithoutTheNameAndPasswordInItsAddress) {
+  const auto of = [](const char* url) {
+    OpenAiOptions options;
+    options.base_url = url;
+    return provider(options);
+  };
+  EXPECT_EQ(of("https://me:secret@host:8000/v1"), "https://host:8000/v1");
+  EXPECT_EQ(of("https://a@b:secret@host/v1"), "https://host/v1");
+  EXPECT_EQ(of("me:secret@host"), "host");
+  EXPECT_EQ(of("https://host/v1/@x"), "https://host/v1/@x");
+}
+
 TEST_F(Chat, TwoWhoAskTakeTurnsAndPayOnce) {
   Server server;
   const OpenAiOptions options = server.options();

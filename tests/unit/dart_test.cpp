@@ -1,4 +1,4 @@
-// The statistics of DART's recovery demonstrations (PROTOCOL, section 5), on an environment that only listens.
+// The statistics of DART's recovery demonstrations (docs/protocol.md, section 5), on an environment that only listens.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -206,6 +206,7 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
     for (std::size_t i = 0; i < 6; ++i) {
       const bool bad = i % 3 == 2;
       EXPECT_EQ(episodes[i].failure, bad ? Failure::method_error : Failure::missed_object) << way;
+      EXPECT_EQ(episodes[i].error.empty(), !bad) << way;
       EXPECT_EQ(episodes[i].action.has_value(), !bad);
       EXPECT_EQ(to_json(episodes[i]).at("action").is_null(), bad);
     }

@@ -169,7 +169,7 @@ TEST(ObjectTypes, AreTheFeatureSpaces) {
 
 TEST(ObjectTypes, UnknownOneIsRefused) { EXPECT_THROW(object_model("teapot"), InputError); }
 
-// PROTOCOL, section 1; x is up and down in the picture, y left and right.
+// docs/protocol.md, section 1; x is up and down in the picture, y left and right.
 TEST(ObjectTypes, HaveTheProtocolsSizes) {
   const auto expect = [](const std::string& type, double x, double y, std::optional<double> height) {
     const ObjectModel& model = object_model(type);

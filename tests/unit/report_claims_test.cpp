@@ -63,6 +63,25 @@ TEST(Claims, C1HeldAtEveryNumberOfDemonstrations) {
   EXPECT_EQ(claim_of(run, "C5").reason, "no human data");
 }
 
+TEST(Claims, AnyTwoRowsPaired) {
+  FabricatedRun run;
+  for (const int n : {10, 20}) {
+    add_row(run, "mine+epochs=5", n == 10 ? 18 : 9, n);
+    add_row(run, "gcbc_seg", 9, n);
+  }
+  add_row(run, "gcbc_dart", 2, 20);
+  const auto results = report::read_run(run.save().path);
+  const std::vector<Claim> claims = report::test_difference(results, "mine+epochs=5", "gcbc_seg");
+  ASSERT_EQ(claims.size(), 1u);
+  EXPECT_EQ(claims[0].verdict, Verdict::undecided);
+  EXPECT_EQ(claims[0].differences.size(), 2u);
+  EXPECT_EQ(between(claims[0], "mine+epochs=5", "gcbc_seg", "test", 10).these.verdict, Verdict::held);
+  EXPECT_EQ(between(claims[0], "mine+epochs=5", "gcbc_seg", "test", 20).these.verdict, Verdict::undecided);
+  EXPECT_EQ(between(claims[0], "mine+epochs=5", "gcbc_seg", "test", 10).policies, 6);
+  EXPECT_EQ(report::test_difference(results, "gcbc_dart", "gcbc_seg")[0].verdict, Verdict::reversed);
+  EXPECT_THROW(report::test_difference(results, "mine", "gcbc_seg"), InputError);
+}
+
 TEST(Claims, OneReversedDifferenceReversesTheClaim) {
   FabricatedRun run;
   add_row(run, "lga", 18, 10);

@@ -243,6 +243,31 @@ TEST(Summary, FailedCellsAreListedAndNeverCounted) {
   EXPECT_SAYS(page, "1 finished, 2 failed, 0 not run");
 }
 
+TEST(Summary, EpisodesThatTheMethodsCodeFailedInAreSaidLoudly) {
+  FabricatedRun run;
+  FabricatedRun::Spec bad{"lga", 15, "heart", 20, 0};
+  bad.failure = "method_error";
+  const fs::path cell = run.add(bad), log = cell / "log.txt";
+  Json status = read_json(cell / "status.json");
+  status["method_error"] = "plugin lga: its | own <b>words</b>\x1b[31m";
+  write_file(cell / "status.json", canonical(status));
+  run.add({"lga", 20, "letter", 20, 0});
+  run.add({"gcbc_dart", 15, "heart", 20, 0});
+  const Json summary = summary_of(run);
+  for (const char* scenario : {"heart", "(mean)"})
+    EXPECT_EQ(row_of(summary, scenario, "lga").at("marks"), Json{"method_error"}) << scenario;
+  EXPECT_EQ(row_of(summary, "letter", "lga").at("marks"), Json::array());
+  EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("marks"), Json::array());
+  const std::string text = table_text(run.path), page = read_file(run.path / "report.md");
+  EXPECT_SAYS(text, "0.89]!");
+  EXPECT_SAYS(text, "! the method's own code failed");
+  EXPECT_SAYS(text, "5 of 40 episodes of LGA are method_error: plugin lga: its | own <b>words</b>\\x1b[31m (" +
+                        log.string() + ")");
+  EXPECT_SAYS(page, "5 of 40 episodes of LGA are method_error: plugin lga: its \\| own \\<b>");
+  EXPECT_SAYS(page, "(cells/");
+  EXPECT_SAYS(read_file(run.path / "report.html"), "own &lt;b&gt;words&lt;/b&gt;");
+}
+
 TEST(Summary, AMeanThatLacksAScenarioSaysSo) {
   FabricatedRun run;
   run.add({"lga", 20, "heart"});

@@ -1,4 +1,4 @@
-// Scenes in their thousands: what PROTOCOL section 3 promises of every one, and of their frequencies.
+// Scenes in their thousands: what docs/protocol.md, section 3 promises of every one, and of their frequencies.
 #include <gtest/gtest.h>
 
 #include <algorithm>

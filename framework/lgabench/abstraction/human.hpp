@@ -18,7 +18,7 @@ class TruthAsHuman : public HumanAnswers {
   /// The command's true distribution; provenance truth. @throws MethodError for a command that the scenario lacks.
   Selection specify(const Command& command) override;
   /// The proposal with its object types corrected to the true ones, its textures and its cost kept: the study's people
-  /// mostly did that (PROTOCOL, section 5). Provenance simulated_edit.
+  /// mostly did that (docs/protocol.md, section 5). Provenance simulated_edit.
   Selection edit(const Command& command, const Selection& proposal) override;
 
  private:

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <thread>
 
 #include <lgabench/core/error.hpp>
@@ -119,18 +118,6 @@ ChatReply read_completion(const std::string& body) {
 }
 
 }  // namespace
-
-OpenAiOptions openai_from_environment() {
-  const auto named = [](const char* name, const char* usual) {
-    const char* value = std::getenv(name);
-    return std::string(value && *value ? value : usual);
-  };
-  OpenAiOptions options;
-  options.base_url = named("OPENAI_BASE_URL", "https://api.openai.com/v1");
-  options.api_key = named("OPENAI_API_KEY", "");
-  while (!options.base_url.empty() && options.base_url.back() == '/') options.base_url.pop_back();
-  return options;
-}
 
 OpenAiClient::OpenAiClient(OpenAiOptions options) : options_(std::move(options)) {
   static const CURLcode once = curl_global_init(CURL_GLOBAL_DEFAULT);

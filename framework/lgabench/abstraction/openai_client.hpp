@@ -1,22 +1,9 @@
 // Chat completions over HTTP, as OpenAI's API and many servers that follow it offer them.
 #pragma once
-#include <functional>
-#include <memory>
-#include <string>
-
 #include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/openai_options.hpp>
 
 namespace lgabench {
-
-/// Where the server is and how patient its client.
-struct OpenAiOptions {
-  std::string base_url, api_key;  // as OPENAI_BASE_URL (up to /v1) and OPENAI_API_KEY; the key may be empty
-  int attempts = 6;               // of a request, the first included
-  double first_wait_s = 1;        // before the second attempt; doubled for each further one, a minute at most
-  long timeout_s = 120;           // of an attempt; one that gets no byte for half of it is given up too
-  // Told, in a line, why and how long it waits before another attempt; from several threads.
-  std::function<void(const std::string&)> waiting{};
-};
 
 /// POSTs to BASE/chat/completions. An attempt that finds no server or breaks off, or is answered 408, 409, 429 or 5xx,
 /// is followed by another, after the server's Retry-After where it names seconds. No message and no reply holds the
@@ -36,8 +23,5 @@ class OpenAiClient : public ChatClient {
  private:
   OpenAiOptions options_;
 };
-
-/// Options from OPENAI_BASE_URL (by default OpenAI's own) and OPENAI_API_KEY.
-OpenAiOptions openai_from_environment();
 
 }  // namespace lgabench

@@ -1,4 +1,5 @@
-// Imperfect textualization s -> phi: the simulator's, as a perception that errs would give it (PROTOCOL, section 3).
+// Imperfect textualization s -> phi: the simulator's, as a perception that errs would give it (docs/protocol.md,
+// section 3).
 #pragma once
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/observation.hpp>

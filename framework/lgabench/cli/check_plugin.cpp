@@ -57,7 +57,11 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
              {"report", reports[i].string()},
              {"options", options},
              {"engine", plugin_json(is_method ? catalogue.find("engine", "mujoco") : plugin)}};
-    if (is_method) job["method"] = plugin_json(plugin);
+    if (is_method) {
+      const fs::path own = scratch.path / fmt::format("method{}", i);
+      fs::create_directory(own);
+      job.update({{"method", plugin_json(plugin)}, {"scratch", own.string()}});
+    }
     return WorkerTask{job, scratch.path / fmt::format("log{}.txt", i), "check-job"};
   };
   const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
@@ -70,10 +74,10 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
       found[i] = read_check_report(read_json(reports[i]), reports[i].string());
       continue;
     }
+    const bool said_why = !ends[i].complaint.is_null() && ends[i].host_signal == 0;
     const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
-    report.problem(
-        "process", why_it_ended(ends[i], a.timeout_s).reason,
-        !ends[i].complaint.is_null() || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
+    report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
+                   said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
     if (i == 0) return report;
   }
   report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());

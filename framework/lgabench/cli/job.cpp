@@ -53,6 +53,7 @@ PluginInfo job_plugin(const JsonReader& reader) {
     info.file = reader.at("file").string();
     info.kind = "method";
     info.id = reader.at("id").string();
+    info.asks = reader.at("asks").string();
     info.sha256 = sha256_file(info.file);
     info.python = reader.at("python").json();
   } else {

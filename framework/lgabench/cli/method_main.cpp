@@ -7,8 +7,11 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 #include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/host/process_state.hpp>
 #include <lgabench/host/serve.hpp>
 
 namespace {
@@ -39,12 +42,14 @@ void print_backtraces() {
 
 }  // namespace
 
-int main() {
+// --perturb BYTE: as perturb_heap(), for check-plugin.
+int main(int argc, char** argv) {
   using namespace lgabench;
   constexpr int socket = 3;
   flush_denormals();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a crash loses no line
   print_backtraces();
+  if (argc == 3 && std::string_view(argv[1]) == "--perturb") perturb_heap(std::atoi(argv[2]));
   int status = 0;
   try {
     Channel channel(Descriptor(socket), [](short events) {

@@ -14,6 +14,14 @@
 namespace lgabench::cli {
 namespace {
 
+int verdict_of(const report::RunResults& results, const std::vector<report::Claim>& claims) {
+  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
+  if (results.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
+  const bool reversed =
+      std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
+  return reversed ? regression : ok;
+}
+
 int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
   const auto& [results, summary, claims, agreements] = report;
   if (format == "text")
@@ -22,11 +30,19 @@ int print_claims(const fs::path& run, const report::Report& report, const std::s
     to_stdout("{}", read_file(run / "claims.json"));
   else
     throw InputError("--claims: expected --format text or json");
-  if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
-  if (results.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
-  const bool reversed =
-      std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
-  return reversed ? regression : ok;
+  return verdict_of(results, claims);
+}
+
+int print_difference(const report::RunResults& results, const std::vector<std::string>& rows,
+                     const std::string& format) {
+  const std::vector<report::Claim> claims = report::test_difference(results, rows.at(0), rows.at(1));
+  if (format == "text")
+    to_stdout("{}", report::claims_text(results.suite, claims, "two rows, paired"));
+  else if (format == "json")
+    to_stdout("{}\n", report::to_json(results.suite, claims).dump(2));
+  else
+    throw InputError("--difference: expected --format text or json");
+  return verdict_of(results, claims);
 }
 
 }  // namespace
@@ -35,6 +51,7 @@ void add_report(CLI::App& app, int& exit) {
   struct Options {
     std::string run, format = "text";
     bool claims = false;
+    std::vector<std::string> difference;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
@@ -45,19 +62,29 @@ void add_report(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
-  arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}});
+  verb->add_option("--difference", options->difference,
+                   "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
+                   "above A beyond chance")
+      ->delimiter(',')
+      ->expected(2);
+  arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
       "claims.json and figures/.\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
       "         xdg-open runs/q1-smoke/report.html\n"
-      "The paper's claims: lgabench report runs/q2 --claims");
+      "The paper's claims: lgabench report runs/q2 --claims\n"
+      "Two rows: lgabench report runs/q1 --difference lga,my_method");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
     expect_run(run);
     const report::Report report = report::write_report(run);
     if (options->claims) {
       exit = print_claims(run, report, options->format);
+      return;
+    }
+    if (!options->difference.empty()) {
+      exit = print_difference(report.run, options->difference, options->format);
       return;
     }
     if (options->format == "text")

@@ -6,12 +6,15 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/openai_options.hpp>
+#include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/debug_cell.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 
@@ -19,12 +22,12 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache,
-                             shard = "1/1";
+  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
+                             shard = "1/1", model, cassette;
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
-  int jobs = 0, limit = 0;  // 0: as many as there are cores, all cells
+  int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
   bool unconfined = false, resume = false, fresh = false, dry_run = false, no_reference = false, json = false;
 };
@@ -112,6 +115,24 @@ Json participant_hashes(const std::vector<Participant>& participants) {
   return hashes;
 }
 
+// The server's model that --answers openai asks; none for other answers, which need no server.
+std::optional<LiveModel> live_model(const Arguments& a) {
+  if (a.answers != "openai") {
+    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0)
+      throw InputError("--model, --cassette and --max-queries: expected --answers openai with them");
+    return std::nullopt;
+  }
+  if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
+    throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
+  const Cassette readable(a.cassette);
+  LiveModel live;
+  live.cassette = a.cassette;
+  live.max_queries = a.max_queries;
+  live.about = {
+      {"model", a.model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
+  return live;
+}
+
 // The command that takes this run up again, wherever its default directory was.
 std::string resuming_command(const Arguments& a, const fs::path& out) {
   Words words = command_line();
@@ -169,7 +190,10 @@ int run(Arguments a) {
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan plan;
-  if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
+  plan.live = live_model(a);
+  if (plan.live) {
+    variation.answers = live_prefix + a.model;
+  } else if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
@@ -208,6 +232,7 @@ int run(Arguments a) {
   plan.confined = !a.unconfined;
 
   if (a.dry_run) return print_forecast(plan, forecast(plan, catalogue));
+  if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
     to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
@@ -274,14 +299,24 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--answers", a->answers,
                    "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
                    "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
-                   "as lgabench select --suite keeps them")
+                   "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run")
       ->check([](const std::string& word) {
         const std::vector<std::string> sources = recorded_sources();
-        const bool known = word == "recorded" || word.rfind(cassette_prefix, 0) == 0 ||
+        const bool known = word == "recorded" || word == "openai" || word.rfind(cassette_prefix, 0) == 0 ||
                            std::find(sources.begin(), sources.end(), word) != sources.end();
         return known ? ""
-                     : fmt::format("expected recorded, {} or cassette:FILE, got {}", fmt::join(sources, ", "), word);
+                     : fmt::format("expected recorded, {}, openai or cassette:FILE, got {}", fmt::join(sources, ", "),
+                                   word);
       })
+      ->capture_default_str();
+  verb->add_option("--model", a->model, "With --answers openai: the server's model");
+  verb->add_option(
+      "--cassette", a->cassette,
+      "With --answers openai: file of its replies, which grows; runs may share it, and no question that it "
+      "answers is asked again");
+  verb->add_option("--max-queries", a->max_queries,
+                   "With --answers openai: questions that a cell may ask the server; -1: no limit")
+      ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb->add_option("--truth", a->truth,
                    "The true distributions: those that the paper's authors released with their code, or those printed "
@@ -292,6 +327,10 @@ void add_run(CLI::App& app, int& exit) {
                    "A directory of participants' .json files: methods that ask people then have a cell for each");
   verb->add_flag("--unconfined", a->unconfined,
                  "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
+  verb->add_option("--debug", a->debug,
+                   "Play one cell of the run, named by the first digits of its directory's name in cells/, in the "
+                   "foreground and unconfined: a plugin under gdb, Python where breakpoint() works. Nothing is kept")
+      ->type_name("KEY");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
   verb->add_flag("--dry-run", a->dry_run,
@@ -308,11 +347,15 @@ void add_run(CLI::App& app, int& exit) {
            {"--episodes", "N"},
            {"--set", "M.OPTION=VALUE"},
            {"--answers", "SOURCE"},
+           {"--model", "MODEL"},
+           {"--cassette", "FILE"},
+           {"--max-queries", "N"},
            {"--truth", "released|printed"},
            {"--humans", "DIR"},
            {"--no-reference", ""}});
-  arrange(*verb, "How much of it",
-          {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}});
+  arrange(
+      *verb, "How much of it",
+      {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});
   arrange(*verb, "With what",
           {{"--jobs", "N"},
            {"--timeout", "SECONDS"},
@@ -325,6 +368,8 @@ void add_run(CLI::App& app, int& exit) {
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
       "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
+      "With a model asked now: lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl\n"
+      "  (the server named by OPENAI_BASE_URL, any that follows its API, with the key in OPENAI_API_KEY)\n"
       "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
       "as lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");

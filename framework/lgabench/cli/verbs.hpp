@@ -13,7 +13,7 @@
 
 namespace lgabench::cli {
 
-/// What the process returns (DESIGN: command line).
+/// What the process returns (`lgabench --help`).
 enum Exit { ok = 0, regression = 1, usage = 2, cells_failed = 3, plugin_refused = 4, interrupted = 130 };
 
 // In `lgabench`: start in milliseconds, load no engine, no LibTorch.

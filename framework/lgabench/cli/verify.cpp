@@ -123,7 +123,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
   const std::string file = (recorded.directory / "cell.json").string();
-  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"));
+  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"), cell.answers);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;
 }
@@ -249,6 +249,15 @@ int verify(const Arguments& a) {
     plan.out = scratch.path / "run";
     plan.cache = scratch.path / "cache";
     plan.answers = kept_answers(a.run);
+    if (is_live(cells.front().cell.answers)) {
+      const std::optional<AnswerFile> replies = kept_replies(a.run);
+      if (!replies)
+        throw InputError(fmt::format(
+            "{}: its language model's replies are not kept in answers/, as after a kill; give its command again: {}",
+            a.run.string(), JsonReader(record, "run.json").at("command").string()));
+      plan.live.emplace().cassette = replies->path;
+      plan.live->asks = false;
+    }
     plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     plan.pool.timeout_s = a.timeout_s;
     Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));

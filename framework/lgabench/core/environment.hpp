@@ -10,7 +10,7 @@
 
 namespace lgabench {
 
-/// Why an episode did not succeed (PROTOCOL, section 2).
+/// Why an episode did not succeed (docs/protocol.md, section 2).
 enum class Failure {
   none,
   missed_object,

@@ -56,7 +56,7 @@ inline Vec3 rotated(Vec3 v, const Quat& q) {
   return v + q.w * t + cross(u, t);
 }
 
-/// The table's working area and the picture that covers it (PROTOCOL: VIMA's workspace, orthographic top view).
+/// The table's working area and the picture that covers it (VIMA's workspace, orthographic top view).
 /// Picture rows run along +x (row 0 at x_min), columns along +y (column 0 at y_min); z points at the camera.
 struct Workspace {
   static constexpr double x_min = 0.25, x_max = 0.75, y_min = -0.5, y_max = 0.5;

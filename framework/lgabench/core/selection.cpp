@@ -17,6 +17,19 @@ constexpr std::array<std::pair<Provenance, const char*>, 8> words{{{Provenance::
 
 }  // namespace
 
+SelectionCost& operator+=(SelectionCost& cost, const SelectionCost& more) {
+  cost.lm_queries += more.lm_queries;
+  cost.lm_tokens += more.lm_tokens;
+  cost.lm_seconds += more.lm_seconds;
+  cost.human_seconds += more.human_seconds;
+  return cost;
+}
+
+SelectionCost operator-(const SelectionCost& all, const SelectionCost& before) {
+  return {all.lm_queries - before.lm_queries, all.lm_tokens - before.lm_tokens, all.lm_seconds - before.lm_seconds,
+          all.human_seconds - before.human_seconds};
+}
+
 std::string to_string(Provenance provenance) {
   for (const auto& [value, word] : words)
     if (value == provenance) return word;

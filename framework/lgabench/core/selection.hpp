@@ -29,6 +29,8 @@ struct SelectionCost {
   double lm_seconds = 0;
   double human_seconds = 0;
 };
+SelectionCost& operator+=(SelectionCost& cost, const SelectionCost& more);
+SelectionCost operator-(const SelectionCost& all, const SelectionCost& before);
 
 /// Feature abstraction phi -> phi-hat (paper, section 3.1). For sweep, `avoid` describes the obstacle.
 struct Selection {

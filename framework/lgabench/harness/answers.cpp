@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
+#include <unordered_set>
 
-#include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
@@ -20,6 +22,22 @@ fs::path kept_file(const fs::path& kept, const std::string& hash, const char* en
   if (sha256_file(file) != hash) throw InputError(file.string() + ": does not have the bytes that its name says");
   return file;
 }
+
+// The model of a run. Its answers are live whichever cell was the first to ask, and a server that fails is not the
+// method's fault.
+class AskedByCells : public ChatLanguageModel {
+ public:
+  using ChatLanguageModel::ChatLanguageModel;
+  std::vector<bool> answer(const Command& command, const FeatureSpace& space,
+                           const std::vector<Question>& questions) override {
+    try {
+      return ChatLanguageModel::answer(command, space, questions);
+    } catch (const MethodError& e) {
+      throw InputError(e.what());
+    }
+  }
+  Provenance provenance() const override { return Provenance::live; }
+};
 
 std::string only_model(const Cassette& cassette, const fs::path& file) {
   const std::set<std::string> models = cassette.models();
@@ -49,6 +67,55 @@ void keep_answers(const std::vector<AnswerFile>& files, const fs::path& run) {
                                    file.path.string()));
     if (!fs::exists(to) || read_file(to) != bytes) write_file(to, bytes);
   }
+}
+
+Json to_json(const LiveModel& live) {
+  return {{"cassette", fs::absolute(live.cassette).string()}, {"asks", live.asks}, {"max_queries", live.max_queries}};
+}
+
+LiveModel read_live_model(const JsonReader& reader) {
+  LiveModel live;
+  live.cassette = reader.at("cassette").string();
+  live.asks = reader.at("asks").boolean();
+  live.max_queries = static_cast<int>(reader.at("max_queries").integer(-1, 1 << 30));
+  return live;
+}
+
+std::optional<AnswerFile> kept_replies(const fs::path& run) {
+  std::optional<AnswerFile> longest;
+  for (const AnswerFile& file : kept_answers(run))
+    if (file.path.extension() == ".jsonl" && (!longest || fs::file_size(file.path) > fs::file_size(longest->path)))
+      longest = file;
+  return longest;
+}
+
+bool holds_lines(const fs::path& all, const fs::path& some) {
+  const auto lines_of = [](const std::string& text) {
+    std::unordered_set<std::string_view> lines;
+    for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
+      lines.insert(std::string_view(text).substr(begin, end - begin));
+    return lines;
+  };
+  const std::string there = read_file(all), wanted = read_file(some);
+  const auto lines = lines_of(there);
+  for (const std::string_view line : lines_of(wanted))
+    if (lines.count(line) == 0) return false;
+  return true;
+}
+
+std::optional<AnswerFile> keep_replies(const LiveModel& live, const fs::path& run) {
+  if (!fs::exists(live.cassette)) return std::nullopt;
+  std::string bytes = read_file(live.cassette);
+  bytes.resize(bytes.rfind('\n') + 1);  // another run may be adding to it
+  if (bytes.empty()) return std::nullopt;
+  const AnswerFile file{sha256(bytes) + ".jsonl", live.cassette, live.about};
+  if (const fs::path to = run / "answers" / file.name; !fs::exists(to) || read_file(to) != bytes) write_file(to, bytes);
+  return file;
+}
+
+void drop_other_replies(const std::string& but, const fs::path& run) {
+  for (const AnswerFile& file : kept_answers(run))
+    if (file.path.extension() == ".jsonl" && file.name != but) fs::remove(file.path);
 }
 
 CassetteAnswers check_cassette(const fs::path& file, const std::vector<std::string>& scenarios) {
@@ -100,9 +167,15 @@ std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector
   return files;
 }
 
-Answers answers_for(const Cell& cell, const Scenario& scenario, const fs::path& kept) {
+Answers answers_for(const Cell& cell, const Scenario& scenario, const fs::path& kept, const LiveModel& live) {
   Answers answers;
-  if (const std::string prefix = cassette_prefix; cell.answers.rfind(prefix, 0) == 0) {
+  if (is_live(cell.answers)) {
+    ChatOptions options{cell.answers.substr(std::string_view(live_prefix).size())};
+    options.max_queries = live.max_queries;
+    options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
+    answers.cassette = std::make_unique<Cassette>(live.cassette);
+    answers.lm = std::make_unique<AskedByCells>(*answers.cassette, live.server, options);
+  } else if (const std::string prefix = cassette_prefix; cell.answers.rfind(prefix, 0) == 0) {
     const fs::path file = kept_file(kept, cell.answers.substr(prefix.size()), ".jsonl");
     answers.cassette = std::make_unique<Cassette>(file);
     answers.lm = std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr,

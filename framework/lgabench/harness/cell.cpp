@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 
@@ -225,12 +226,16 @@ Cell read_cell(const Json& json, const std::string& file) {
 
 std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).substr(0, 16); }
 
-Json data_hashes(const Scenario& scenario) {
+Json data_hashes(const Scenario& scenario, const std::string& answers) {
   const fs::path data = data_directory();
-  return {{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
-          {"answers", folder_hash(data / "answers")},
-          {"embeddings", folder_hash(data / "embeddings")}};
+  Json hashes{{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
+              {"answers", folder_hash(data / "answers")},
+              {"embeddings", folder_hash(data / "embeddings")}};
+  if (is_live(answers)) hashes["prompt"] = PromptTemplate().version();
+  return hashes;
 }
+
+bool is_live(const std::string& answers) { return answers.rfind(live_prefix, 0) == 0; }
 
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
@@ -250,7 +255,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
     cell.test_scenes = grid.test_scenes;
     cell.episodes = grid.episodes;
     cell.answers = variation.answers;
-    cell.data = data_hashes(scenario);
+    cell.data = data_hashes(scenario, cell.answers);
     cell.smoke = grid.smoke;
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
       cell.method = method;

@@ -30,6 +30,10 @@ struct CellParticipant {
   std::string id, sha256;  // pseudonym; of the file
 };
 
+/// What Cell::answers begins with where a server's model is asked while cells run; its name follows.
+constexpr const char* live_prefix = "openai:";
+bool is_live(const std::string& answers);
+
 /// All that a cell's results depend on, besides the programs themselves.
 struct Cell {
   std::string suite, environment, layout, engine;
@@ -39,7 +43,8 @@ struct Cell {
   std::uint64_t training_seed = 0, scene_seed = 0;
   std::string test_scenes = "shared";  // as Grid::test_scenes
   int episodes = 0;
-  std::string answers;                         // recorded, one of recorded_sources(), or "cassette:" and its SHA-256
+  // recorded, one of recorded_sources(), "cassette:" and its SHA-256, or "openai:" and the model that is asked live
+  std::string answers;
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
@@ -58,8 +63,9 @@ Cell read_cell(const Json& json, const std::string& file);
 /// First 16 digits of the SHA-256 of the canonical JSON: names the cell's directory.
 std::string key(const Cell& cell);
 
-/// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings.
-Json data_hashes(const Scenario& scenario);
+/// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings; where a
+/// model is asked live (see `answers` of Cell) the prompt too.
+Json data_hashes(const Scenario& scenario, const std::string& answers);
 
 /// What is not on the grid.
 struct Variation {

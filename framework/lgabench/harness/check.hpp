@@ -1,4 +1,4 @@
-// What `lgabench check-plugin` looks at, in a process of its own: the plugin may do whatever it likes to it.
+// What `lgabench check-plugin` looks at. A method runs in a process of its own, as in a run; an engine in this one.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
@@ -40,24 +41,16 @@ CheckReport read_check_report(const Json& json, const std::string& file);
 using CheckPhase = std::function<void(const std::string& phase)>;
 
 /// Uses the method twice from loading to acting, on small but real cells (heart, q3_fruit; sweep is selected for only),
-/// with the same seed. `options`: every one. Returns all findings; one thread.
-/// @throws PluginError if it cannot be loaded; whatever else it throws is a finding. EngineError for the engine's
-/// fault.
-CheckReport check_method(const PluginInfo& method, const PluginInfo& engine, const Json& options,
-                         const CheckPhase& phase);
+/// with the same seed, which is not the job's. Returns all findings; one thread.
+/// @throws PluginError if it cannot be loaded, MethodGone where its process ends; whatever else it throws is a finding.
+/// EngineError for the engine's fault.
+CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase);
 
 /// Lets the oracle play scenes of every task on the engine, forwards and backwards, likewise.
 CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase);
 
-/// What a process holds: threads by name, open descriptors by what they lead to, bytes on the heap.
-struct ProcessState {
-  std::vector<std::string> threads, descriptors;  // sorted
-  long long heap_bytes = 0;
-
-  static ProcessState now();
-};
-
-/// Adds what `after` has beyond `before`: threads (which are given half a second to end) and descriptors.
-void judge_leftovers(CheckReport& report, const ProcessState& before);
+/// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came. Threads are
+/// given half a second to end.
+void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now);
 
 }  // namespace lgabench

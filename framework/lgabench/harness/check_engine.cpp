@@ -101,7 +101,7 @@ CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase) {
   try {
     phase(doing);
     use_alone(engine);
-    judge_leftovers(report, at_first);
+    judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
     for (const char* id : {"heart", "rotate_block", "sweep_block_without_touching_pan"}) {
       phase(doing = std::string("scenes of ") + id);
       all += judge_task(id, engine, report);

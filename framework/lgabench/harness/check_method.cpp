@@ -6,18 +6,15 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/core/scratch.hpp>
 #include <lgabench/harness/check.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
-#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -87,33 +84,35 @@ struct Use {
   std::string selections, training, actions;
 };
 
+// The method runs in one process from first to last, confined as in a run.
 class MethodCheck {
  public:
-  MethodCheck(const PluginInfo& plugin, const Json& options, const CheckPhase& phase)
-      : plugin_(plugin), options_(options), phase_(phase) {}
+  MethodCheck(const HostJob& job, const CheckPhase& phase)
+      : plugin_(job.method), options_(job.options), phase_(phase), method_(job) {}
 
   CheckReport run(const std::vector<std::unique_ptr<Bench>>& benches) {
-    const ProcessState at_first = ProcessState::now();
     try {
       const Use first = use(benches, true);
-      const ProcessState between = ProcessState::now();
+      const long long between = heap_bytes();
       const Use second = use(benches, false);
-      judge_repetition(first, second, ProcessState::now().heap_bytes - between.heap_bytes);
+      judge_repetition(first, second, heap_bytes() - between);
     } catch (const PluginError&) {
       throw;
     } catch (const EngineError&) {
       throw;
+    } catch (const MethodGone&) {
+      throw;
     } catch (const std::exception& e) {
       report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
     }
-    if (plugin_.python.is_null()) judge_process(at_first);
+    if (plugin_.python.is_null()) judge_process();
     report_.ok("time", fmt::format("select {:.3f} s a command, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
                                    seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
     return std::move(report_);
   }
 
  private:
-  // Says what comes, does it guarded, notes how long it took and whether flush-to-zero survived.
+  // Says what comes, does it guarded, notes how long it took.
   template <class Call>
   auto call(const std::string& what, Call&& c) {
     phase_(doing_ = what);
@@ -121,23 +120,22 @@ class MethodCheck {
     return guarded(plugin_.id, [&] {
       auto result = c();
       seconds_[what] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      flushed_ = flushed_ && denormals_flushed();
       return result;
     });
   }
 
-  // What a library does to the process that it shares with us; a method in Python has its own, which ends with it.
-  void judge_process(const ProcessState& at_first) {
-    judge_leftovers(report_, at_first);
-    report_.judge("rounding mode", flushed_ ? "" : "the plugin cleared flush-to-zero", "flush-to-zero kept",
+  // What a library does to its process. Python's has threads, files and a heap of the interpreter's.
+  void judge_process() {
+    phase_(doing_ = "destroy policy and method");  // which a call that threw left there
+    method_.drop_policy();
+    method_.drop_method();
+    judge_leftovers(report_, [this] { return method_.state(); });
+    report_.judge("rounding mode", method_.state().flushed ? "" : "the plugin cleared flush-to-zero",
+                  "flush-to-zero kept",
                   "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
   }
 
-  std::unique_ptr<Method> make() {
-    if (plugin_.python.is_null()) return load_method(plugin_);
-    scratch_.emplace("check");
-    return std::make_unique<HostedMethod>(HostJob{plugin_, options_, seed, scratch_->path});
-  }
+  long long heap_bytes() const { return plugin_.python.is_null() ? method_.state().heap_bytes : 0; }
 
   // One line of what the call throws; "" if nothing.
   std::string thrown(const std::function<void()>& c) {
@@ -153,20 +151,19 @@ class MethodCheck {
     Use use;
     for (const auto& bench : benches) {
       const bool first = bench == benches.front();
-      auto method = make();
-      const Needs needs = call("needs", [&] { return method->needs(options_); });
+      const Needs needs = call("needs", [&] { return method_.needs(options_); });
       std::vector<Instruction> instructions;
       for (std::size_t c = 0; c < bench->scenario.commands.size(); ++c) {
         const Command command = bench->scenario.command(static_cast<int>(c));
-        auto [selection, asked] = select("select", *method, bench->scenario, command, false);
+        auto [selection, asked] = select("select", bench->scenario, command, false);
         if (judged && first) judge_selection(needs, selection, asked, bench->scenario.space);
         use.selections += canonical(distribution_json(selection)) + '\n';
         instructions.push_back({command.utterance, std::move(selection)});
       }
-      if (judged && first) judge_other_commands(*method, needs, bench->scenario);
-      auto policy = learn(*method, needs, *bench, instructions, judged && first, use);
+      if (judged && first) judge_other_commands(needs, bench->scenario);
+      auto policy = learn(needs, *bench, instructions, judged && first, use);
       phase_(doing_ = "destroy the method");
-      method.reset();  // a policy may outlive it
+      method_.drop_method();  // a policy may outlive it
       std::vector<std::string> actions;
       for (const TestSight& sight : bench->sights)
         actions.push_back(act(sight.seen ? "act" : "act on an unseen command", *policy, sight, instructions));
@@ -174,25 +171,25 @@ class MethodCheck {
       if (judged) judge_policy(*policy, *bench, instructions, actions, first);
       if (judged && first && needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
       phase_(doing_ = "destroy the policy");
-      policy.reset();
+      method_.drop_policy();
     }
     return use;
   }
 
   // The Selection, and how many questions were asked of services.lm.
-  std::pair<Selection, int> select(const std::string& what, Method& method, const Scenario& scenario,
-                                   const Command& command, bool always_no) {
+  std::pair<Selection, int> select(const std::string& what, const Scenario& scenario, const Command& command,
+                                   bool always_no) {
     RecordedLanguageModel recorded(scenario, recorded_source(scenario, "recorded", plugin_.asks == "edit"));
     CountingModel lm(recorded, always_no);
     DeclaredHuman human(std::make_unique<TruthAsHuman>(scenario.commands), plugin_.asks);
     Lines log;
     Services services{lm, human, options_, seed, log, declared_truth(scenario.commands, plugin_.asks)};
-    Selection selection = call(what, [&] { return method.select(command, scenario.space, services); });
+    Selection selection = call(what, [&] { return method_.select(command, scenario.space, services); });
     return {std::move(selection), lm.asked};
   }
 
-  std::unique_ptr<Policy> learn(Method& method, const Needs& needs, const Bench& bench,
-                                const std::vector<Instruction>& instructions, bool judged, Use& use) {
+  std::unique_ptr<Policy> learn(const Needs& needs, const Bench& bench, const std::vector<Instruction>& instructions,
+                                bool judged, Use& use) {
     phase_(doing_ = "demonstrations that needs() asks for");
     std::vector<Selection> selections;
     if (needs.targets == Needs::Targets::selected)
@@ -208,8 +205,7 @@ class MethodCheck {
     DeclaredHuman human(std::make_unique<TruthAsHuman>(bench.scenario.commands), plugin_.asks);
     Lines log;
     Services services{lm, human, options_, seed, log, declared_truth(bench.scenario.commands, plugin_.asks)};
-    auto policy = call("learn", [&] { return method.learn(shown, services); });
-    if (!policy) throw MethodError("learn() returned no policy");
+    auto policy = call("learn", [&] { return method_.learn(shown, services); });
     use.training += log.text;
     if (judged && log.text.empty())
       report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
@@ -235,35 +231,25 @@ class MethodCheck {
       const Json json = distribution_json(selection);
       read_distribution(JsonReader(json, "select()"), space);
     });
-    if (fault.empty() && !selects && !selection.target.empty()) fault = "features are selected, with provenance none";
     if (fault.empty() && !selects && needs.targets == Needs::Targets::selected)
       fault = "needs() asks for scenes of the method's own Selection, and select() returns none";
     report_.judge("Selection", fault,
                   selects ? "names of the space, provenance " + to_string(selection.provenance)
                           : "selects nothing, as needs() says",
-                  "take names from the FeatureSpace, set `provenance` (rule, if nobody was asked), or return "
-                  "{Needs::Targets::truth} from needs() and a Selection() from select()");
-    const int told = selection.cost.lm_queries;
-    report_.judge("cost",
-                  asked > 0 && told != asked
-                      ? fmt::format("select() asked services.lm {} questions, its Selection says {}", asked, told)
-                      : "",
-                  asked > 0 ? fmt::format("{} questions asked and accounted for", asked)
-                            : fmt::format("services.lm was not asked; the Selection says {} queries", told),
-                  "set selection.cost to services.lm.cost() after the questions, minus that before (as "
-                  "select_features() does)");
+                  "take names from the FeatureSpace, or return {Needs::Targets::truth} from needs() and a Selection() "
+                  "from select()");
+    report_.ok("cost", asked > 0 ? fmt::format("{} questions asked", asked) : "services.lm was not asked");
   }
 
   // Commands that q1 has besides the first one's kind: nothing fits, and sweep.
-  void judge_other_commands(Method& method, const Needs& needs, const Scenario& scenario) {
-    std::string fault =
-        thrown([&] { select("select with every answer no", method, scenario, scenario.command(0), true); });
+  void judge_other_commands(const Needs& needs, const Scenario& scenario) {
+    std::string fault = thrown([&] { select("select with every answer no", scenario, scenario.command(0), true); });
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
                   "select() bears a language model that answers no to everything",
                   "return the empty Selection: the host counts such a cell as failed by the abstraction");
     const Scenario sweep = load_scenario("sweep_block_without_touching_pan");
     Selection both;
-    fault = thrown([&] { both = select("select for sweep", method, sweep, sweep.command(0), false).first; });
+    fault = thrown([&] { both = select("select for sweep", sweep, sweep.command(0), false).first; });
     const bool half = needs.targets == Needs::Targets::selected && !both.avoid;
     if (fault.empty() && half)
       report_.note("sweep", "the Selection says nothing of the obstacle: cells of sweep scenarios will fail",
@@ -297,16 +283,16 @@ class MethodCheck {
                   "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
     report_.ok("actions", "finite, 12 numbers each");
 
-    if (!plugin_.python.is_null()) return;      // another process's memory
+    if (!plugin_.python.is_null()) return;      // the interpreter's memory
     constexpr int calls = 200, bearable = 256;  // bytes a call
     const auto act_all = [&](int n) {
       for (int i = 0; i < n; ++i)
         act("act", policy, bench.sights[static_cast<std::size_t>(i) % bench.sights.size()], instructions);
     };
     act_all(20);
-    const long long before = ProcessState::now().heap_bytes;
+    const long long before = heap_bytes();
     act_all(calls);
-    const long long grown = (ProcessState::now().heap_bytes - before) / calls;
+    const long long grown = (heap_bytes() - before) / calls;
     report_.judge("memory of act", grown > bearable ? fmt::format("grows by {} bytes a call", grown) : "",
                   fmt::format("does not grow over {} calls", calls), "act() must not keep observations");
   }
@@ -333,18 +319,17 @@ class MethodCheck {
   std::string doing_;
   std::map<std::string, double> seconds_;  // of the last call of each kind
   CheckReport report_;
-  bool flushed_ = true;
-  std::optional<Scratch> scratch_;  // of the method's process
+  HostedMethod method_;
 };
 
 }  // namespace
 
-CheckReport check_method(const PluginInfo& method, const PluginInfo& engine, const Json& options,
-                         const CheckPhase& phase) {
+CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
+  job.seed = seed;
   std::vector<std::unique_ptr<Bench>> benches;
   for (const char* id : {"heart", "q3_fruit"}) benches.push_back(std::make_unique<Bench>(id, engine));
   phase("load");
-  return MethodCheck(method, options, phase).run(benches);
+  return MethodCheck(job, phase).run(benches);
 }
 
 }  // namespace lgabench

@@ -24,7 +24,7 @@ Action random_object(const Environment& environment, const Scene& scene, const O
 
 Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
-  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, {}, "", {}};
+  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, {}, "", {}, ""};
   if (test.abstraction_empty) return episode;
   const Observation observation =
       imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
@@ -36,6 +36,7 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
   } catch (const MethodError& e) {
     to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
     episode.failure = Failure::method_error;
+    episode.error = e.what();
   }
   return episode;
 }

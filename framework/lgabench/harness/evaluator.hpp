@@ -21,9 +21,10 @@ struct Episode {
   std::optional<ActionVector> action;  // none where the actor gave none
   std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
   std::optional<bool> input_seen;      // Policy::seen_in_training() of the action
+  std::string error;                   // of a method_error: what was thrown, as the method words it
 };
 
-/// A line of episodes.jsonl.
+/// A line of episodes.jsonl: without the error, whose words may hold an address.
 Json to_json(const Episode& episode);
 
 /// A test scene, and how it is seen.
@@ -61,9 +62,9 @@ Actor reference_actor(const std::string& id);
 std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
                               const Actor& actor, const std::function<void(int)>& done);
 
-/// Says of every failed episode whether the Selection or the policy failed (PROTOCOL, section 5): "abstraction" where
-/// `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was selected;
-/// else "policy". Arguments as of evaluate(), `episodes` what it returned.
+/// Says of every failed episode whether the Selection or the policy failed (docs/protocol.md, section 5): "abstraction"
+/// where `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was
+/// selected; else "policy". Arguments as of evaluate(), `episodes` what it returned.
 /// @throws EngineError if the engine fails.
 void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
                         const Actor& with_truth, std::vector<Episode>& episodes);

@@ -131,8 +131,34 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
   return !finished.empty() ? finished : failed;
 }
 
-Json merged_json(const std::vector<Part>& parts, const std::string& command) {
+bool asks_live(const Part& part) {
+  const Json request = part.json().value("request", Json::object());
+  return request.is_object() && request.contains("answers") && request["answers"].is_string() &&
+         is_live(request["answers"].get<std::string>());
+}
+
+// Of parts that asked a model live, on one cassette, the one that keeps every reply; else the first.
+const Part& with_all_replies(const std::vector<Part>& parts) {
+  const Part* all = &parts.front();
+  if (!asks_live(*all)) return *all;
+  const auto bytes = [](const Part& part) {
+    const auto kept = kept_replies(part.path());
+    return kept ? fs::file_size(kept->path) : 0;
+  };
+  for (const Part& part : parts)
+    if (bytes(part) > bytes(*all)) all = &part;
+  for (const Part& part : parts)
+    if (bytes(part) > 0 && !holds_lines(kept_replies(all->path())->path, kept_replies(part.path())->path))
+      throw InputError(fmt::format(
+          "{} and {}: a language model was asked the same twice, on two cassettes; fill one with lgabench select "
+          "--suite, and give it to the parts as --answers cassette:FILE",
+          all->path().string(), part.path().string()));
+  return *all;
+}
+
+Json merged_json(const std::vector<Part>& parts, const Json& answers, const std::string& command) {
   Json json = parts.front().json(), merged = Json::array();
+  if (!answers.is_null()) json["answers"] = answers;
   for (const Part& part : parts) {
     Json own = Json::object();
     for (const char* member : {"command", "machine", "started"}) own[member] = part.json().at(member);
@@ -175,8 +201,11 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   for (const std::string& key : parts.front().keys())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
 
-  const RunDirectory directory(out, merged_json(parts, command), Existing::resume);
-  for (const Part& part : parts) keep_answers(kept_answers(part.path()), out);
+  const Part& replies = with_all_replies(parts);
+  const Json answers = replies.json().value("answers", Json());
+  const RunDirectory directory(out, merged_json(parts, answers, command), Existing::resume);
+  for (const Part& part : parts)
+    if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;
   auto told = std::chrono::steady_clock::now();
   for (const auto& [key, from] : chosen) {

@@ -11,7 +11,6 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/constant_action.hpp>
 #include <lgabench/harness/demonstrations.hpp>
 #include <lgabench/harness/environments.hpp>
@@ -73,15 +72,18 @@ class TrainingLines : public TrainingLog {
 
 // The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
-  if (job.method)
-    return std::make_unique<HostedMethod>(
-        HostJob{*job.method,
-                job.cell.method.options,
-                job.cell.training_seed,
-                job.scratch,
-                job.confined,
-                {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
-                job.memory_bytes});
+  if (job.method) {
+    HostJob host{*job.method,
+                 job.cell.method.options,
+                 job.cell.training_seed,
+                 job.scratch,
+                 job.confined,
+                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
+                 job.memory_bytes};
+    if (!job.live.cassette.empty()) host.hidden.push_back(job.live.cassette);
+    host.debugger = job.debugger;
+    return std::make_unique<HostedMethod>(host);
+  }
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
@@ -127,9 +129,18 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
   return scenes;
 }
 
+// What the first act() that failed threw, "" where none did.
+std::string first_error(const std::vector<Episode>& episodes) {
+  constexpr std::size_t longest = 2000;
+  for (const Episode& episode : episodes)
+    if (episode.failure == Failure::method_error) return one_line(episode.error.substr(0, longest));
+  return "";
+}
+
 // Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
 // `self` does: a plugin may have forked another one that came here as well.
-void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files) {
+void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::string, std::string>>& files,
+            const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   Json hashes = Json::object();
   for (const auto& [name, bytes] : files) {
@@ -137,7 +148,8 @@ void record(const CellJob& job, pid_t self, const std::vector<std::pair<std::str
     hashes[name] = sha256(bytes);
   }
   sync_directory(job.directory);
-  const Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  if (!error.empty()) status["method_error"] = error;
   write_file(job.directory / "status.json", canonical(status) + '\n');
   sync_directory(job.directory);
 }
@@ -148,7 +160,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   const pid_t self = ::getpid();
   const Cell& cell = job.cell;
   const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
-  if (data_hashes(scenario) != cell.data)
+  if (data_hashes(scenario, cell.answers) != cell.data)
     throw InputError("cell: /data: the data directory changed since the run began");
   const std::string& id = cell.method.id;
   Phases phases(report);
@@ -156,7 +168,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  const Answers answers = answers_for(cell, scenario, job.answers);
+  const Answers answers = answers_for(cell, scenario, job.answers, job.live);
   TrainingLines training(phases);
   Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
   Needs needs;
@@ -199,7 +211,9 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
   if (learns) {
+    const SelectionCost before = answers.lm->cost();
     policy = guarded(id, [&] { return method->learn(demonstrations, services); });
+    instructions.front().selection.cost += answers.lm->cost() - before;  // nobody else's: it may ask of any command
     if (!policy) throw MethodError(fmt::format("plugin {}: learn returned no policy", id));
   }
   demonstrations.clear();
@@ -239,7 +253,8 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
           {"selection.json", canonical({{"commands", commands}}) + '\n'},
           {"training.jsonl", training.lines},
           {"episodes.jsonl", episode_lines},
-          {"timing.json", canonical(phases.seconds()) + '\n'}});
+          {"timing.json", canonical(phases.seconds()) + '\n'}},
+         first_error(episodes));
 }
 
 }  // namespace lgabench

@@ -4,7 +4,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -13,14 +15,16 @@ namespace lgabench {
 struct CellJob {
   Cell cell;
   PluginInfo engine;
-  std::optional<PluginInfo> method;  // none for a reference row
-  std::filesystem::path directory;   // gets the cell's files
-  std::filesystem::path cache;       // of demonstrations
-  std::filesystem::path answers;     // files of answers that the cell names (see answers.hpp)
-  std::filesystem::path scratch;     // empty, of the method's process
-  Json build;                        // of build_hashes()
-  bool confined = true;              // the method's process, see host/confine.hpp
-  long long memory_bytes = 0;        // of it; 0: no limit
+  std::optional<PluginInfo> method;                    // none for a reference row
+  std::filesystem::path directory;                     // gets the cell's files
+  std::filesystem::path cache;                         // of demonstrations
+  std::filesystem::path answers;                       // files of answers that the cell names (see answers.hpp)
+  std::filesystem::path scratch;                       // empty, of the method's process
+  Json build;                                          // of build_hashes()
+  bool confined = true;                                // the method's process, see host/confine.hpp
+  long long memory_bytes = 0;                          // of it; 0: no limit
+  std::optional<std::vector<std::string>> debugger{};  // of HostJob
+  LiveModel live{};                                    // where the cell asks one
 };
 
 /// Says what the cell is doing: a phase (select, sample, demonstrate, learn, evaluate) and a count within it.

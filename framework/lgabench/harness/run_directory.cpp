@@ -203,6 +203,13 @@ void RunDirectory::keep(const std::string& key) const {
   remove_tree(made);
 }
 
+void RunDirectory::amend(const std::string& member, const Json& value) const {
+  Json record = read_json(path_ / "run.json", Links::refused);
+  if (record.value(member, Json()) == value) return;
+  record[member] = value;
+  write_file(path_ / "run.json", record.dump(1) + '\n');
+}
+
 void RunDirectory::sync() const { sync_directory(path_ / "cells"); }
 
 fs::path RunDirectory::cell(const std::string& key) const {

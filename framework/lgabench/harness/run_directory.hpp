@@ -64,6 +64,8 @@ class RunDirectory {
   /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic (in place of an
   /// earlier attempt only where the file system can exchange two names).
   void keep(const std::string& key) const;
+  /// Writes run.json again with another value of one member.
+  void amend(const std::string& member, const Json& value) const;
   /// fsync of what was kept since.
   void sync() const;
 

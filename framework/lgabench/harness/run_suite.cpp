@@ -38,13 +38,45 @@ std::string processor() {
   return "unknown";
 }
 
+Json answers_json(const std::vector<AnswerFile>& files) {
+  Json answers = Json::array();
+  for (const AnswerFile& file : files) {
+    answers.push_back(file.about);
+    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
+  }
+  return answers;
+}
+
+// A run that goes on must find what its cells were told: what was asked is not asked again.
+void expect_replies_of(const RunPlan& plan) {
+  const std::optional<AnswerFile> kept = kept_replies(plan.out);
+  if (kept && (!fs::exists(plan.live->cassette) || !holds_lines(plan.live->cassette, kept->path)))
+    throw InputError(fmt::format("{}: lacks replies that {} is based on; they are in {}: copy that file there",
+                                 plan.live->cassette.string(), plan.out.string(), kept->path.string()));
+}
+
+// What the model said until now goes with the run. A full disk costs the copy, not the cells.
+void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
+  try {
+    const std::optional<AnswerFile> replies = keep_replies(*plan.live, plan.out);
+    if (!replies) return;
+    std::vector<AnswerFile> files = plan.answers;
+    files.push_back(*replies);
+    directory.amend("answers", answers_json(files));
+    drop_other_replies(replies->name, plan.out);
+  } catch (const InputError& e) {
+    to_stderr("the language model's replies are not kept with the run: {}\n", one_line(e.what()));
+  }
+}
+
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
   std::vector<std::string> keys;
   Json plugins = Json::array();
   std::set<std::string> named;
   const auto name = [&](const PluginInfo& info) {
-    if (named.insert(info.kind + info.id).second)
-      plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
+    if (!named.insert(info.kind + info.id).second) return;
+    plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
+    if (!info.asks.empty()) plugins.back()["asks"] = info.asks;
   };
   Json programs, settings = Json::object();
   for (const Cell& cell : plan.cells) {
@@ -58,11 +90,6 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     programs = build_of(cell, catalogue);
   }
   for (const char* plugin : {"engine", "method", "python"}) programs.erase(plugin);
-  Json answers = Json::array();
-  for (const AnswerFile& file : plan.answers) {
-    answers.push_back(file.about);
-    answers.back().update({{"file", file.path.string()}, {"name", file.name}});
-  }
   utsname system{};
   ::uname(&system);
   return {{"suite", plan.request.at("suite")},
@@ -76,7 +103,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"version", LGABENCH_VERSION},
           {"command", plan.command},
           {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
-          {"answers", answers},
+          {"answers", answers_json(plan.answers)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",
            {{"processor", processor()},
@@ -214,9 +241,27 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
   return forecast(complete, missing, costs, plan.pool.jobs);
 }
 
+Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
+              const fs::path& answers, const fs::path& scratch) {
+  Json job{{"cell", to_json(cell)},
+           {"directory", fs::absolute(directory).string()},
+           {"cache", fs::absolute(plan.cache).string()},
+           {"answers", fs::absolute(answers).string()},
+           {"scratch", scratch.string()},
+           {"confined", plan.confined},
+           {"build", build_of(cell, catalogue)},
+           {"limits", worker_limits(plan.pool)},
+           {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
+  if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
+  if (plan.live) job["live"] = to_json(*plan.live);
+  return job;
+}
+
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
   keep_answers(plan.answers, plan.out);
+  const bool asks = plan.live && plan.live->asks;
+  if (asks) expect_replies_of(plan);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
   RunOutcome outcome;
   outcome.reused = complete.size();
@@ -241,17 +286,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     scratch[i] = directory.scratch(key(cell));
     const fs::path own = hosts.path / std::to_string(i);
     fs::create_directory(own);
-    Json job{{"cell", to_json(cell)},
-             {"directory", fs::absolute(scratch[i]).string()},
-             {"cache", fs::absolute(plan.cache).string()},
-             {"answers", fs::absolute(plan.out / "answers").string()},
-             {"scratch", own.string()},
-             {"confined", plan.confined},
-             {"build", build_of(cell, catalogue)},
-             {"limits", worker_limits(plan.pool)},
-             {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
-    if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
-    return WorkerTask{job, scratch[i] / "log.txt"};
+    return WorkerTask{cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own), scratch[i] / "log.txt"};
   };
   std::set<std::string> failed;
   PoolEvents events;
@@ -294,6 +329,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const auto start = std::chrono::steady_clock::now();
   outcome.interrupted = !run_workers(missing.size(), make, plan.pool, events);
   outcome.time.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (asks) keep_replies_of(plan, directory);
   if (outcome.interrupted) return outcome;
   // The last word is the disk's: a cell that was there, or was computed, and is not as it was kept has failed.
   const auto expect_there = [&](const Cell& cell, std::size_t& count) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct RunPlan {
   std::filesystem::path out;  // the run directory
   std::filesystem::path cache;
   std::vector<AnswerFile> answers{};  // that the cells name
+  std::optional<LiveModel> live{};    // that the cells ask
   Existing existing = Existing::same;
   PoolOptions pool;
   bool confined = true;  // methods' processes, see host/confine.hpp
@@ -53,6 +55,10 @@ struct RunOutcome {
 /// The first 8 digits of a hash of the cells and of what computes them: names a run's default directory, so that
 /// another configuration or build never meets its results.
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
+
+/// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
+Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const std::filesystem::path& directory,
+              const std::filesystem::path& answers, const std::filesystem::path& scratch);
 
 /// Computes those of the shard's cells that the directory lacks, long ones first. A cell that fails is recorded as
 /// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.

@@ -92,14 +92,15 @@ Descriptor job_file(const Json& job) {
 }
 
 // One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
-std::vector<std::string> worker_environment() {
-  // A secret of the person's is no plugin's business.
-  constexpr std::array<const char*, 2> not_theirs{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
+std::vector<std::string> worker_environment(const Json& job) {
+  // A secret of the person's stays here, but for a worker that asks a server with it.
+  constexpr std::array<const char*, 2> secret{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
+  const bool asks = job.contains("live") && job["live"].at("asks") == true;
   std::vector<std::string> all{"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
                                "LGABENCH_DATA=" + fs::absolute(data_directory()).string()};
   for (char** variable = environ; *variable; ++variable) {
     const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
-    if (std::find(not_theirs.begin(), not_theirs.end(), name) != not_theirs.end()) continue;
+    if (!asks && std::find(secret.begin(), secret.end(), name) != secret.end()) continue;
     if (std::none_of(all.begin(), all.begin() + 4, [&](const auto& ours) { return ours.rfind(name, 0) == 0; }))
       all.push_back(text);
   }
@@ -117,7 +118,8 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   Descriptor reading(ends[0]);
   const Descriptor writing(ends[1]);
   ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
-  const std::vector<std::string> variables = worker_environment();  // nothing is allocated between fork and exec
+  const std::vector<std::string> variables =
+      worker_environment(what.job);  // nothing is allocated between fork and exec
   std::vector<char*> environment;
   for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
   environment.push_back(nullptr);
@@ -280,9 +282,35 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
   return true;
 }
 
+int run_in_foreground(const Json& job) {
+  const std::string program = (program_directory() / "lgabench-worker").string();
+  const Descriptor file = job_file(job);
+  const std::vector<std::string> variables = worker_environment(job);
+  std::vector<char*> environment;
+  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
+  environment.push_back(nullptr);
+  char cell[] = "cell";
+  char* const arguments[] = {const_cast<char*>(program.c_str()), cell, nullptr};
+  ::signal(SIGINT, SIG_IGN);
+  const pid_t pid = ::fork();
+  if (pid < 0) fail("fork");
+  if (pid == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int spare = ::fcntl(file.fd, F_DUPFD_CLOEXEC, 10);
+    ::dup2(0, persons_input);
+    ::dup2(spare, 0);
+    ::execve(program.c_str(), arguments, environment.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(pid, &status, 0);
+  ::signal(SIGINT, SIG_DFL);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 Json plugin_json(const PluginInfo& plugin) {
   Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
-  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"python", plugin.python}});
+  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"asks", plugin.asks}, {"python", plugin.python}});
   return json;
 }
 

@@ -51,7 +51,11 @@ struct PoolEvents {
 bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>& make, const PoolOptions& options,
                  const PoolEvents& events);
 
-/// {"file", "sha256"}, for a method in Python also {"id", "python"}: a plugin, as a job names it to the worker.
+/// Runs the cell of `job` on our own streams: what is typed is for the method's process alone (persons_input), an
+/// interrupt too. Returns the worker's exit status.
+int run_in_foreground(const Json& job);
+
+/// {"file", "sha256"}, for a method in Python also {"id", "asks", "python"}: a plugin, as a job names it to the worker.
 Json plugin_json(const PluginInfo& plugin);
 
 /// Of this machine's memory.

@@ -18,11 +18,6 @@ bool same_distribution(const Selection& a, const Selection& b) {
   return a.target == b.target && a.avoid.has_value() == b.avoid.has_value() && (!a.avoid || *a.avoid == *b.avoid);
 }
 
-SelectionCost difference(const SelectionCost& a, const SelectionCost& b) {
-  return {a.lm_queries - b.lm_queries, a.lm_tokens - b.lm_tokens, a.lm_seconds - b.lm_seconds,
-          a.human_seconds - b.human_seconds};
-}
-
 // Names in the space's order, each once.
 std::vector<std::string> in_order(const std::vector<std::string>& names, const std::vector<std::string>& order) {
   std::vector<std::string> sorted;
@@ -86,7 +81,7 @@ Json Asked::answer_questions(const JsonReader& reader) {
   model_.provenance = lm.provenance();
   model_.source = lm.model();
   model_.asked_as = lm.asked_as(command);
-  model_.cost = difference(lm.cost(), before_);
+  model_.cost = lm.cost() - before_;
   keep(model_);
   return {{"type", "answers"},           {"answers", answers},
           {"model", lm.model()},         {"provenance", to_string(lm.provenance())},

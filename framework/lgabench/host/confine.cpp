@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include <lgabench/core/error.hpp>
 
@@ -45,9 +46,9 @@ bool is_below(const fs::path& path, const fs::path& directory) {
 
 class Rules {
  public:
-  explicit Rules(int version) : handled_(handled_by(version)) {
+  Rules(int version, bool network) : handled_(handled_by(version)) {
     constexpr std::uint64_t bind_and_connect_tcp = 3, signals_and_abstract_sockets = 3;
-    const Ruleset ruleset{handled_, version >= 4 ? bind_and_connect_tcp : 0,
+    const Ruleset ruleset{handled_, version >= 4 && !network ? bind_and_connect_tcp : 0,
                           version >= 6 ? signals_and_abstract_sockets : 0};
     file = Descriptor(static_cast<int>(::syscall(SYS_landlock_create_ruleset, &ruleset, ruleset_bytes(version), 0)));
     if (file.fd < 0) throw EngineError(fmt::format("Landlock: {}", std::strerror(errno)));
@@ -79,7 +80,7 @@ class Rules {
 };
 
 // Everything is allowed but what reaches out of the process. The process's own number stays its own over exec.
-bool forbid_system_calls() {
+bool forbid_system_calls(bool network) {
   scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
   if (!filter) return false;
   const std::uint32_t refused = SCMP_ACT_ERRNO(EPERM);
@@ -90,6 +91,14 @@ bool forbid_system_calls() {
     good = seccomp_rule_add(filter, refused, call, sizeof...(conditions), conditions...) == 0 && good;
   };
   add(SCMP_SYS(socketpair), SCMP_A0(SCMP_CMP_NE, AF_UNIX));
+  if (!network) {
+    add(SCMP_SYS(socket));
+  } else {  // of IP alone: a rule compares an argument once, so every other family has its own
+    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_LT, AF_INET));
+    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_GT, AF_INET6));
+    for (unsigned family = AF_INET + 1; family < AF_INET6; ++family)
+      add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_EQ, family));
+  }
   // To nobody else, by any of the ways to name a process.
   add(SCMP_SYS(kill), SCMP_A0(SCMP_CMP_NE, self));
   add(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_NE, self));
@@ -97,9 +106,9 @@ bool forbid_system_calls() {
   add(SCMP_SYS(rt_tgsigqueueinfo), SCMP_A0(SCMP_CMP_NE, self));
   add(SCMP_SYS(prlimit64), SCMP_A0(SCMP_CMP_NE, 0));  // 0: itself
   for (const int call :
-       {SCMP_SYS(socket), SCMP_SYS(tkill), SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidfd_getfd),
-        SCMP_SYS(ptrace), SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(process_madvise),
-        SCMP_SYS(kcmp), SCMP_SYS(bpf), SCMP_SYS(userfaultfd), SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
+       {SCMP_SYS(tkill), SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidfd_getfd), SCMP_SYS(ptrace),
+        SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(process_madvise), SCMP_SYS(kcmp),
+        SCMP_SYS(bpf), SCMP_SYS(userfaultfd), SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
         SCMP_SYS(io_uring_register), SCMP_SYS(keyctl), SCMP_SYS(add_key), SCMP_SYS(request_key),
         SCMP_SYS(perf_event_open), SCMP_SYS(mount), SCMP_SYS(umount2), SCMP_SYS(pivot_root), SCMP_SYS(chroot),
         SCMP_SYS(move_mount), SCMP_SYS(open_tree), SCMP_SYS(fsopen), SCMP_SYS(fsmount), SCMP_SYS(mount_setattr),
@@ -140,14 +149,35 @@ std::string confinement_text() {
   return text + (has_seccomp() ? ", seccomp" : ", no seccomp (system calls)");
 }
 
-Confinement::Confinement(const Reach& reach) {
+// What the C library, OpenSSL and Python read to find a server and to trust it, in Debian's places and Fedora's.
+constexpr const char* for_network[] = {
+    "/etc/resolv.conf",
+    "/etc/hosts",
+    "/etc/host.conf",
+    "/etc/nsswitch.conf",
+    "/etc/gai.conf",
+    "/etc/services",
+    "/etc/protocols",
+    "/etc/ssl/certs",
+    "/etc/ssl/cert.pem",
+    "/usr/share/ca-certificates",
+    "/usr/local/share/ca-certificates",
+    "/etc/ca-certificates",
+    "/etc/pki/tls/certs",
+    "/etc/pki/tls/cert.pem",
+    "/etc/pki/ca-trust/extracted",
+};
+
+Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   const int version = landlock_version();
   if (version == 0) return;
-  Rules rules(version);
+  Rules rules(version, network_);
   std::vector<fs::path> hidden;
   std::error_code not_there;
   for (const fs::path& path : reach.hidden) hidden.push_back(fs::weakly_canonical(path, not_there));
-  for (const fs::path& path : reach.reads) {
+  std::vector<fs::path> reads = reach.reads;
+  if (network_) reads.insert(reads.end(), std::begin(for_network), std::end(for_network));
+  for (const fs::path& path : reads) {
     const fs::path real = fs::canonical(path, not_there);
     if (!not_there) rules.add_visible(real, hidden);
   }
@@ -164,7 +194,7 @@ bool Confinement::apply() const {
     if (itself >= 0) ::syscall(SYS_landlock_add_rule, rules_.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
     if (::syscall(SYS_landlock_restrict_self, rules_.fd, 0) != 0) return false;
   }
-  return !has_seccomp() || forbid_system_calls();
+  return !has_seccomp() || forbid_system_calls(network_);
 }
 
 }  // namespace lgabench

@@ -12,6 +12,7 @@ struct Reach {
   std::vector<std::filesystem::path> reads;   // files, and directories with all below them
   std::vector<std::filesystem::path> writes;  // likewise, to be read and written
   std::vector<std::filesystem::path> hidden;  // neither, though they lie below one of `reads`
+  bool network = false;  // sockets of IP, and what looking up a name and checking a certificate read
 };
 
 /// Prepared before a process is forked, applied in it. Without the kernel's support a part is left out.
@@ -19,12 +20,13 @@ class Confinement {
  public:
   /// Paths that are not there are passed over. @throws EngineError where the kernel refuses a rule.
   explicit Confinement(const Reach& reach);
-  /// In the child, before exec. From then on it and all that it starts see what `reach` says, and signal, trace and
-  /// connect to nobody else. False where the kernel refused.
+  /// In the child, before exec. From then on it and all that it starts see what `reach` says, signal and trace nobody
+  /// else, and without `network` connect to nobody. False where the kernel refused.
   bool apply() const;
 
  private:
   Descriptor rules_;  // of Landlock, or none
+  bool network_;
 };
 
 /// "Landlock 7, seccomp", or what of it this kernel lacks: "Landlock 3 (without: TCP, signals), seccomp".

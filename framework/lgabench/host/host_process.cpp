@@ -79,7 +79,8 @@ long long memory_of(pid_t pid) {
 
 }  // namespace
 
-HostProcess::HostProcess(const HostCommand& command) : memory_bytes_(command.memory_bytes) {
+HostProcess::HostProcess(const HostCommand& command)
+    : memory_bytes_(command.memory_bytes), in_foreground_(command.in_foreground) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // what the host leaves behind becomes ours
   int sockets[2], output[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) fail("socketpair");
@@ -98,15 +99,19 @@ HostProcess::HostProcess(const HostCommand& command) : memory_bytes_(command.mem
   pid_ = ::fork();
   if (pid_ < 0) fail("fork");
   if (pid_ == 0) {
-    ::setsid();
+    if (!in_foreground_) ::setsid();
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent || ::chdir(directory.c_str()) != 0) ::_exit(127);
     if (command.confinement && !command.confinement->apply()) ::_exit(126);
     // Above those that are replaced: dup2 onto itself would keep CLOEXEC.
     const int spare = ::fcntl(theirs.fd, F_DUPFD_CLOEXEC, 10);
-    ::dup2(nothing.fd, 0);
-    ::dup2(printing.fd, 1);
-    ::dup2(printing.fd, 2);
+    ::dup2(in_foreground_ ? persons_input : nothing.fd, 0);
+    if (in_foreground_) {
+      ::signal(SIGINT, SIG_DFL);
+    } else {
+      ::dup2(printing.fd, 1);
+      ::dup2(printing.fd, 2);
+    }
     ::dup2(spare, 3);
     ::syscall(SYS_close_range, 4u, ~0u, 0u);
     ::execve(arguments[0], arguments.data(), environment.data());
@@ -157,8 +162,10 @@ void HostProcess::pass_on_output() {
 // The host's session, then those that left it, until there is none.
 void HostProcess::stop() {
   if (reaped_) return;
-  ::kill(-pid_, SIGKILL);
-  ::kill(pid_, SIGKILL);
+  if (!in_foreground_) {
+    ::kill(-pid_, SIGKILL);
+    ::kill(pid_, SIGKILL);
+  }
   ::waitpid(pid_, nullptr, 0);
   reaped_ = true;
   for (std::vector<pid_t> left = descendants(); !left.empty(); left = descendants())

@@ -21,10 +21,15 @@ struct HostCommand {
   std::vector<std::string> also_set;         // variables beside those of the allow-list, as NAME=value
   const Confinement* confinement = nullptr;  // lent; none: it may reach what we may
   long long memory_bytes = 0;                // of it and what it started, shared memory included; 0: no limit
+  bool in_foreground = false;                // on our terminal, until whoever debugs it ends it
 };
 
+/// Of a worker that a person debugs in: what that person types. Its own standard input is the job.
+constexpr int persons_input = 4;
+
 /// A process in a session of its own with the socket as descriptor 3. What it and its children print goes to our
-/// stdout, cut off at 16 MiB. It, and whatever it left behind, is gone when this is.
+/// stdout, cut off at 16 MiB. It, and whatever it left behind, is gone when this is; in the foreground that is waited
+/// for.
 class HostProcess {
  public:
   /// @throws EngineError where no process can be started.
@@ -47,6 +52,7 @@ class HostProcess {
   void stop();
 
   long long memory_bytes_;
+  bool in_foreground_;
   std::chrono::steady_clock::time_point looked_{};
   pid_t pid_ = -1;
   bool reaped_ = false;

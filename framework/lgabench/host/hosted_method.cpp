@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <new>
@@ -27,6 +28,13 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   if (const Json& python = job.method.python; !python.is_null()) {
     command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
     command.also_set = {"PYTHONPATH=" + python_package().string(), "PYTHONUNBUFFERED=1"};
+  } else if (job.perturb != 0) {
+    command.words.insert(command.words.end(), {"--perturb", std::to_string(job.perturb)});
+  }
+  if (job.debugger) {
+    command.words.insert(command.words.begin(), job.debugger->begin(), job.debugger->end());
+    command.in_foreground = true;
+    if (const char* terminal = std::getenv("TERM")) command.also_set.push_back(std::string("TERM=") + terminal);
   }
   return command;
 }
@@ -45,7 +53,8 @@ Reach reach_of(const HostJob& job) {
                "/sys/devices/system/cpu", "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib",
                job.method.file.parent_path()},
               {job.scratch, "/dev/null", "/dev/zero"},
-              job.hidden};
+              job.hidden,
+              job.method.asks == "network"};
   if (const Json& python = job.method.python; !python.is_null()) {
     reach.reads.push_back(python_package());
     reach.reads.push_back(python.at("interpreter").get<std::string>());
@@ -246,5 +255,14 @@ std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
 }
 
 void HostedMethod::end() { session_->call({{"type", "bye"}}, "bye"); }
+
+void HostedMethod::drop_method() { session_->call({{"type", "drop"}, {"what", "method"}}, "dropped"); }
+
+void HostedMethod::drop_policy() { session_->call({{"type", "drop"}, {"what", "policy"}}, "dropped"); }
+
+ProcessState HostedMethod::state() const {
+  const Frame frame = session_->call({{"type", "state"}}, "state");
+  return session_->read([&] { return protocol::read_state(JsonReader(frame.header, "state")); });
+}
 
 }  // namespace lgabench

@@ -3,11 +3,13 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <lgabench/core/method.hpp>
+#include <lgabench/host/process_state.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
@@ -21,6 +23,10 @@ struct HostJob {
   bool confined = true;                         // see confine.hpp
   std::vector<std::filesystem::path> hidden{};  // unreadable to it wherever they lie, beside lgabench's own data
   long long memory_bytes = 0;                   // 0: no limit
+  int perturb = 0;                              // as perturb_heap(), of a plugin's process
+  /// Words before the process's own, an absolute path first or none at all: it runs in the foreground
+  /// (host_process.hpp).
+  std::optional<std::vector<std::string>> debugger{};
 };
 
 class HostSession;
@@ -42,6 +48,12 @@ class HostedMethod : public Method {
   std::vector<std::pair<std::string, std::string>> files() const;
   /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
   void end();
+
+  /// For check-plugin: destroys one of them; after both, needs() makes a new method in the same process.
+  void drop_method();
+  void drop_policy();
+  /// Likewise: what the process of a plugin holds beyond what it held before the plugin was loaded.
+  ProcessState state() const;
 
  private:
   std::filesystem::path files_;

@@ -114,6 +114,22 @@ SelectionCost read_cost(const JsonReader& reader) {
           reader.at("lm_seconds").number(), reader.at("human_seconds").number()};
 }
 
+Json to_json(const ProcessState& state) {
+  return {{"threads", state.threads},
+          {"descriptors", state.descriptors},
+          {"heap_bytes", state.heap_bytes},
+          {"flushed", state.flushed}};
+}
+
+ProcessState read_state(const JsonReader& reader) {
+  ProcessState state;
+  state.threads = reader.at("threads").strings();
+  state.descriptors = reader.at("descriptors").strings();
+  state.heap_bytes = reader.at("heap_bytes").integer(0, 1LL << 60);
+  state.flushed = reader.at("flushed").boolean();
+  return state;
+}
+
 std::string to_bytes(const Action& action) {
   const std::array<double, 12> values = numbers(action);
   return {reinterpret_cast<const char*>(values.data()), sizeof values};

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/method.hpp>
 #include <lgabench/host/frames.hpp>
+#include <lgabench/host/process_state.hpp>
 
 namespace lgabench::protocol {
 
@@ -42,6 +43,9 @@ Question read_question(const JsonReader& reader);
 
 Json to_json(const SelectionCost& cost);
 SelectionCost read_cost(const JsonReader& reader);
+
+Json to_json(const ProcessState& state);
+ProcessState read_state(const JsonReader& reader);
 
 /// 12 doubles: pose0's position and rotation, then pose1's; NaN and infinity included.
 std::string to_bytes(const Action& action);

@@ -139,17 +139,17 @@ class Host {
                       seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
                       files_};
     if (frame.type() == "needs") {
-      Json needs = protocol::to_json(call([&] { return method_->needs(options_); }));
+      Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
       needs["type"] = "needs";
       channel_.send(needs);
     } else if (frame.type() == "select") {
       const Command command = protocol::read_command(reader.at("command"));
       const FeatureSpace space = protocol::read_space(reader.at("space"));
-      const Selection selection = call([&] { return method_->select(command, space, services); });
+      const Selection selection = call([&] { return method().select(command, space, services); });
       channel_.send({{"type", "selection"}, {"selection", distribution_json(selection)}});
     } else if (frame.type() == "learn") {
       const std::vector<Demonstration> demonstrations = protocol::unpack(reader, frame.file);
-      policy_ = call([&] { return method_->learn(demonstrations, services); });
+      policy_ = call([&] { return method().learn(demonstrations, services); });
       if (!policy_) throw MethodError("learn returned no policy");
       channel_.send({{"type", "learned"}});
     } else if (frame.type() == "act") {
@@ -163,6 +163,16 @@ class Host {
       Json reply{{"type", "action"}};
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       channel_.send(reply, protocol::to_bytes(action));
+    } else if (frame.type() == "drop") {
+      const bool drops_method = reader.at("what").string() == "method";
+      call([&] { drops_method ? method_.reset() : policy_.reset(); });
+      channel_.send({{"type", "dropped"}});
+    } else if (frame.type() == "state") {
+      ProcessState state = ProcessState::now().beyond(before_);
+      state.flushed = flushed_;
+      Json reply = protocol::to_json(state);
+      reply["type"] = "state";
+      channel_.send(reply);
     } else {
       throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
     }
@@ -177,6 +187,12 @@ class Host {
   }
 
  private:
+  // Another one, where check-plugin had the first destroyed.
+  Method& method() {
+    if (!method_) method_ = load_method(plugin_);
+    return *method_;
+  }
+
   // A plugin may have forked a process that came back as well: only the first one answers. What the processor's
   // control register said before is put back.
   template <class Call>
@@ -187,8 +203,13 @@ class Host {
       }
       pid_t self;
     };
+    struct NotesFirst {
+      ~NotesFirst() { flushed = flushed && denormals_flushed(); }
+      bool& flushed;
+    };
     const OnlyTheFirst on_every_way_out{self_};
     const FlushDenormalsAgain likewise;
+    const NotesFirst how_it_was{flushed_};
     return c();
   }
 
@@ -198,6 +219,8 @@ class Host {
   RemoteHuman human_;
   RemoteLog log_;
   protocol::SharedMemory observation_;
+  const ProcessState before_ = ProcessState::now();      // the plugin came
+  bool flushed_ = true;                                  // subnormal numbers, at the end of every call
   const fs::path files_ = fs::current_path() / "files";  // wherever the plugin goes
   Json options_;
   std::uint64_t seed_ = 0;

@@ -10,8 +10,8 @@
 /// "}").
 #define LGABENCH_CLONING_OPTIONS                                                                                   \
   R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)" \
-  R"("batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "PROTOCOL, section 5"},)"         \
-  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "PROTOCOL, section 5"},)"          \
+  R"("batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "docs/protocol.md, section 5"},)" \
+  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},)"  \
   R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)"   \
   R"("source": "norm: released code; squared: paper"},)"                                                           \
   R"("batches": {"default": "shuffled", "values": ["shuffled", "drawn"],)"                                         \
@@ -31,7 +31,7 @@
 #define LGABENCH_MASK_OPTIONS                                                                                    \
   R"("instances": {"default": "all", "values": ["all", "first"], )"                                              \
   R"("help": "of several visible instances that match one role: all in the mask, or the first, row by row",)"    \
-  R"("source": "all: PROTOCOL; first: paper, section 3.2, 'an unambiguous abstract state'"},)"                   \
+  R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'"},)"           \
   R"("policy": {"default": "regression", "values": ["regression", "centroid"], )"                                \
   R"("help": "a network; or, untrained, the centroid of the target set's own plane, an input that the network )" \
   R"(lacks, and the demonstrations' means: other options of training and pictures do nothing then",)"            \

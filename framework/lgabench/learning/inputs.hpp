@@ -1,4 +1,4 @@
-// What a network sees of an observation: pictures of 36 x 72 (PROTOCOL, section 5).
+// What a network sees of an observation: pictures of 36 x 72 (docs/protocol.md, section 5).
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// Training of a policy network (PROTOCOL, section 5).
+// Training of a policy network (docs/protocol.md, section 5).
 #pragma once
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ namespace lgabench {
 /// released code does.
 enum class Batches { shuffled, drawn };
 
-/// The defaults are those of the comparison (PROTOCOL, section 5).
+/// The defaults are those of the comparison (docs/protocol.md, section 5).
 struct TrainingOptions {
   int epochs = 750;
   int batch_size = 10;

@@ -54,7 +54,7 @@
 #define LGABENCH_SANITIZER "none"
 #endif
 
-// lgabench_learning defines it for whatever links it.
+// Defined by whoever links LibTorch, by its CMakeLists.txt (examples/own_network).
 #if defined(LGABENCH_TORCH_VERSION)
 #define LGABENCH_TORCH LGABENCH_TORCH_VERSION
 #else

@@ -19,7 +19,7 @@ struct PluginInfo {
   std::string kind, id, version, summary, fingerprint;
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
-  std::string asks{};  // "specify", "edit", "truth" or "": see LGABENCH_METHOD_ASKING
+  std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
   /// Of a method in Python (host/python_method.hpp): {"class", "interpreter", "reads", "versions"}; null for a library.
   Json python{};
 };

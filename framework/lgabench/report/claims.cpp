@@ -7,6 +7,7 @@
 #include <set>
 
 #include <lgabench/report/claims_field.hpp>
+#include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -216,6 +217,30 @@ std::vector<Claim> test_field(const std::string& suite, const Field& field) {
   return claims;
 }
 
+Claim difference_in(const Field& field, const std::string& above, const std::string& below) {
+  Claim claim;
+  claim.id = "A-B", claim.statement = fmt::format("{} above {}", display_name(above), display_name(below));
+  claim.layout = field.layout, claim.engine = field.engine;
+  for (const std::string& row : {above, below})
+    if (field.rows.count(row) == 0) claim.reason = fmt::format("no row {}", row);
+  for (const std::string& arm : field.arms)
+    for (const int n : field.demonstrations) {
+      if (!field.find(above, n) || !field.find(below, n)) continue;
+      std::vector<ClaimedDifference> alone{measured_rows(field, claim.id, above, below, arm, n)};
+      judge_orderings(alone);
+      claim.differences.push_back(std::move(alone.front()));
+    }
+  conclude(claim);
+  return claim;
+}
+
+// The run's cells by (layout, engine).
+std::map<std::pair<std::string, std::string>, Field> fields_of(const RunResults& run) {
+  std::map<std::pair<std::string, std::string>, Field> fields;
+  for (const CellResult& cell : run.cells) fields[{cell.layout, cell.engine}].add(cell);
+  return fields;
+}
+
 }  // namespace
 
 std::string to_string(Verdict verdict) {
@@ -224,11 +249,21 @@ std::string to_string(Verdict verdict) {
 }
 
 std::vector<Claim> test_claims(const RunResults& run) {
-  std::map<std::pair<std::string, std::string>, Field> fields;
-  for (const CellResult& cell : run.cells) fields[{cell.layout, cell.engine}].add(cell);
   std::vector<Claim> claims;
-  for (const auto& item : fields)
+  for (const auto& item : fields_of(run))
     for (Claim& claim : test_field(run.suite, item.second)) claims.push_back(std::move(claim));
+  return claims;
+}
+
+std::vector<Claim> test_difference(const RunResults& run, const std::string& above, const std::string& below) {
+  const auto fields = fields_of(run);
+  std::set<std::string> rows;
+  for (const auto& item : fields)
+    for (const auto& row : item.second.rows) rows.insert(row.first);
+  for (const std::string& row : {above, below})
+    if (rows.count(row) == 0) throw InputError(fmt::format("no row {}, the run has: {}", row, fmt::join(rows, ", ")));
+  std::vector<Claim> claims;
+  for (const auto& item : fields) claims.push_back(difference_in(item.second, above, below));
   return claims;
 }
 

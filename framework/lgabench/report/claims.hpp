@@ -52,9 +52,15 @@ struct Claim {
 /// the run did not play the same scenes.
 std::vector<Claim> test_claims(const RunResults& run);
 
+/// One row against another, by the names that the run gives them ("lga+instances=first"), in every arm at every number
+/// of demonstrations that both have; an ordering, for each (layout, engine). @throws InputError for a row that the run
+/// does not have.
+std::vector<Claim> test_difference(const RunResults& run, const std::string& above, const std::string& below);
+
 /// claims.json (docs/formats), the terminal's table, and the section of report.md.
 Json to_json(const std::string& suite, const std::vector<Claim>& claims);
-std::string claims_text(const std::string& suite, const std::vector<Claim>& claims);
+std::string claims_text(const std::string& suite, const std::vector<Claim>& claims,
+                        const std::string& title = "the paper's claims");
 /// "6 policies, 2 scenarios, 40 scenes", and "for this training seed" where there is one: what it is based on.
 std::string sample_text(const ClaimedDifference& difference);
 std::string claims_markdown(const std::vector<Claim>& claims);

@@ -112,17 +112,22 @@ bool has_arm(const CellResult& cell, const std::string& arm) {
 
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
                            const ClaimedMethod& below, const std::string& arm, int n) {
-  ClaimedDifference d;
-  d.arm = arm, d.demonstrations = n;
-  for (const auto& [row, method] : {std::pair(&d.above, &above), {&d.below, &below}}) {
+  ClaimedDifference missing;
+  missing.arm = arm, missing.demonstrations = n;
+  for (const auto& [row, method] : {std::pair(&missing.above, &above), {&missing.below, &below}}) {
     *row = find_row(field, *method);
     const bool found = field.find(*row, n) != nullptr;
     if (row->empty()) *row = method->id;  // another row may have that very name
-    if (!found && d.these.reason.empty()) d.these.reason = fmt::format("no row {}", method->text());
+    if (!found && missing.these.reason.empty()) missing.these.reason = fmt::format("no row {}", method->text());
   }
-  d.alike.reason = d.these.reason;
-  if (!d.these.reason.empty()) return d;
+  missing.alike.reason = missing.these.reason;
+  return missing.these.reason.empty() ? measured_rows(field, claim, missing.above, missing.below, arm, n) : missing;
+}
 
+ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
+                                const std::string& below, const std::string& arm, int n) {
+  ClaimedDifference d;
+  d.above = above, d.below = below, d.arm = arm, d.demonstrations = n;
   const Field::Policies &high = *field.find(d.above, n), &low = *field.find(d.below, n);
   Field::Policies all = high;
   all.insert(low.begin(), low.end());

@@ -47,6 +47,10 @@ std::string find_row(const Field& field, const ClaimedMethod& method);
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,
                            const ClaimedMethod& below, const std::string& arm, int n);
 
+/// Likewise of two rows that the field has at this number of demonstrations.
+ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
+                                const std::string& below, const std::string& arm, int n);
+
 bool has_arm(const CellResult& cell, const std::string& arm);
 
 }  // namespace lgabench::report

@@ -110,11 +110,10 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
   return {{"suite", suite}, {"claims", all}};
 }
 
-std::string claims_text(const std::string& suite, const std::vector<Claim>& claims) {
+std::string claims_text(const std::string& suite, const std::vector<Claim>& claims, const std::string& title) {
   std::string text, field;
   for (const Claim& claim : claims) {
-    const std::string here =
-        fmt::format("{}, layout {}, engine {}: the paper's claims\n\n", suite, claim.layout, claim.engine);
+    const std::string here = fmt::format("{}, layout {}, engine {}: {}\n\n", suite, claim.layout, claim.engine, title);
     if (here != field) text += (text.empty() ? "" : "\n") + here;
     field = here;
     text += fmt::format("{}  {}\n      these scenarios: {}\n", claim.id, claim.statement,

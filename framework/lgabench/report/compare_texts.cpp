@@ -8,7 +8,7 @@
 namespace lgabench::report {
 namespace {
 
-// Fixed-width columns, the first `words` to the left.
+// Columns of fixed width, aligned to the left.
 class Columns {
  public:
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }

@@ -117,6 +117,7 @@ std::string what_was_run(const RunResults& run, const Summary& summary, const Pi
   text += "</ul><ul class=notes>";
   for (const std::string& line : settings(run)) text += fmt::format("<li>{}</li>", escaped(line));
   for (const std::string& note : notes(run, summary)) text += fmt::format("<li>{}</li>", escaped(note));
+  for (const std::string& line : method_errors(run, "")) text += fmt::format("<li class=bad>{}</li>", escaped(line));
   for (const std::string& line : sources(summary)) text += fmt::format("<li>{}</li>", escaped(line));
   if (const std::string note = pictures_note(pictures); !note.empty())
     text += fmt::format("<li>{}</li>", escaped(note));

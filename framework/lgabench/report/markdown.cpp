@@ -297,6 +297,7 @@ std::string markdown(const RunResults& run, const Summary& summary, const std::v
   std::string text = fmt::format("# {}: success of learned policies\n\n", plain(run.suite));
   for (const std::string& line : settings(run)) text += "> " + plain(line) + "  \n";
   for (const std::string& note : notes(run, summary)) text += "> " + plain(note) + "  \n";
+  for (const std::string& line : method_errors(run, "")) text += "> " + plain(line) + "  \n";
   text += "\n" + what_was_run(run) + success(summary, paper, figures);
   if (!paper.rates.empty())
     text += fmt::format("\nThe paper's values, in italics, are those of its figure {}, {}.\n", paper.figure,

@@ -65,6 +65,7 @@ std::string plain_text(const RunResults& run, const Summary& summary) {
                             block(table, view.corner, view.columns, seen_text, {mean_scenario}));
     }
   for (const std::string& note : notes(run, summary)) text += note + '\n';
+  for (const std::string& line : method_errors(run, run.directory)) text += line + '\n';
   for (const CellResult& cell : summary.failed)
     text += fmt::format("failed: {} {} {} {} n={} seed={} ({}): {}\n", cell.method, cell.scenario, cell.layout,
                         cell.engine, cell.demonstrations, cell.training_seed, cell.fault, cell.reason);

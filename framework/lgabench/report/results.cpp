@@ -142,6 +142,7 @@ CellResult read_cell(const fs::path& directory) {
     for (const JsonReader& line : reader.at("log_tail").elements()) cell.log_tail.push_back(shown(line));
     return cell;
   }
+  if (reader.has("method_error")) cell.method_error = shown(reader.at("method_error"));
   read_selections(directory / "selection.json", cell);
   read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
@@ -165,6 +166,7 @@ std::vector<std::string> failure_words() {
 
 RunResults read_run(const fs::path& run) {
   RunResults results;
+  results.directory = run;
   const fs::path run_file = run / "run.json";
   results.json = read_json(run_file, Links::refused);
   const JsonReader reader(results.json, run_file.string());

@@ -47,6 +47,7 @@ struct CellResult {
   bool failed = false;
   std::string fault, reason;                                   // where it failed; fault: plugin or host
   std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
+  std::string method_error;                                    // what the first episode of that failure threw
   std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
   Json timing;                                                 // as in timing.json
 
@@ -54,6 +55,7 @@ struct CellResult {
 };
 
 struct RunResults {
+  fs::path directory;  // as it was named
   std::string suite;
   Json json;  // run.json
   std::vector<CellResult>

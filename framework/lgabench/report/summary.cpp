@@ -211,6 +211,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.seeds = static_cast<int>(seeds.size());
   row.participants = static_cast<int>(draft.participants.size());
   if (policies.size() < cells.size()) row.marks.emplace_back("incomplete");
+  if (first.asks == "network") row.marks.emplace_back("network");
   estimate(draft, first_arm);
   return draft;
 }
@@ -244,6 +245,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   }
   row.participants = static_cast<int>(mean.participants.size());
   if (!complete) row.marks.emplace_back("incomplete");
+  if (drafts.front()->row.marked("network")) row.marks.emplace_back("network");
   estimate(mean, first_arm);
   return row;
 }
@@ -261,6 +263,12 @@ void mark_low_rows(Table& table) {
         marks.emplace_back(mark);
     row.marks.insert(row.marks.begin(), marks.begin(), marks.end());
   }
+}
+
+// What counts as a failure of the policy was one of its code.
+void mark_errors(Table& table) {
+  for (Row& row : table.rows)
+    if (!row.is_reference() && row.failures.count("method_error") != 0) row.marks.emplace_back("method_error");
 }
 
 std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
@@ -316,6 +324,7 @@ Table make_table(const Cells& cells) {
       table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
   }
   mark_low_rows(table);
+  mark_errors(table);
   return table;
 }
 

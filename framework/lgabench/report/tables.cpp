@@ -83,7 +83,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   std::set<std::string> marked;
   std::set<std::string> same_as;              // arms
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
-  std::set<std::string> models;               // behind cassettes
+  std::set<std::string> models, live;         // behind cassettes, and asked while cells ran
   std::set<std::string> edited;               // methods whose Selections began as a language model's
   for (const CellResult& cell : run.cells)
     if (cell.asks == "edit") edited.insert(cell.method);
@@ -95,6 +95,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         const std::string provenance = phi.at("provenance");
         if (provenance == "truth" || provenance == "simulated_edit") people[row.method] = provenance_words(provenance);
         if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
+        if (provenance == "live") live.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
         people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
@@ -121,6 +122,35 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
                       table.title(), table.title(mean_scenario), near->near, near->points, near->mean_distance));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
+  for (const std::string& model : live)
+    lines.push_back(fmt::format("Language model: {}, asked during the run; its replies are in answers/.", model));
+  return lines;
+}
+
+std::vector<std::string> method_errors(const RunResults& run, const fs::path& directory) {
+  struct Errors {
+    int episodes = 0, errors = 0;
+    const CellResult* first = nullptr;
+  };
+  std::map<std::string, Errors> all;  // by the row's name
+  for (const CellResult& cell : run.cells) {
+    if (cell.is_reference()) continue;
+    Errors& row = all[cell.method];
+    for (const auto& arm : cell.episodes)
+      for (const PlayedEpisode& e : arm.second) {
+        ++row.episodes;
+        if (e.failure != "method_error") continue;
+        ++row.errors;
+        if (!row.first) row.first = &cell;
+      }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [method, row] : all)
+    if (row.first)
+      lines.push_back(fmt::format("{} of {} episodes of {} are method_error: {} ({})", row.errors, row.episodes,
+                                  display_name(method),
+                                  row.first->method_error.empty() ? "no reason is recorded" : row.first->method_error,
+                                  (directory / "cells" / row.first->key / "log.txt").string()));
   return lines;
 }
 

@@ -31,15 +31,17 @@ std::vector<View> views(const Table& table);
 struct Mark {
   const char *word, *sign, *meaning;
 };
-constexpr std::array<Mark, 3> table_marks{
+constexpr std::array<Mark, 5> table_marks{
     {{"baseline_not_learned", "†", "baseline not learned: below the best constant action with as many demonstrations"},
      {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
-     {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"}}};
+     {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
+     {"method_error", "!", "the method's own code failed in some of the episodes, which count as not won"},
+     {"network", "¶", "reached the network on its own: in no leaderboard"}}};
 /// "†§": the row's.
 std::string marks_text(const Row& row);
 
-/// "0.85 [0.64, 0.95]", then †, §, ‡ and = for the row's marks; "–" for a row without episodes, "" where there is no
-/// row.
+/// "0.85 [0.64, 0.95]", then †, §, ‡, !, ¶ and = for the row's marks; "–" for a row without episodes, "" where there is
+/// no row.
 std::string success_text(const Row* row);
 
 /// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
@@ -50,9 +52,13 @@ std::string seen_text(const Row* row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
-/// What a reader of the tables must know, one line each: what †, §, ‡ and = say, how many people made Selections or
-/// that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
+/// What a reader of the tables must know, one line each: what †, §, ‡, !, ¶ and = say, how many people made Selections
+/// or that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
+
+/// "5 of 5 episodes of X are method_error: what the first one threw (DIRECTORY/cells/KEY/log.txt)" for each row's name
+/// that has such episodes, over all of its cells.
+std::vector<std::string> method_errors(const RunResults& run, const fs::path& directory);
 
 /// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.
 std::string plain(const std::string& text);

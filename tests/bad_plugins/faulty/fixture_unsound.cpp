@@ -41,10 +41,9 @@ class Unsound : public Policy {
 
 class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
  public:
-  Selection select(const Command& command, const FeatureSpace& space, Services& services) override {
+  Selection select(const Command&, const FeatureSpace& space, Services& services) override {
     const std::string how = services.options.at("how");
     Selection selection;
-    if (how == "uncounted") services.lm.answer(command, space, {{{}, {}, space.object_types[0]}});
     if (how == "outside") selection.target = {{"unicorn"}, space.textures};
     if (how == "outside") selection.provenance = Provenance::rule;
     return selection;
@@ -64,5 +63,5 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "uncounted", "outside", "thread", "descriptor", "unseen"]}
+    "address", "leak", "outside", "thread", "descriptor", "unseen"]}
 })")

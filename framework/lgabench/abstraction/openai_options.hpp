@@ -1,0 +1,23 @@
+// Where a server of chat completions is, and how patient its client.
+#pragma once
+#include <functional>
+#include <string>
+
+namespace lgabench {
+
+struct OpenAiOptions {
+  std::string base_url, api_key;  // as OPENAI_BASE_URL (up to /v1) and OPENAI_API_KEY; the key may be empty
+  int attempts = 6;               // of a request, the first included
+  double first_wait_s = 1;        // before the second attempt; doubled for each further one, a minute at most
+  long timeout_s = 120;           // of an attempt; one that gets no byte for half of it is given up too
+  // Told, in a line, why and how long it waits before another attempt; from several threads.
+  std::function<void(const std::string&)> waiting{};
+};
+
+/// Options from OPENAI_BASE_URL (by default OpenAI's own) and OPENAI_API_KEY.
+OpenAiOptions openai_from_environment();
+
+/// The server's address, for a record: without the name and password that may stand before an '@'.
+std::string provider(const OpenAiOptions& options);
+
+}  // namespace lgabench

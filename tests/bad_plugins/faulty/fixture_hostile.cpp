@@ -1,0 +1,89 @@
+// Tries, in the way that its option names, to do harm beyond its own cell. Where it survives that, it is StayPolicy.
+// hostile.py is the same in Python; hostile_test.py runs both.
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cfenv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <lgabench/core/error.hpp>
+
+#include "../fixture.hpp"
+
+namespace {
+
+using namespace lgabench;
+namespace fs = std::filesystem;
+
+void tell(const char* what, bool reached) { std::printf("%s: %s\n", what, reached ? "reached" : "refused"); }
+
+// Other cells, and the demonstrations that other methods will learn from.
+void damage(const fs::path& run, const fs::path& cache) {
+  std::error_code error;
+  tell("run.json", std::ofstream(run / "run.json").is_open());
+  fs::remove_all(run / "cells", error);
+  tell("cells", !error);
+  fs::create_symlink("/etc/hostname", run / "leak.txt", error);
+  tell("a link", !error);
+  tell("the cache", std::ofstream(cache / "planted.hdf5").is_open());
+}
+
+void leave_a_daemon() {
+  if (::fork() != 0) return;
+  ::setsid();
+  if (::fork() == 0)
+    for (;;) ::pause();
+  ::_exit(0);
+}
+
+void fill_shared_memory() {
+  constexpr std::size_t bytes = std::size_t{1} << 30;
+  void* memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) return;
+  std::memset(memory, 1, bytes);
+  ::sleep(2);
+}
+
+void do_harm(const std::string& how, const Services& services) {
+  const auto path = [&](const char* option) { return fs::path(services.options.at(option).get<std::string>()); };
+  if (how == "rounding") std::fesetround(FE_TOWARDZERO);
+  if (how == "others") damage(path("run"), path("cache"));
+  if (how == "link") fs::create_symlink("/etc/passwd", services.files / "leak.txt");
+  if (how == "shared_memory") fill_shared_memory();
+  if (how == "daemon") leave_a_daemon();
+  if (how == "kill" || (how == "game" && services.seed != 1)) ::kill(::getpid(), SIGKILL);
+  if (how == "spoof") {
+    constexpr char line[] = "{\"reason\": \"the disk is full\", \"fault\": \"host\"}\n";
+    [[maybe_unused]] const ssize_t written = ::write(3, line, sizeof line - 1);
+  }
+  if (how == "input_error") throw InputError("run.json: the disk is full");
+  if (how == "descriptors") {
+    const rlimit one{1, 1};
+    ::setrlimit(RLIMIT_NOFILE, &one);
+  }
+  if (how == "flood")
+    for (int i = 0; i < 200000; ++i) std::puts("the fixture prints a line of fifty bytes, over and over");
+  if (how == "exit_4") ::_exit(4);
+}
+
+class Hostile : public fixture::FixtureMethod<fixture::StayPolicy> {
+ public:
+  std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
+    do_harm(services.options.at("how"), services);
+    return FixtureMethod::learn(demonstrations, services);
+  }
+};
+
+}  // namespace
+
+LGABENCH_METHOD("fixture_hostile", "0.1", "tries to do harm beyond its own cell", Hostile, R"({
+  "how": {"default": "", "help": "what it tries", "source": "test fixture"},
+  "run": {"default": "", "help": "the run's directory", "source": "test fixture"},
+  "cache": {"default": "", "help": "the directory of demonstrations", "source": "test fixture"}
+})")

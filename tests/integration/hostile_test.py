@@ -1,0 +1,126 @@
+"""Methods that mean harm, as plugins and in Python: each ends as a cell of its own, well or failed, nothing else changes,
+and nothing survives (docs/trust.md).
+
+One CTest entry a class. In Python where the interpreter has NumPy (LGABENCH_TEST_PYTHON names one).
+"""
+import json
+import pathlib
+import shutil
+import time
+import unittest
+
+from case import Case, FIXTURES, with_options
+from python_test import HAS_NUMPY, PYTHON
+
+HOSTILE = pathlib.Path(__file__).parents[1] / "bad_plugins/python/hostile.py"
+RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
+       "--memory", ".5", "--timeout", "60", "--python", PYTHON, "--plugin-path", FIXTURES / "good", "--plugin-path",
+       FIXTURES / "faulty"]
+# What it tries -> the reason that its cell fails for; None where the cell goes well, as an honest one.
+KINDS = {"": None, "rounding": None, "others": None, "link": None, "daemon": None, "flood": None, "descriptors": None,
+         "shared_memory": "out of memory", "kill": r"signal 9 \(Killed\) in phase learn",
+         "spoof": "sent a malformed frame", "input_error": "the disk is full", "exit_4": "exited with 4 in phase learn"}
+
+
+class Harm(Case):
+    def setUp(self):
+        super().setUp()
+        self.writers = ["fixture_hostile"]
+        if HAS_NUMPY:
+            shutil.copy(HOSTILE, self.dir)
+            self.writers.append("hostile.py:Hostile")
+
+    def row(self, writer, how):
+        return f"{writer}+how={how}+run={self.dir}/out+cache={self.dir}/cache" if how else writer
+
+    def assert_nothing_survives(self):
+        mark, deadline = f"HOME={self.dir}/".encode(), time.monotonic() + 10
+        for process in pathlib.Path("/proc").glob("[0-9]*"):
+            try:
+                while mark in (process / "environ").read_bytes():
+                    self.assertLess(time.monotonic(), deadline, f"{process} outlived its run")
+                    time.sleep(.01)
+            except OSError:
+                pass  # it is gone, or another user's
+
+
+class Hostile(Harm):
+    @staticmethod
+    def bytes_of(directory):
+        return {path.relative_to(directory): path.read_bytes() for path in directory.rglob("*") if path.is_file()}
+
+    def test_each_costs_its_own_cell_alone(self):
+        self.call(*RUN, "--methods", "fixture_constant,fixture_hostile", "--out", "alone")
+        honest = {cell["method"]["id"]: key for key, (cell, _) in self.cells("alone").items()}
+        before, cache = self.bytes_of(self.dir / "alone/cells" / honest["fixture_constant"]), self.bytes_of(self.dir / "cache")
+        rows = [self.row(writer, how) for writer in self.writers for how in KINDS]
+        done = self.call(*RUN, "--methods", ",".join(["fixture_constant", *rows]), "--out", "out", expect=3)
+        self.assert_nothing_survives()
+        self.assert_matches_schemas("out")
+        failed = sum(1 for reason in KINDS.values() if reason) * len(self.writers)
+        self.assertIn(f"{1 + len(rows) - failed} cells computed, 0 were there, {failed} failed", done.stderr)
+        self.assertEqual(self.bytes_of(self.dir / "cache"), cache)
+        after = self.bytes_of(self.dir / "out/cells" / honest["fixture_constant"])
+        for name in ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl"):
+            self.assertEqual(after[pathlib.Path(name)], before[pathlib.Path(name)], name)
+        self.assertEqual([path for path in (self.dir / "out").rglob("*") if path.is_symlink()], [])
+        landlock = "Landlock" in json.loads((self.dir / "out/run.json").read_text())["confinement"]
+        well = self.bytes_of(self.dir / "alone/cells" / honest["fixture_hostile"])[pathlib.Path("episodes.jsonl")]
+        for key, (cell, status) in self.cells("out").items():
+            if cell["method"]["id"] == "fixture_constant":
+                continue
+            how, directory = cell["method"]["options"]["how"], self.dir / "out/cells" / key
+            with self.subTest(method=cell["method"]["id"], how=how, status=status):
+                if KINDS[how] is None:
+                    self.assertEqual(status["state"], "ok")
+                    self.assertEqual((directory / "episodes.jsonl").read_bytes(), well)
+                    self.assertFalse((directory / "files").exists())
+                else:
+                    self.assertEqual((status["state"], status["fault"]), ("failed", "plugin"))
+                    self.assertRegex(status["reason"], KINDS[how])
+                if how == "others" and landlock:
+                    log = (directory / "log.txt").read_text()
+                    self.assertEqual((log.count(": refused"), log.count(": reached")), (4, 0), log)
+                self.assertLess((directory / "log.txt").stat().st_size, 3 << 20)
+
+    def test_bad_seeds_cannot_be_left_out_unseen(self):
+        rows = [self.row(writer, "game") for writer in self.writers]
+        done = self.call(*with_options(RUN, "--seeds", "0:3"), "--methods", ",".join(rows), "--out", "out", expect=3)
+        self.assertIn("‡ incomplete", done.stdout)
+        faults = [status["fault"] for _, status in self.cells("out").values() if status["state"] == "failed"]
+        self.assertEqual(faults, ["plugin"] * 2 * len(rows))
+        for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]:
+            self.assertIn("incomplete", row["marks"])
+
+
+class Cheats(Harm):
+    """Who knows the scenes: as a plugin that would act on them, and as a search for them in Python."""
+
+    def success(self, *more, expect=0):
+        self.call(*with_options(RUN, "--episodes", "20"), "--methods", "fixture_cheat", "--out", "out", *more, expect=expect)
+        rows = json.loads((self.dir / "out/summary.json").read_text())["rows"]
+        return rows[0]["success"]
+
+    def test_a_plugin_that_makes_the_scenes_itself(self):
+        self.assertGreaterEqual(self.success("--unconfined"), .9)  # else this test would show nothing
+        shutil.rmtree(self.dir / "out")
+        self.assertIsNone(self.success(expect=3))
+        (_, status), = self.cells("out").values()
+        if "Landlock" not in json.loads((self.dir / "out/run.json").read_text())["confinement"]:
+            self.skipTest("this kernel has no Landlock")
+        self.assertEqual((status["state"], status["fault"]), ("failed", "plugin"))
+        self.assertRegex(status["reason"], "Permission denied|scenario")
+
+    @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
+    def test_a_search_for_them_in_python(self):
+        def reached(*more):
+            self.call(*RUN, "--methods", self.row("hostile.py:Hostile", "cheat"), "--out", "out", *more, expect=3)
+            (_, status), = self.cells("out").values()
+            shutil.rmtree(self.dir / "out")
+            return status["reason"].partition("reached: ")[2]
+        self.assertEqual(reached(), "nothing")
+        self.assertIn("the scenario, the suite, the answers, the sampler", reached("--unconfined"))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
