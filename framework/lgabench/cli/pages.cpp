@@ -92,7 +92,7 @@ bool is_list(const std::string& takes) { return takes.find(",...") != takes.npos
 std::string zsh_action(const std::string& takes) {
   for (const char* directory : {"DIR", "RUN", "OUT", "A", "B"})
     if (takes == directory) return "_files -/";
-  for (const char* file : {"FILE", "PATH", "PROGRAM", "KEY"})
+  for (const char* file : {"FILE", "PATH", "PROGRAM"})
     if (takes == file) return "_files";
   const std::string words = fmt::format("${{(f)\"$(_lgabench_words '\\''{}'\\'')\"}}", takes);
   return is_list(takes) ? fmt::format("_values -s , value {}", words) : fmt::format("compadd -- {}", words);
