@@ -16,7 +16,8 @@ OptionHelp help_of(const CLI::Option& option) {
   // CLI11 puts what its checks expect after a colon.
   if (option.get_type_size() != 0) help.takes = option.get_type_name().substr(0, option.get_type_name().find(':'));
   help.text = option.get_description();
-  if (const std::string& usual = option.get_default_str(); !usual.empty()) help.text += fmt::format(" [{}]", usual);
+  if (const std::string& usual = option.get_default_str(); !usual.empty())
+    help.text += fmt::format(" (default: {})", usual);
   help.required = option.get_required();
   help.repeated = option.get_expected_max() > 1 && help.names.empty();
   return help;

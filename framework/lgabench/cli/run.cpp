@@ -162,10 +162,10 @@ int print_forecast(const RunPlan& plan, const Forecast& all) {
     to_stdout("shard {}/{} of a run of {} cells\n", plan.shard.index, plan.shard.count, plan.cells.size());
   std::size_t width = 3;
   for (const Forecast::Row& row : all.rows) width = std::max(width, row.name.size());
-  to_stdout("\n{:<{}}  cells  there  one core   according to\n", "row", width);
+  to_stdout("\n{:<{}}  cells  there    one core  according to\n", "row", width);
   for (const Forecast::Row& row : all.rows)
-    to_stdout("{:<{}}  {:5}  {:5}  {:>9}  {}{}\n", row.name, width, row.cells, row.there, duration_text(row.seconds),
-              row.based_on.empty() ? "" : " ", row.based_on);
+    to_stdout("{:<{}}  {:5}  {:5}  {:>10}  {}\n", row.name, width, row.cells, row.there, duration_text(row.seconds),
+              row.based_on.empty() ? "all there" : row.based_on);
   to_stdout("\nabout {} with {} worker{}\n", duration_text(all.wall_s), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
   to_stdout("disk: {} in {}, and at most {} of demonstrations in {}\n", size_text(all.run_bytes), plan.out.string(),
             size_text(all.cache_bytes), plan.cache.string());
