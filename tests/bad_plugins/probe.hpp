@@ -80,7 +80,7 @@ std::string probe(const std::string& how, const std::string& path, const Command
   }
   if (how == "stdin") return outcome(::read(0, &byte, 1) == 1 ? 0 : (errno = ENODATA, -1));
   if (how == "socket") return outcome(::socket(AF_INET, SOCK_STREAM, 0));
-  if (how == "connect") return connect_to(std::stoi(path));
+  if (how == "connect") return connect_to(std::stoi(path.substr(1)));
   if (how == "socket6") return outcome(::socket(AF_INET6, SOCK_DGRAM, 0));
   if (how == "packet_socket") return outcome(::socket(AF_PACKET, SOCK_RAW, 0));
   if (how == "netlink_socket") return outcome(::socket(AF_NETLINK, SOCK_RAW, 0));
@@ -130,5 +130,5 @@ class Probe : public fixture::FixtureMethod<fixture::StayPolicy> {
 #define PROBE_OPTIONS \
   R"({
   "how": {"default": "descriptors", "help": "what it tries", "source": "test fixture"},
-  "path": {"default": "", "help": "of the file, or a port", "source": "test fixture"}
+  "path": {"default": "", "help": "of the file, or :PORT", "source": "test fixture"}
 })"

@@ -66,7 +66,7 @@ class Confinement(Case):
     def test_the_network_for_a_method_that_declares_it(self):
         server = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(server.close)
-        port = str(server.getsockname()[1])
+        port = f":{server.getsockname()[1]}"
         refused = ["unix_socket", "packet_socket", "netlink_socket", "ptrace", "kill"]
         files = [path for path in ("/etc/resolv.conf", "/etc/hosts", "/etc/ssl/certs") if os.path.exists(path)]
         words = [f"connect+path={port}", "socket6", *refused, *(f"read+path={path}" for path in files)]
