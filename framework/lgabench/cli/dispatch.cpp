@@ -24,7 +24,8 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
   for (const CLI::Option* one : verb.get_options())
     for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
   const std::string name = option->substr(0, option->find('='));
-  return fmt::format("unknown option {}{}", name, suggestion("--" + name.substr(name.find_first_not_of('-')), known));
+  return fmt::format("unknown option {}{}", name,
+                     suggestion("--" + name.substr(std::min(name.find_first_not_of('-'), name.size())), known));
 }
 
 // What CLI11 says of a command line, in words that name what is wrong and what to write.

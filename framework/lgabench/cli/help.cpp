@@ -76,7 +76,10 @@ std::vector<OptionGroup> option_groups(const CLI::App& app) {
     }
     const std::string title = option->nonpositional() ? option->get_group() : "";
     auto group = std::find_if(groups.begin(), groups.end(), [&](const OptionGroup& g) { return g.title == title; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
+    if (group == groups.end()) {
+      groups.push_back({title, {}});
+      group = groups.end() - 1;
+    }
     group->options.push_back(help_of(*option));
   }
   if (groups.front().options.empty()) groups.erase(groups.begin());
@@ -91,7 +94,10 @@ std::vector<CommandGroup> command_groups(const CLI::App& app) {
     if (command->get_group().empty()) continue;  // hidden
     const std::string title = command->get_group() == "Subcommands" ? "Other commands" : command->get_group();
     auto group = std::find_if(groups.begin(), groups.end(), [&](const CommandGroup& g) { return g.title == title; });
-    if (group == groups.end()) group = groups.insert(groups.end(), {title, {}});
+    if (group == groups.end()) {
+      groups.push_back({title, {}});
+      group = groups.end() - 1;
+    }
     group->commands.push_back(command);
   }
   return groups;
