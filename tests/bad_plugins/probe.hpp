@@ -125,10 +125,9 @@ class Probe : public fixture::FixtureMethod<fixture::StayPolicy> {
   }
 };
 
-}  // namespace
-
-#define PROBE_OPTIONS \
-  R"({
+constexpr char probe_options[] = R"({
   "how": {"default": "descriptors", "help": "what it tries", "source": "test fixture"},
   "path": {"default": "", "help": "of the file, or :PORT", "source": "test fixture"}
-})"
+})";
+
+}  // namespace

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 
 namespace lgabench {
