@@ -1,4 +1,5 @@
 # Writes OUT, a header with the commit of SOURCE, if it is another than OUT has. At every build: cmake -P commit.cmake
+cmake_minimum_required(VERSION 3.25)
 set(commit unknown)
 if(EXISTS ${SOURCE}/.git)
   execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 --exclude=*

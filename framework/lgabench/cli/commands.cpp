@@ -7,7 +7,7 @@ namespace {
 
 constexpr const char* surroundings =
     "Environment\n"
-    "  LGABENCH_CACHE            where demonstrations are kept; else $XDG_CACHE_HOME/lgabench, ~/.cache/lgabench\n"
+    "  LGABENCH_CACHE            where demonstrations are kept; else ~/.cache/lgabench\n"
     "  LGABENCH_PLUGIN_PATH      directories of more plugins, with colons between them\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
@@ -54,12 +54,6 @@ void arrange_commands(CLI::App& app) {
     for (const char* name : names)
       for (CLI::App* verb : app.get_subcommands([&](CLI::App* one) { return one->get_name() == name; }))
         verb->group(title);
-}
-
-const char* worker_summary(const char* verb) {
-  for (const auto& [name, summary] : worker_verbs)
-    if (std::string(name) == verb) return summary;
-  return "";
 }
 
 }  // namespace lgabench::cli

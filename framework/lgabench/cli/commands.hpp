@@ -1,6 +1,7 @@
 // All commands of `lgabench`, as a person sees them.
 #pragma once
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include <lgabench/cli/verbs.hpp>
@@ -16,7 +17,11 @@ inline constexpr std::array<std::pair<const char*, const char*>, 3> worker_verbs
     {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG"},
 }};
 /// What a verb of worker_verbs does.
-const char* worker_summary(const char* verb);
+inline const char* worker_summary(std::string_view verb) {
+  for (const auto& [name, summary] : worker_verbs)
+    if (name == verb) return summary;
+  return "";
+}
 
 /// Adds all others, and what --help says around them.
 void add_commands(CLI::App& app, int& exit);

@@ -66,8 +66,8 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
   };
   try {
     try {
-      if (argc == 1) throw CLI::CallForHelp();
       app.parse(argc, argv);
+      if (app.get_subcommands().empty()) throw CLI::CallForHelp();
     } catch (const CLI::CallForVersion& e) {
       to_stdout("{}\n", e.what());
     } catch (const CLI::Success&) {  // --help

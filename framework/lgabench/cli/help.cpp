@@ -50,7 +50,7 @@ class HelpFormatter : public CLI::FormatterBase {
       help += "\n" + (title.empty() ? "" : title + "\n");
       for (const OptionHelp& option : options) help += entry(named(option), option.text);
     }
-    if (!app->get_footer().empty()) help += "\n" + wrapped(app->get_footer(), 4) + "\n";
+    if (!app->get_footer().empty()) help += "\n" + wrapped(app->get_footer(), 2) + "\n";
     return help;
   }
 };

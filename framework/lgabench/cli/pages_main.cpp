@@ -15,7 +15,9 @@ int main(int argc, char** argv) {
   cli::arrange_commands(app);
   const std::string what = argc == 2 ? argv[1] : "";
   if (what != "man" && what != "bash" && what != "zsh") return cli::usage;
-  to_stdout("{}", what == "man" ? man_page(app) : what == "bash" ? bash_completion(app) : zsh_completion(app));
+  to_stdout("{}", what == "man"    ? cli::man_page(app)
+                  : what == "bash" ? cli::bash_completion(app)
+                                   : cli::zsh_completion(app));
   flush_stdout();
   return cli::ok;
 }
