@@ -58,7 +58,8 @@ int cache(const fs::path& directory, bool clear, bool json) {
 fs::path default_cache() {
   for (const auto& [variable, below] :
        {std::pair{"LGABENCH_CACHE", ""}, {"XDG_CACHE_HOME", "lgabench"}, {"HOME", ".cache/lgabench"}})
-    if (const char* base = std::getenv(variable); base && *base) return fs::path(base) / below;
+    if (const char* base = std::getenv(variable); base && *base)
+      return *below ? fs::path(base) / below : fs::path(base);
   return fs::temp_directory_path() / "lgabench-cache";
 }
 
