@@ -14,6 +14,16 @@ class Malformed(Exception):
     """What came is no frame, or is not the one that may come."""
 
 
+def _header(text):
+    try:
+        header = json.loads(text.decode())
+    except (ValueError, RecursionError) as error:
+        raise Malformed(f"the header is no JSON: {error}") from None
+    if not isinstance(header, dict) or not isinstance(header.get("type"), str):
+        raise Malformed("the header is no object with a \"type\"")
+    return header
+
+
 class Channel:
     def __init__(self, connection):
         self.socket = connection
@@ -41,7 +51,7 @@ class Channel:
             raise Malformed("the checksum is another")
         for extra in files[1:]:
             os.close(extra)
-        return json.loads(text), payload, files[0] if files else None
+        return _header(text), payload, files[0] if files else None
 
     def _take(self, size, files):
         taken = bytearray()

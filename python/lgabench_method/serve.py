@@ -1,5 +1,6 @@
 """The host's loop: answers a worker's frames with a class (docs/formats/method-protocol.md)."""
 import hashlib
+import importlib.machinery
 import importlib.util
 import os
 import pathlib
@@ -58,12 +59,28 @@ class _Log(_Worker):
         self.channel.send({"type": "epoch", "epochs": int(epochs), "steps": int(steps)}, struct.pack("<d", loss))
 
 
+class _Beside:
+    """Finds modules in the method's folder by their name: one that holds a run cannot be listed."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def find_spec(self, name, path=None, target=None):
+        package = self.folder / name
+        for file, inside in ((package.with_suffix(".py"), None), (package / "__init__.py", [str(package)])):
+            if path is None and file.is_file():
+                return importlib.util.spec_from_file_location(name, file, submodule_search_locations=inside)
+        return None
+
+
 def load(file, name, sha256):
     """The class of that name; the file is run, whose folder is where it imports from first."""
     source = pathlib.Path(file).read_bytes()
     if hashlib.sha256(source).hexdigest() != sha256:
         raise ImportError(f"{file}: changed since the run began")
-    sys.path.insert(0, str(pathlib.Path(file).parent))
+    folder = pathlib.Path(file).parent
+    sys.path.insert(0, str(folder))
+    sys.meta_path.insert(sys.meta_path.index(importlib.machinery.PathFinder), _Beside(folder))
     spec = importlib.util.spec_from_file_location(pathlib.Path(file).stem, file)
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module

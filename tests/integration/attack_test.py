@@ -310,9 +310,9 @@ class Plugins(Case):
                                    FIXTURES / "faulty", "--no-reference", "--jobs", "1", "--out", "out", *more),
                          expect=expect)
 
-    def unconfined(self, how, *more):
+    def unconfined(self, how, *more, expect=3):
         """Somebody who may do as the user of the run may, and knows where it is."""
-        return self.beside("act", how, 3, "--unconfined", "--set", f"fixture_faulty.run={self.dir}/out", *more)
+        return self.beside("act", how, expect, "--unconfined", "--set", f"fixture_faulty.run={self.dir}/out", *more)
 
     def failed(self):
         return {cell["method"]["id"]: status["reason"] for cell, status in self.cells("out").values()
@@ -322,7 +322,7 @@ class Plugins(Case):
         for how, failed in {"scratch_file": 1, "link": 1, "scratch_gone": 0, "log_pipe": 0}.items():
             with self.subTest(how):
                 shutil.rmtree(self.dir / "out", ignore_errors=True)
-                done = self.beside("act", how, 3 if failed else 0)
+                done = self.unconfined(how, expect=3 if failed else 0)
                 self.assertIn(f"{2 - failed} cells computed, 0 were there, {failed} failed", done.stderr)
                 self.assertIn("fixture_constant", done.stdout)
                 self.assertEqual([*self.failed()], ["fixture_faulty"] * failed)

@@ -11,16 +11,16 @@ import unittest
 
 from case import BUILD, Case, FIXTURES
 
-RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference",
-       "--plugin-path", FIXTURES / "faulty"]
+RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference"]
 IN_CI = os.environ.get("CI") == "true"
 
 
 class Confinement(Case):
-    def probes(self, words, *more, out="out", expect=3, fixture="fixture_probe"):
+    def probes(self, words, *more, out="out", expect=3, fixture="fixture_probe",
+               plugins=FIXTURES / "faulty"):
         """how, or how+path=... -> what came of it."""
         methods = ",".join(f"{fixture}+how={word}" for word in words)
-        self.call(*RUN, "--methods", methods, "--out", out, *more, expect=expect)
+        self.call(*RUN, "--plugin-path", plugins, "--methods", methods, "--out", out, *more, expect=expect)
         found = {}
         for _, (cell, status) in self.cells(out).items():
             options = cell["method"]["options"]
@@ -49,9 +49,10 @@ class Confinement(Case):
     def test_files_where_the_run_lies_beside_the_plugin(self):
         shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
         found = self.probes([f"read+path={self.dir}/mine/out/run.json", f"read+path={self.dir}/mine/fixture_probe.so"],
-                            "--plugin-path", "mine", "--out", "mine/out", out="mine/out")
+                            out="mine/out", plugins="mine")
         self.need("Landlock")
         self.assertEqual(found["read", f"{self.dir}/mine/out/run.json"], "EACCES")
+        self.assertEqual(found["read", f"{self.dir}/mine/fixture_probe.so"], "reached")
 
     def test_system_calls(self):
         words = ["socket", "unix_socket", "ptrace", "kill", "kill_all", "prlimit", "memory_of_worker", "memfd",

@@ -1,4 +1,5 @@
-"""Methods in Python, as a person runs them. Skipped where the interpreter has no NumPy (LGABENCH_TEST_PYTHON names one)."""
+"""Methods in Python, as a person runs them, with LGABENCH_TEST_PYTHON or the first usual interpreter that has NumPy; without
+one they are skipped, in CI they fail."""
 import json
 import os
 import pathlib
@@ -9,9 +10,15 @@ import unittest
 
 from case import BUILD, Case, command_line, with_options
 
-PYTHON = os.environ.get("LGABENCH_TEST_PYTHON", sys.executable)
+
+def has(interpreter, module):
+    return subprocess.run([interpreter, "-c", f"import {module}"], capture_output=True).returncode == 0
+
+
+USUAL = [sys.executable] + [path for path in ("/usr/bin/python3",) if os.access(path, os.X_OK)]
+PYTHON = os.environ.get("LGABENCH_TEST_PYTHON") or next((path for path in USUAL if has(path, "numpy")), sys.executable)
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
-HAS_NUMPY = subprocess.run([PYTHON, "-c", "import numpy"], capture_output=True).returncode == 0
+HAS_NUMPY = has(PYTHON, "numpy") or os.environ.get("CI") == "true"
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
 METHOD = '''
@@ -133,7 +140,7 @@ class PythonMethods(Case):
         (self.dir / "net.py").write_text(METHOD.replace('version = "0.3"', 'version = "0.3"\n    asks = "network"'))
         done = self.call(*RUN, "--methods", f"mine.py:Mine+{how},net.py:Mine+{how}", "--out", "out", expect=3)
         states = {cell["method"]["id"]: status for cell, status in self.cells("out").values()}
-        self.assertRegex(states["mine"]["reason"], "PermissionError: .*Operation not permitted")
+        self.assertRegex(states["mine"]["reason"], "gaierror|PermissionError")
         self.assertEqual(states["net"]["state"], "ok")
         self.assertIn("¶ reached the network on its own", done.stdout)
         self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
@@ -153,13 +160,33 @@ class PythonMethods(Case):
         self.call(*RUN, "--methods", "my_method/my_method.py:MyMethod", "--out", "out")
 
 
+# learning/inputs.hpp's words: row r touches native rows floor(128 r / 36) to ceil(128 (r + 1) / 36) - 1, columns alike.
+SHRUNK = '''
+import math, numpy
+from lga_torch import small_mask
+from lgabench_method import FeatureSet, Instance, Instruction, Observation, Selection
+
+def touched(i, native, small):
+    return slice(math.floor(native * i / small), math.ceil(native * (i + 1) / small))
+
+ids = numpy.random.default_rng(0).choice([0, 1, 2], size=(128, 256), p=[.8, .05, .15]).astype(numpy.uint8)
+instances = [Instance(1, "heart", "red", 1), Instance(2, "star", "red", 1)]
+mask = small_mask(Observation(None, ids, instances), Instruction("", Selection(FeatureSet(["heart"], ["red"]))))
+expected = [[(ids[touched(r, 128, 36), touched(c, 256, 72)] == 1).any() for c in range(72)] for r in range(36)]
+assert mask.shape == (1, 36, 72) and 0 < mask.mean() < 1
+print("same" if (mask[0] == numpy.array(expected)).all() else "different")
+'''
+
+
 class PythonExamples(Case):
     """examples/python, confined as any method; each where the interpreter has what it imports."""
 
-    def beside(self, other, module, example, *more):
-        """The rows of the run, by method, and the shared directory of each method's cell."""
-        if subprocess.run([PYTHON, "-c", f"import {module}"], capture_output=True).returncode != 0:
+    def need(self, module):
+        if not has(PYTHON, module):
             self.skipTest(f"{PYTHON} has no {module}")
+
+    def beside(self, other, example, *more):
+        """The rows of the run, by method, and the directory of each method's cell."""
         self.call(*with_options(RUN, "--methods", f"{other},{EXAMPLES / example}", "--out", "out", *more))
         self.assert_matches_schemas("out")
         rows = {row["method"].partition("+")[0]: row for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]}
@@ -167,13 +194,15 @@ class PythonExamples(Case):
         return rows, cells
 
     def test_lga_in_pytorch(self):
-        short = ("--set", "*.epochs=60", "--demos", "20", "--episodes", "10")
-        rows, cells = self.beside("lga+network=plain", "torch", "lga_torch.py:Lga", *short)
+        self.need("torch")
+        short = ("--set", "*.epochs=60", "--demos", "20", "--episodes", "10", "--layout", "cells")
+        rows, cells = self.beside("lga+network=plain", "lga_torch.py:Lga", *short)
         own, other = (json.loads((cells[name] / "selection.json").read_text()) for name in ("lga_torch", "lga"))
         self.assertEqual(own, other)
         seen, as_seen = ([json.loads(line)["input_seen"] for line in (cells[name] / "episodes.jsonl").read_text().splitlines()]
                          for name in ("lga_torch", "lga"))
-        self.assertEqual(seen, as_seen)  # the same pictures, to the byte, in training and at test
+        self.assertEqual(seen, as_seen)
+        self.assertIn(True, seen)
         losses = [[json.loads(line) for line in (cells[name] / "training.jsonl").read_text().splitlines()]
                   for name in ("lga_torch", "lga")]
         self.assertEqual(*([(line["epoch"], line["steps"]) for line in one] for one in losses))
@@ -184,11 +213,18 @@ class PythonExamples(Case):
         self.assertEqual((self.dir / "again/cells" / again / "episodes.jsonl").read_bytes(),
                          (cells["lga_torch"] / "episodes.jsonl").read_bytes())
 
+    def test_the_mask_is_that_of_shrink_mask(self):
+        self.need("torch")
+        done = subprocess.run([PYTHON, "-c", SHRUNK], capture_output=True, text=True, timeout=100,
+                              env=dict(os.environ, PYTHONPATH=f"{EXAMPLES}:{BUILD}/share/lgabench/python"))
+        self.assertEqual((done.returncode, done.stdout), (0, "same\n"), done.stderr)
+
     def test_a_forest_in_scikit_learn(self):
-        rows, _ = self.beside("lga", "sklearn", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50",
-                              "--episodes", "10")
+        self.need("sklearn")
+        rows, _ = self.beside("lga", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50", "--episodes",
+                              "10", "--layout", "cells")
         self.assertNotIn("method_error", rows["forest_sklearn"]["failures"])
-        self.assertGreater(rows["forest_sklearn"]["success"], rows["lga"]["success"])
+        self.assertGreaterEqual(rows["forest_sklearn"]["success"], .8)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
-"""The pages for plugin authors: code in them is code that is built, and Doxygen has nothing to complain of.
+"""The documents: code in them is code that is built, links lead somewhere, tables render, commands and messages exist;
+and Doxygen has nothing to complain of.
 
 Usage: docs_test.py SOURCE_DIR DOXYFILE
 """
+import functools
 import pathlib
 import re
 import shutil
@@ -10,6 +12,31 @@ import sys
 import unittest
 
 SOURCE, DOXYFILE = (pathlib.Path(p) for p in sys.argv[1:3])
+LGABENCH = DOXYFILE.parent / "bin/lgabench"
+PAGES = sorted([*SOURCE.glob("*.md"), *(SOURCE / "docs").rglob("*.md"), *(SOURCE / "examples").rglob("*.md")])
+
+
+def split_code(text):
+    """(prose with code removed, line by line; the code: lines of blocks, and spans)."""
+    prose, code, fenced = [], [], False
+    for line in text.splitlines():
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+            prose.append("")
+        elif fenced or line.startswith("    "):
+            code.append(line.strip())
+            prose.append("")
+        else:
+            code += re.findall(r"`([^`]+)`", line)
+            prose.append(re.sub(r"`[^`]*`", "``", line))
+    return prose, code
+
+
+@functools.lru_cache(None)
+def anchors(page):
+    """The headings' names in links, as GitHub and mkdocs make them."""
+    return {re.sub(r"[^\w\- ]", "", head.strip().lower()).replace(" ", "-")
+            for head in re.findall(r"^#+ (.*)$", page.read_text(), re.M)}
 
 
 class Pages(unittest.TestCase):
@@ -29,6 +56,93 @@ class Pages(unittest.TestCase):
         in_python = (SOURCE / "docs/add-a-method-in-python.md").read_text()
         for example in (SOURCE / "examples/python").glob("*.py"):
             self.assertIn(f"`examples/python/{example.name}`", in_python)
+
+
+class Documents(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        wrong = []
+        for page in PAGES:
+            for target in re.findall(r"\]\(([^)\s]+)\)", "\n".join(split_code(page.read_text())[0])):
+                if re.match(r"[a-z]+:", target):
+                    continue
+                path, _, anchor = target.partition("#")
+                file = (page.parent / path).resolve() if path else page
+                there = file.exists() and file.is_relative_to(SOURCE.resolve())
+                if not there or (anchor and anchor not in anchors(file)):
+                    wrong.append(f"{page.relative_to(SOURCE)}: {target}")
+        self.assertEqual(wrong, [])
+
+    def test_every_page_is_in_the_index_and_in_the_site(self):
+        index, site = (SOURCE / "docs/README.md").read_text(), (SOURCE / "mkdocs.yml").read_text()
+        pages = [str(page.relative_to(SOURCE / "docs")) for page in PAGES if page.is_relative_to(SOURCE / "docs")]
+        self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
+        self.assertEqual([page for page in pages if f": docs/{page}\n" not in site], [])
+
+    def test_tables_render(self):
+        """GitHub takes no table whose head and rule differ in cells, and drops what a row has too many."""
+        wrong = []
+        for page in PAGES:
+            lines = page.read_text().splitlines()
+            cells = [len(re.findall(r"(?<!\\)\|", line)) - 1 if line.startswith("|") else 0 for line in lines]
+            for i, line in enumerate(lines):
+                if i and cells[i] and cells[i - 1] and cells[i] != cells[i - 1]:
+                    wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: {cells[i]} cells below {cells[i - 1]}")
+                if re.fullmatch(r"[|: -]*-[|: -]*", line) and cells[i] and not cells[i - 1]:
+                    wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: a table without a head")
+        self.assertEqual(wrong, [])
+
+    def test_documents_that_sources_name_are_there(self):
+        """And sections of docs/protocol.md; no other document, by a name in capitals."""
+        sections = re.findall(r"^## (\d)\. ", (SOURCE / "docs/protocol.md").read_text(), re.M)
+        wrong = []
+        for folder in "framework", "envs", "plugins", "baselines", "examples", "python", "tests", "cmake":
+            for file in (SOURCE / folder).rglob("*"):
+                if file.suffix not in (".cpp", ".hpp", ".py", ".in", ".cmake", ".txt") or file.samefile(__file__):
+                    continue
+                text = re.sub(r"\s*\n\s*(?://+|#)?\s*", " ", file.read_text())  # comments go on in the next line
+                names = re.findall(r"\b(?:PROTOCOL|DESIGN)(?:,? section|'s)", text)
+                names += [name for name in re.findall(r"\bdocs/[\w/-]+\.md", text) if not (SOURCE / name).exists()]
+                names += [n for n in re.findall(r"docs/protocol\.md, sections? (\d)", text) if n not in sections]
+                wrong += [f"{file.relative_to(SOURCE)}: {name}" for name in names]
+        self.assertEqual(wrong, [])
+
+    def test_cited_as_it_is(self):
+        said = re.search(r"^version: (.*)$", (SOURCE / "CITATION.cff").read_text(), re.M)[1]
+        self.assertIn(f"version = {{{said}}}", (SOURCE / "docs/citing.md").read_text())
+
+    def test_quoted_messages_are_the_programs(self):
+        """First column of the tables of troubles, "…" for what fills a message in: its other parts stand in a source."""
+        sources = [file.read_text() for folder in ("framework", "cmake") for file in (SOURCE / folder).rglob("*")
+                   if file.suffix in (".cpp", ".hpp", "") and file.is_file()]
+        said = re.sub(r'"\s*\n\s*"', "", "\n".join(sources)).replace('\\"', '"')  # literals that go on in the next line
+        said = re.sub(r"\{[^{}\n]*\}", "…", said) + "No space left on device, Could not resolve host"  # libc's, libcurl's
+        missing = []
+        for page in "troubleshooting.md", "language-models.md":
+            for message in re.findall(r"^\| `([^`]+)` \|", (SOURCE / "docs" / page).read_text(), re.M):
+                general = re.sub(r"\d+|(?<=no )method", "…", message)
+                missing += [f"{page}: {part}" for part in general.split("…") if part.strip(" :") not in said]
+        self.assertEqual(missing, [])
+
+
+@unittest.skipUnless(LGABENCH.exists(), "lgabench is not built")
+class Commands(unittest.TestCase):
+    @functools.lru_cache(None)
+    def help_of(self, *verb):
+        return subprocess.run([LGABENCH, *verb, "--help"], capture_output=True, text=True).stdout
+
+    def test_commands_and_options_exist(self):
+        verbs = set(re.findall(r"^  ([a-z-]+)  ", self.help_of(), re.M))
+        wrong = []
+        for page in PAGES:
+            for line in split_code(page.read_text())[1]:
+                command = re.match(r"(?:exec )?(?:\S*/)?lgabench ([a-z-]+)(.*)", re.sub(" #.*", "", line))
+                if not command:
+                    continue
+                verb, rest = command.groups()
+                known = verb in verbs and self.help_of(verb)
+                if not known or any(option not in known for option in re.findall(r"(?<=\s)--[a-z-]+", rest)):
+                    wrong.append(f"{page.relative_to(SOURCE)}: {line}")
+        self.assertEqual(wrong, [])
 
 
 @unittest.skipUnless(shutil.which("doxygen"), "doxygen is not installed")

@@ -4,6 +4,8 @@
 #include <sys/socket.h>
 
 #include <cmath>
+#include <cstring>
+#include <iterator>
 #include <limits>
 
 #include <lgabench/host/messages.hpp>
@@ -114,6 +116,30 @@ TEST(Frames, carry_a_file_that_nobody_can_write_to) {
   EXPECT_EQ(::mmap(nullptr, 4096, PROT_WRITE, MAP_SHARED, frame->file.fd, 0), MAP_FAILED);
   EXPECT_LT(::pwrite(frame->file.fd, "x", 1, 0), 0);
   EXPECT_SAYS(message_of<InputError>([&] { protocol::SharedMemory(frame->file, 4097); }), "4097");
+}
+
+std::size_t open_descriptors() {
+  const fs::directory_iterator all("/proc/self/fd");
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(Frames, leave_no_descriptor_behind_whatever_a_peer_attaches) {
+  Ends ends;
+  std::string bytes = bytes_of({{"type", "needs"}});
+  const std::size_t before = open_descriptors();
+  alignas(cmsghdr) char control[CMSG_SPACE(2 * sizeof(int))] = {};
+  iovec part{bytes.data(), bytes.size()};
+  msghdr message{};
+  message.msg_iov = &part, message.msg_iovlen = 1;
+  message.msg_control = control, message.msg_controllen = sizeof control;
+  cmsghdr* rights = CMSG_FIRSTHDR(&message);
+  rights->cmsg_level = SOL_SOCKET, rights->cmsg_type = SCM_RIGHTS;
+  rights->cmsg_len = CMSG_LEN(2 * sizeof(int));
+  const int two[2] = {ends.raw.fd, ends.raw.fd};
+  std::memcpy(CMSG_DATA(rights), two, sizeof two);
+  ASSERT_EQ(::sendmsg(ends.raw.fd, &message, 0), static_cast<ssize_t>(bytes.size()));
+  EXPECT_TRUE(ends.channel->receive());
+  EXPECT_EQ(open_descriptors(), before);
 }
 
 TEST(Messages, actions_keep_what_is_no_number) {

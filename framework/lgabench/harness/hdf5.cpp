@@ -135,9 +135,13 @@ void write_demonstration(const Library& h5, hid_t group, const Demonstration& de
 std::string read_text(const Library& h5, hid_t object, const char* name, const std::string& place) {
   const Handle attribute = h5.handle(H5Aopen(object, name, H5P_DEFAULT), place + "@" + name);
   const Handle type = h5.handle(H5Aget_type(attribute), place);
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
-    h5.fail(place, fmt::format("expected a string attribute \"{}\" of fixed length", name));
-  std::string text(H5Tget_size(type), '\0');
+  const Handle space = h5.handle(H5Aget_space(attribute), place);
+  constexpr std::size_t longest = 1 << 16;  // attributes end there
+  const std::size_t size = H5Tget_size(type);
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || size > longest ||
+      H5Sget_simple_extent_npoints(space) != 1)
+    h5.fail(place, fmt::format("expected one string attribute \"{}\" of fixed length", name));
+  std::string text(size, '\0');
   h5.check(H5Aread(attribute, type, text.data()), place);
   return text.substr(0, text.find('\0'));
 }

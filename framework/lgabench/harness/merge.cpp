@@ -30,6 +30,7 @@ class Part {
     reader.at("machine").at("processor").string();
     for (const JsonReader& plugin : reader.at("plugins").elements())
       programs_[plugin.at("kind").string() + " " + plugin.at("id").string()] = plugin.at("sha256").string();
+    if (!reader.at("build").json().is_object()) reader.at("build").fail("an object");
     for (const auto& file : reader.at("build").json().items()) programs_[file.key()] = file.value();
     lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 || ::flock(lock_, LOCK_SH | LOCK_NB) != 0) {

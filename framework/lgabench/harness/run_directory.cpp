@@ -155,7 +155,10 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
         remove_tree(path / name);
     } else if (was_there) {
       there = read_json(record, Links::refused);
-      const auto version = [](const Json& json) { return json.is_object() ? json.value("version", "") : ""; };
+      const auto version = [](const Json& json) {
+        const Json said = json.is_object() ? json.value("version", Json()) : Json();
+        return said.is_string() ? said.get<std::string>() : std::string();
+      };
       if (!same_cells(version(there), version(run)))
         throw InputError(fmt::format(
             "{}: a run of lgabench {}, whose cells {} cannot go on with; choose another --out, or --fresh to "

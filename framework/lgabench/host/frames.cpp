@@ -97,7 +97,7 @@ bool Channel::take(char* bytes, std::size_t size, Descriptor& file) {
     message.msg_iovlen = 1;
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};
     message.msg_control = control;
-    message.msg_controllen = sizeof control;
+    message.msg_controllen = CMSG_LEN(sizeof(int));  // of one descriptor: padding would have room for a second
     const ssize_t n = ::recvmsg(socket_.fd, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
     if (n < 0 && errno == EAGAIN) {
       wait_(POLLIN);

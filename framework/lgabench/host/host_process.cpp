@@ -148,8 +148,8 @@ void HostProcess::pass_on_output() {
   char block[1 << 16];
   while (output_.fd >= 0) {
     const ssize_t n = ::read(output_.fd, block, sizeof block);
-    if (n < 0) return;
     if (n == 0) output_.close();
+    if (n <= 0) return;
     const std::size_t room = most - std::min(printed_, most), size = std::min(static_cast<std::size_t>(n), room);
     std::fflush(stdout);
     [[maybe_unused]] const ssize_t written = ::write(1, block, size);  // a full disk changes no result

@@ -251,10 +251,11 @@ bool told(Channel& channel, Call&& call) {
 }  // namespace
 
 void serve(Channel& channel) {
-  const std::optional<Frame> hello = channel.receive();
+  std::optional<Frame> hello = channel.receive();
   if (!hello) return;
   std::optional<Host> host;
   if (!told(channel, [&] { host.emplace(channel, *hello); })) return;
+  hello.reset();  // its file is mapped by now
   while (const std::optional<Frame> frame = channel.receive()) {
     if (frame->type() == "bye") return host->end();
     told(channel, [&] { host->answer(*frame); });

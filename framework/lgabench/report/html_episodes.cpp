@@ -54,9 +54,7 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
       // What follows the scene's hash in the names of pictures.masks.
-      masks.push_back(command.quality.is_null()
-                          ? Json()
-                          : Json(mask_key("", command.selection, cell.options.value("instances", "all"))));
+      masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", cell, command.selection)));
     }
     Json played = Json::array();
     for (const std::string& arm : cell.arms) {

@@ -24,10 +24,11 @@ struct Request {
 };
 
 // All that a goal mask depends on beside the scene.
-Json what_is_kept(const Json& selection, const std::string& instances) {
+Json what_is_kept(const CellResult& cell, const Json& selection) {
+  const Json all = "all", chosen = cell.options.value("instances", all);
   Json distribution{{"target", selection.at("target")}};
   if (selection.contains("avoid")) distribution["avoid"] = selection.at("avoid");
-  return {{"distribution", distribution}, {"instances", instances}};
+  return {{"distribution", distribution}, {"instances", chosen.is_string() ? chosen : all}};
 }
 
 // A request for each scene in which a method failed, by index, then as the cells are ordered.
@@ -51,10 +52,10 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const CommandResult& command = cell.commands[episode.command];
         if (command.quality.is_null()) continue;
         Request& request = all[known->second];
-        const std::string key = mask_key(episode.scene, command.selection, cell.options.value("instances", "all"));
+        const std::string key = mask_key(episode.scene, cell, command.selection);
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
-        request.json["selections"].push_back(what_is_kept(command.selection, cell.options.value("instances", "all")));
+        request.json["selections"].push_back(what_is_kept(cell, command.selection));
       }
   }
   std::stable_sort(all.begin(), all.end(),
@@ -111,8 +112,8 @@ std::string run_worker(const std::string& input, std::string& output) {
 
 }  // namespace
 
-std::string mask_key(const std::string& scene, const Json& selection, const std::string& instances) {
-  return scene + "/" + sha256(canonical(what_is_kept(selection, instances))).substr(0, 8);
+std::string mask_key(const std::string& scene, const CellResult& cell, const Json& selection) {
+  return scene + "/" + sha256(canonical(what_is_kept(cell, selection))).substr(0, 8);
 }
 
 std::string end_key(const Disagreement& d, const std::string& engine) {

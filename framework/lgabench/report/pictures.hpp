@@ -19,9 +19,8 @@ struct Pictures {
   std::string problem;                        // why one that was asked for is missing; empty if none is
 };
 
-/// Names the goal mask that a Selection leaves of a scene: equal for Selections of one distribution. `instances` as in
-/// CellResult.
-std::string mask_key(const std::string& scene, const Json& selection, const std::string& instances);
+/// Names the goal mask that the cell's method is shown of a scene: equal for Selections of one distribution.
+std::string mask_key(const std::string& scene, const CellResult& cell, const Json& selection);
 
 /// Names the picture of a scene after the action on `engine`; "": before it.
 std::string end_key(const Disagreement& disagreement, const std::string& engine);

@@ -45,8 +45,10 @@ void read_episodes(const fs::path& file, CellResult& cell) {
           std::find(attributions.begin(), attributions.end(), e.attribution) == attributions.end())
         blamed.fail(fmt::format("{} on a method's failure, or null", fmt::join(attributions, ", ")));
     }
-    if (const JsonReader action = reader.at("action"); !action.json().is_null())
+    if (const JsonReader action = reader.at("action"); !action.json().is_null()) {
       for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
+      if (e.action.size() != std::tuple_size_v<ActionVector>) action.fail("12 numbers, or null");
+    }
     if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
     if (!played[arm].emplace(index, std::move(e)).second)
@@ -60,6 +62,23 @@ void read_episodes(const fs::path& file, CellResult& cell) {
   }
 }
 
+// Members of run.json that a report shows, where they are there.
+void expect_shown(const JsonReader& run) {
+  const auto expect_object = [](const JsonReader& value) {
+    if (!value.json().is_object()) value.fail("an object");
+  };
+  expect_object(run.at("machine"));
+  if (run.has("preset")) run.at("preset").string();
+  if (run.has("request")) expect_object(run.at("request"));
+  if (run.has("settings")) {
+    expect_object(run.at("settings"));
+    for (const auto& row : run.at("settings").json().items()) expect_object(run.at("settings").at(row.key()));
+  }
+  if (run.has("plugins"))
+    for (const JsonReader& plugin : run.at("plugins").elements())
+      for (const char* text : {"kind", "id", "version", "sha256"}) plugin.at(text).string();
+}
+
 void expect_selection(const JsonReader& selection) {
   selection.at("target").at("object_types");
   for (const char* text : {"provenance", "source", "asked_as"}) selection.at(text).string();
@@ -68,6 +87,7 @@ void expect_selection(const JsonReader& selection) {
 }
 
 void expect_quality(const JsonReader& quality) {
+  quality.only({"target", "avoid"});
   for (const char* about : {"target", "avoid"}) {
     if (!quality.has(about) || quality.at(about).json().is_null()) {
       if (std::string(about) == "target") quality.fail("the quality of the target");
@@ -172,7 +192,7 @@ RunResults read_run(const fs::path& run) {
   const JsonReader reader(results.json, run_file.string());
   results.suite = shown(reader.at("suite"));
   results.smoke = reader.at("smoke").boolean();
-  if (!reader.at("machine").json().is_object()) reader.at("machine").fail("an object");
+  expect_shown(reader);
   const auto listed = read_cell_keys(reader);
   expect_plain_run(run);
   const std::set<std::string> asked(listed.begin(), listed.end());

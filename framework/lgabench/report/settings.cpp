@@ -52,7 +52,7 @@ std::vector<std::string> settings(const RunResults& run) {
   if (const std::string preset = run.json.value("preset", ""); !preset.empty()) lines.push_back("preset " + preset);
   for (const std::string& line : options_beside_defaults(run.json.value("settings", Json::object())))
     lines.push_back("beside the plugins' defaults, " + line);
-  if (run.json.value("request", Json::object()).value("test_scenes", "shared") == "per_seed")
+  if (run.json.value("request", Json::object()).value("test_scenes", Json()) == "per_seed")
     lines.emplace_back("each training seed plays test scenes of its own");
   if (const auto rows = rows_with(run, "network", "plain"); !rows.empty())
     lines.push_back(
@@ -60,7 +60,7 @@ std::vector<std::string> settings(const RunResults& run) {
                     fmt::join(rows, ", ")));
   bool lga = false, lga_s = false;
   for (const CellResult& cell : run.cells) {
-    lga = lga || (cell.id == "lga" && cell.options.value("picture", "none") == "rgb");
+    lga = lga || (cell.id == "lga" && cell.options.value("picture", Json()) == "rgb");
     lga_s = lga_s || cell.id == "lga_s";
   }
   if (lga && lga_s) lines.emplace_back("LGA and LGA-S are one method here: with picture=rgb LGA sees the picture too");

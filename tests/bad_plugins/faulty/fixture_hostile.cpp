@@ -74,6 +74,9 @@ void do_harm(const std::string& how, const Services& services) {
 
 class Hostile : public fixture::FixtureMethod<fixture::StayPolicy> {
  public:
+  Selection select(const Command& command, const FeatureSpace&, Services& services) override {
+    return services.options.at("how") == "people" ? services.human.specify(command) : Selection();
+  }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
     do_harm(services.options.at("how"), services);
     return FixtureMethod::learn(demonstrations, services);

@@ -52,12 +52,11 @@ def kill_itself():
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def cheat(command, services):
+def cheat():
     """Looks for the truth and the scenes wherever they could be; raises with what it found."""
     data, worker = os.environ["LGABENCH_DATA"], f"/proc/{os.getppid()}"
     prefix = pathlib.Path(data).parent.parent
-    ways = {"people": lambda: services.human.specify(command),
-            "standard input": lambda: open("/proc/self/fd/0").read()[0],
+    ways = {"standard input": lambda: open("/proc/self/fd/0").read()[0],
             "the worker's job": lambda: open(worker + "/fd/0").read()[0],
             "the worker's memory": lambda: open(worker + "/mem", "rb"),
             "the worker's command": lambda: open(worker + "/cmdline"),
@@ -80,8 +79,10 @@ class Hostile:
         return Needs(targets="truth")
 
     def select(self, command, space, services):
+        if services.options["how"] == "people":
+            return services.human.specify(command)
         if services.options["how"] == "cheat":
-            cheat(command, services)
+            cheat()
         return Selection()
 
     def learn(self, demonstrations, services):
