@@ -252,7 +252,7 @@ class Completion(Case):
     def test_scripts_are_well_formed(self):
         if shutil.which("shellcheck"):
             done = subprocess.run(["shellcheck", "-s", "bash", PAGES / "lgabench.bash"], capture_output=True, text=True)
-            self.assertEqual(done.stdout, "")
+            self.assertEqual((done.returncode, done.stdout), (0, ""))
         if shutil.which("zsh"):
             done = subprocess.run(["zsh", "-n", PAGES / "_lgabench"], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
