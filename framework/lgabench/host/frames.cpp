@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <boost/crc.hpp>
@@ -50,9 +51,14 @@ Json parse_header(const std::string& text) {
 std::string Frame::type() const { return header.at("type").get<std::string>(); }
 
 Channel::Channel(Descriptor socket, std::function<void(short events)> wait)
-    : socket_(std::move(socket)), wait_(std::move(wait)) {}
+    : socket_(std::move(socket)), wait_(std::move(wait)), owner_(::getpid()) {}
+
+void Channel::expect_owner() const {
+  if (::getpid() != owner_) ::_exit(1);
+}
 
 void Channel::send(const Json& header, const std::string& payload, const Descriptor* file) {
+  expect_owner();
   const std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > most_header_bytes || payload.size() > most_payload_bytes)
     throw MethodError(fmt::format("a frame \"{}\" of {} and {} bytes is over the limits", header.value("type", ""),
@@ -117,6 +123,7 @@ bool Channel::take(char* bytes, std::size_t size, Descriptor& file) {
 }
 
 std::optional<Frame> Channel::receive() {
+  expect_owner();
   Frame frame;
   Prefix prefix{};
   if (!take(reinterpret_cast<char*>(&prefix), sizeof prefix, frame.file)) return std::nullopt;

@@ -1,5 +1,7 @@
 // The frames between a worker and a method's process (docs/formats/method-protocol.md). One thread.
 #pragma once
+#include <sys/types.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -30,7 +32,7 @@ struct Frame {
   std::string type() const;
 };
 
-/// One end of the socket.
+/// One end of the socket. A process that its owner forked ends where it sends or receives: only the first one speaks.
 class Channel {
  public:
   /// `socket` is taken. `wait(events)` is called where it is not ready for POLLIN or POLLOUT, and returns once it may
@@ -46,9 +48,11 @@ class Channel {
 
  private:
   bool take(char* bytes, std::size_t size, Descriptor& file);
+  void expect_owner() const;
 
   Descriptor socket_;
   std::function<void(short events)> wait_;
+  pid_t owner_;
 };
 
 }  // namespace lgabench

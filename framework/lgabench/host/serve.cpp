@@ -193,28 +193,19 @@ class Host {
     return *method_;
   }
 
-  // A plugin may have forked a process that came back as well: only the first one answers. What the processor's
-  // control register said before is put back.
+  // What the processor's control register said before is put back.
   template <class Call>
   auto call(Call&& c) -> decltype(c()) {
-    struct OnlyTheFirst {
-      ~OnlyTheFirst() {
-        if (::getpid() != self) ::_exit(1);
-      }
-      pid_t self;
-    };
     struct NotesFirst {
       ~NotesFirst() { flushed = flushed && denormals_flushed(); }
       bool& flushed;
     };
-    const OnlyTheFirst on_every_way_out{self_};
-    const FlushDenormalsAgain likewise;
+    const FlushDenormalsAgain on_every_way_out;
     const NotesFirst how_it_was{flushed_};
     return c();
   }
 
   Channel& channel_;
-  const pid_t self_ = ::getpid();
   RemoteModel model_;
   RemoteHuman human_;
   RemoteLog log_;

@@ -60,16 +60,16 @@ std::string phi(const RunResults& run, const Summary& summary, const RowNumbers&
                                                            : one.at("seen").get<bool>() ? " <small>seen</small>"
                                                                                         : " <small>unseen</small>"),
                                      about};
-      for (const char* group : {"object_types", "textures"})
+      for (const char* group : {"object_types", "textures"}) {
+        const std::string numbers_at = fmt::format("phi/{}/quality/{}/{}/", of.command, about, group);
         for (const char* number : {"precision", "recall", "size"}) {
-          const auto place = [&](const char* member) {
-            return fmt::format("phi/{}/quality/{}/{}/{}", of.command, about, group, member);
-          };
+          const auto place = [&numbers_at](const char* member) { return numbers_at + member; };
           cells.push_back(*number == 's' ? fmt::format("<small class=size>{} of {}</small>",
                                                        phi_value(row, numbers, place("size"), "{:.4g}"),
                                                        phi_value(row, numbers, place("true_size"), "{:.4g}"))
                                          : phi_value(row, numbers, place(number), "{:.2f}"));
         }
+      }
       cells.push_back(phi_value(row, numbers, fmt::format("phi/{}/lm_queries", of.command), "{:.4g}"));
       cells.push_back(phi_value(row, numbers, fmt::format("phi/{}/human_seconds", of.command), "{:.1f}"));
       cells.push_back(escaped(provenance_words(one.at("provenance"))));

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 
 #include <lgabench/core/error.hpp>
@@ -57,6 +58,7 @@ void do_harm(const std::string& how, const Services& services) {
   if (how == "link") fs::create_symlink("/etc/passwd", services.files / "leak.txt");
   if (how == "shared_memory") fill_shared_memory();
   if (how == "daemon") leave_a_daemon();
+  if (how == "fork" && ::fork() < 0) throw std::runtime_error("no process");  // both go on
   if (how == "kill" || (how == "game" && services.seed != 1)) ::kill(::getpid(), SIGKILL);
   if (how == "spoof") {
     constexpr char line[] = "{\"reason\": \"the disk is full\", \"fault\": \"host\"}\n";

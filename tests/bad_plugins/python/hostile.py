@@ -97,6 +97,8 @@ class Hostile:
             fill_shared_memory()
         elif how == "daemon":
             leave_a_daemon()
+        elif how == "fork":
+            os.fork()  # both go on
         elif how == "kill" or (how == "game" and services.seed != 1):
             kill_itself()
         elif how == "spoof":
