@@ -1,6 +1,6 @@
 """LGA in PyTorch: selection, mask, network and training of the plugin lga with network=plain.
 
-    lgabench run q1 --methods lga+network=plain,examples/python/lga_torch.py:Lga
+    lgabench run q1 --methods lga+network=plain+batches=shuffled,examples/python/lga_torch.py:Lga
 
 First weights and the order of samples are drawn by PyTorch: success is the plugin's on the mean, not scene by scene.
 """

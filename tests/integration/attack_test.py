@@ -14,7 +14,7 @@ import subprocess
 import time
 import unittest
 
-from case import BUILD, Case, FIXTURES, PROGRAM, command_line
+from case import BUILD, BesideOneRun, Case, FIXTURES, PROGRAM, command_line
 
 OPTIONS = {"--scenarios": "heart", "--methods": "fixture_constant", "--demos": "10", "--seeds": "0", "--episodes": "2",
            "--plugin-path": FIXTURES / "good"}
@@ -34,25 +34,14 @@ def canonical(value):
     return json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False) + "\n"
 
 
-class OneRun(Case):
+class OneRun(BesideOneRun):
     """Each test has a copy of one finished run."""
-    arguments = RUN
-
-    @classmethod
-    def setUpClass(cls):
-        cls.first = cls()
-        cls.first.setUp()
-        cls.addClassCleanup(cls.first.doCleanups)
-        cls.first.call(*cls.arguments, "--out", "run")
-
-    def runTest(self):
-        pass
+    run_of_class = RUN
 
     def setUp(self):
         super().setUp()
-        if hasattr(type(self), "first") and type(self).first is not self and (type(self).first.dir / "run").exists():
-            shutil.copytree(type(self).first.dir / "run", self.dir / "run")
-            self.environment["LGABENCH_CACHE"] = str(type(self).first.dir / "cache")
+        if self is not self.first:
+            self.copy_first("run")
 
     def cell(self, method="fixture_constant", run="run"):
         return next(path.parent for path in (self.dir / run).glob("cells/*/cell.json")
@@ -174,8 +163,7 @@ class Runs(OneRun):
 
     def test_members_of_another_type(self):
         def broken(change):
-            shutil.rmtree(self.dir / "run")
-            shutil.copytree(type(self).first.dir / "run", self.dir / "run")
+            self.copy_first("run")
             cell = self.cell("oracle")
             self.change("selection.json", change, cell)
             return cell
@@ -217,8 +205,7 @@ class Runs(OneRun):
             for text in ("", "{", "{}", '{"state": "ok", "files": {}, "build": {}}', DEEP):
                 (cell / file).write_text(text)
                 self.refused("verify", "run", "--sample", "1", "--plugin-path", FIXTURES / "good", says="^edited: ", expect=1)
-            shutil.rmtree(self.dir / "run")
-            shutil.copytree(type(self).first.dir / "run", self.dir / "run")
+            self.copy_first("run")
 
     def test_names_that_are_more_than_text(self):
         def arm(name):
@@ -248,15 +235,15 @@ class Runs(OneRun):
 
 
 class Cache(OneRun):
-    arguments = run_with("--seeds", "0,1")
+    run_of_class = run_with("--seeds", "0,1")
 
     def made_again(self, says):
         """The run again, on this cache: the bytes of the first, and a word in the log."""
-        self.call(*self.arguments, "--out", "again")
+        self.call(*self.run_of_class, "--out", "again")
         self.assert_same_results("run", "again")
         logs = [path.read_text() for path in (self.dir / "again").glob("cells/*/log.txt")]
         self.assertRegex("".join(logs), says + ".*; made again")
-        self.call(*self.arguments, "--out", "third")
+        self.call(*self.run_of_class, "--out", "third")
         self.assertNotIn("made again", "".join(p.read_text() for p in (self.dir / "third").glob("cells/*/log.txt")))
 
     def test_what_is_not_what_it_says_is_made_again(self):
@@ -288,7 +275,7 @@ class Cache(OneRun):
                 cache = self.dir / "cache"
                 for left in (cache, self.dir / "again", self.dir / "third"):
                     shutil.rmtree(left, ignore_errors=True)
-                shutil.copytree(type(self).first.dir / "cache", cache)
+                shutil.copytree(self.first.dir / "cache", cache)
                 self.environment["LGABENCH_CACHE"] = str(cache)
                 damage(*sorted(cache.iterdir())[:2])
                 self.made_again(words)

@@ -76,3 +76,24 @@ class Case(unittest.TestCase):
         done = subprocess.run([BUILD / "bin" / "schema_check", self.dir / run], capture_output=True, text=True,
                               timeout=60)
         self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+
+
+class BesideOneRun(Case):
+    """Cases whose class plays one run first, which they copy or compare with."""
+    run_of_class = ()
+
+    @classmethod
+    def setUpClass(cls):
+        cls.first = cls()
+        cls.first.setUp()
+        cls.addClassCleanup(cls.first.doCleanups)
+        cls.first.call(*cls.run_of_class, "--out", "run")
+
+    def runTest(self):  # without it `first` could not be made
+        pass
+
+    def copy_first(self, run):
+        """Puts a copy of the class's run in this test's directory, in place of what is there, on the class's cache."""
+        shutil.rmtree(self.dir / run, ignore_errors=True)
+        shutil.copytree(self.first.dir / "run", self.dir / run)
+        self.environment["LGABENCH_CACHE"] = str(self.first.dir / "cache")

@@ -15,7 +15,7 @@ import subprocess
 import time
 import unittest
 
-from case import BUILD, Case, FIXTURES, NO_CLOCK, command_line
+from case import BUILD, BesideOneRun, FIXTURES, NO_CLOCK, command_line
 
 FULL = os.environ.get("LGABENCH_FULL") == "1"
 # Tiny but real: one method that trains, one that does not, the reference rows.
@@ -27,21 +27,11 @@ NO_TRAINING = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_consta
                "--episodes", "2", "--no-reference", "--plugin-path", FIXTURES / "good"]
 
 
-class Faults(Case):
+class Faults(BesideOneRun):
     run_of_class = RUN
 
-    @classmethod
-    def setUpClass(cls):
-        cls.undisturbed = cls()
-        cls.undisturbed.setUp()
-        cls.addClassCleanup(cls.undisturbed.doCleanups)
-        cls.undisturbed.call(*cls.run_of_class, "--out", "out")
-
-    def runTest(self):
-        pass
-
     def assert_as_undisturbed(self, run="out"):
-        self.assert_same_results(self.undisturbed.dir / "out", run)
+        self.assert_same_results(self.first.dir / "run", run)
         left = [p.name for p in (self.dir / run).rglob("*") if p.name[0] == "." or p.suffix == ".tmp"]
         self.assertEqual(left, [])
 
@@ -141,7 +131,7 @@ class FaultyPlugins(Faults):
         self.assertEqual(reported, {})
         self.assertIn("the fixture prints", (self.dir / "out/cells" / ended["act", "print"][0] / "log.txt").read_text())
         # The neighbour among them is as it is alone.
-        alone = self.finished(self.undisturbed.dir / "out")
+        alone = self.finished(self.first.dir / "run")
         self.assertEqual({name: self.finished()[name] for name in alone}, alone)
 
         # The command that is printed computes what failed again, and nothing else.
@@ -297,8 +287,7 @@ class TornFiles(Faults):
     run_of_class = NO_TRAINING
 
     def test_every_kind_is_computed_again(self):
-        shutil.copytree(self.undisturbed.dir / "out", self.dir / "out")
-        self.environment["LGABENCH_CACHE"] = str(self.undisturbed.dir / "cache")
+        self.copy_first("out")
         cell = next((self.dir / "out/cells").iterdir())
         for file in sorted(cell.iterdir()):
             if file.name == "log.txt":  # no result: anyone may add to it
@@ -318,8 +307,7 @@ class TornFiles(Faults):
         for change in ({"files": {}}, {"files": 3}, {"files": {"a": 1}}, {"state": 1}, {"state": "failed"},
                        {"build": 5}):
             with self.subTest(change):
-                shutil.rmtree(self.dir / "out", ignore_errors=True)
-                shutil.copytree(self.undisturbed.dir / "out", self.dir / "out")
+                self.copy_first("out")
                 file = next((self.dir / "out/cells").glob("*/status.json"))
                 file.write_text(json.dumps({**json.loads(file.read_text()), **change}))
                 said = self.call(*NO_TRAINING, "--out", "out", "--resume").stderr
@@ -347,7 +335,7 @@ class SharedCache(Faults):
         for out in ("a", "b"):
             self.assert_as_undisturbed(out)
         filled, wanted = ({p.name: p.read_bytes() for p in (case.dir / "cache").iterdir()}
-                          for case in (self, self.undisturbed))
+                          for case in (self, self.first))
         self.assertEqual(filled, wanted)
 
 

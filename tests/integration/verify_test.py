@@ -94,14 +94,36 @@ class Verify(unittest.TestCase):
         said = self.line_of_the_cell(self.verify("--all", expect=1).stdout)
         self.assertRegex(said, r"^differs .*: from training.jsonl line 1, though")
 
-    def test_another_build_is_named_and_excuses_other_bytes(self):
+    def test_another_build_is_named_and_excuses_nothing(self):
         self.change("training.jsonl", 0, loss=.125)
         self.change_status("build", "liblgabench_learning.so", "0" * 64)
-        said = self.verify("--all", expect=0).stdout
+        said = self.verify("--all", expect=5).stdout
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
-        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells\n", said)
+        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells\n"
+                      "Of 1 the record names another build, processor or data: its own word", said)
         self.assertIn("NOT bit-identical: 1 of 4 cells", self.verify("--all", "--strict", expect=1).stdout)
+
+    def test_a_forger_cannot_choose_the_milder_rule(self):
+        """One episode that is won in the record alone is within chance; whatever else the record says, it is no success."""
+        episodes = [json.loads(line) for line in (self.cell / "episodes.jsonl").read_text().splitlines()]
+        lost = next(i for i, episode in enumerate(episodes) if not episode["success"])
+        self.change("episodes.jsonl", lost, success=True, failure="none", attribution=None)
+        self.assertNotIn("its own word", self.verify("--all", expect=1).stdout)  # though the build is that of the record
+        run = json.loads((self.run_directory / "run.json").read_text())
+        excuses = {"the worker's build": lambda: self.change_status("build", "lgabench-worker", "0" * 64),
+                   "a build without the method": lambda: self.change_status("build", "method", None),
+                   "the processor": lambda: (self.run_directory / "run.json").write_text(
+                       canonical({**run, "machine": {**run["machine"], "processor": "Z80"}}))}
+        status = (self.cell / "status.json").read_bytes()
+        for excuse, forge in excuses.items():
+            with self.subTest(excuse):
+                (self.cell / "status.json").write_bytes(status)
+                forge()
+                said = self.verify("--all", expect=5).stdout
+                self.assertRegex(self.line_of_the_cell(said), r"^within interval .*won there, ")
+                self.assertIn("NOT bit-identical: 1 of 4 cells\n", said)
+                self.assertIn("its own word, which proves nothing", said)
 
     def test_other_data_are_named(self):
         shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")

@@ -128,14 +128,15 @@ TEST(CentroidRule, TakesHoldOfMaterialWhereTheMiddleIsEmpty) {
   EXPECT_NEAR(norm(rule.act(thin).pose0.position_m - elsewhere), 15.5 * pixel, pixel);
 }
 
-// A push away from the obstacle at `side` of the target, from .1 m behind it to the strip on the other side.
+// A push away from the obstacle at `side` of the target, and `beside` it by so much, from .1 m behind the target to the
+// strip on the other side.
 struct Sweep {
   Roles roles;
   Action label;
 };
-Sweep sweep(Vec2 at, int side, double tilt = 0) {
+Sweep sweep(Vec2 at, int side, double tilt = 0, double beside = 0) {
   Roles roles = target_at(at);
-  paint(roles, at + Vec2{0, side * .2}, avoid_role);
+  paint(roles, at + Vec2{beside, side * .2}, avoid_role);
   return {roles, {{{at.x, at.y + side * .1}, {}}, {{at.x + tilt, -side * .4}, {}}}};
 }
 
@@ -143,10 +144,11 @@ TEST(CentroidRule, SweepsAsTheDemonstrationsWithTheObstacleOnThatSideDid) {
   CentroidRule rule;
   for (const Vec2 at : {place(40, 110), place(60, 128), place(85, 150)})
     for (const int side : {1, -1}) {
-      const auto [roles, label] = sweep(at, side);
+      const auto [roles, label] = sweep(at, side, 0, .02);
       rule.add(roles, label);
     }
-  const auto [roles, label] = sweep(place(40, 120), 1, .2);  // one turned the object: a group, but the smaller
+  // One turned the object: a group, the nearer one even, but the smaller.
+  const auto [roles, label] = sweep(place(40, 120), 1, .2);
   rule.add(roles, label);
   rule.fit();
   for (const int side : {1, -1}) {

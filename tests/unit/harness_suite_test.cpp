@@ -285,6 +285,25 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   EXPECT_EQ(pairs.size(), 7u) << "both scenes with each input but object_mask, which has one";
 }
 
+TEST(Variants, OfThePaperAndItsAppendixHaveTheirSettings) {
+  const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
+  for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"})
+    for (const std::string preset : {"paper", "paper_text"}) {
+      Grid grid = preset_grid(load_suite(id), preset);
+      grid.engines = {engine_under_test().id};
+      EXPECT_EQ(grid.layouts, std::vector<std::string>{preset == "paper" ? "continuous" : "cells"}) << id;
+      for (const Cell& cell : expand(load_suite(id), grid, {}, shipped)) {
+        const Json& options = cell.method.options;
+        if (cell.method.is_reference()) continue;
+        EXPECT_EQ(options.at("network"), "text") << id << " " << preset << " " << cell.method.name;
+        EXPECT_EQ(options.at("loss"), preset == "paper" ? "norm" : "squared") << id << " " << cell.method.name;
+        if (options.contains("picture")) {
+          EXPECT_EQ(options.at("picture"), preset == "paper" ? "none" : "rgb") << id << " " << cell.method.name;
+        }
+      }
+    }
+}
+
 struct RunDirectories : testing::Test, TemporaryDirectory {};
 
 Json run_of(const std::vector<std::string>& keys) {

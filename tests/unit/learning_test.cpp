@@ -464,6 +464,29 @@ TEST(Policies, OfCentroidsTakeTheMiddleOfTheMaskAndTrainNothing) {
   EXPECT_THROW(learn({{Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}}), InputError);
 }
 
+TEST(Policies, OfCentroidsTellTheTargetFromWhatIsToBeAvoided) {
+  auto data = demonstrations(10);
+  Instruction around_stars = instruction();
+  around_stars.selection.avoid = FeatureSet{{"star"}, {"blue"}};
+  for (Demonstration& d : data) d.instruction = around_stars;
+  const Trained centroid = learn({{Picture::mask}}, data, 5, 0, {{"policy", "centroid"}});
+  const Action action = centroid.policy->act(scene(60, 100, 0, 30), around_stars);  // of equals the first is taken
+  EXPECT_NEAR(action.pose0.position_m.x, .25 + 80 / 256., 1e-6);
+  EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
+}
+
+TEST(Policies, OfAnyObjectDoNotSeeTheTypeThatIsLeftOut) {
+  const auto data = demonstrations(10);
+  PolicyInputs seen{{Picture::segmentation}};
+  seen.left_out = "star";
+  const Observation here = scene(60, 100, 0, 30), star_moved = scene(60, 100, 0, 150);  // of equals the first is taken
+  for (const char* policy : {"regression", "centroid"}) {
+    const Trained trained = learn(seen, data, 5, 0, {{"policy", policy}});
+    EXPECT_EQ(act(trained, star_moved), act(trained, here)) << policy;
+    EXPECT_NE(act(trained, scene(60, 10, 0, 30)), act(trained, here)) << policy;
+  }
+}
+
 TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Trained trained = learn({{Picture::mask, Picture::rgb}, Text::utterance}, demonstrations(10), 5);
   const Observation probe = scene(10, 100, 80, 30);
@@ -523,12 +546,18 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
   const auto data = demonstrations(10);
   const Observation here = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150),
                     heart_moved = scene(30, 10, 80, 30);
+  const auto with_pallet = [](Observation o) {  // in place of the star
+    for (Instance& instance : o.instances)
+      if (instance.object_type == "star") instance.object_type = "pallet";
+    return o;
+  };
   struct Case {
     const char* input;
-    bool star, heart;  // whether the action follows it
+    bool star, heart, pallet;  // whether the action follows it
   };
-  for (const auto& [input, star, heart] : {Case{"mask", false, true}, Case{"true_mask", true, false},
-                                           Case{"object_mask", true, true}, Case{"rgb", true, true}}) {
+  for (const auto& [input, star, heart, pallet] :
+       {Case{"mask", false, true, false}, Case{"true_mask", true, false, false}, Case{"object_mask", true, true, false},
+        Case{"rgb", true, true, true}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
@@ -542,6 +571,7 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
     const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
     EXPECT_EQ(action(star_moved) != action(here), star) << input;
     EXPECT_EQ(action(heart_moved) != action(here), heart) << input;
+    EXPECT_EQ(action(with_pallet(star_moved)) != action(with_pallet(here)), pallet) << input;
   }
 }
 

@@ -195,6 +195,14 @@ TEST(Options, APluginWithoutOptionsSaysSo) {
   EXPECT_SAYS(message_of<InputError>([&] { resolve_options(info, {{"epochs", 1}}); }), "has no options");
 }
 
+TEST(Options, OfARowAreReadAsTheyAreWritten) {
+  for (const char* text : {"squared", "5", "0.5", "1e+30", "true"}) EXPECT_EQ(option_text(option_value(text)), text);
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(row_words("lga"), Words{"lga"});
+  EXPECT_EQ(row_words("lga+loss=squared+rate=1e+30"), (Words{"lga", "loss=squared", "rate=1e+30"}));
+  EXPECT_EQ(row_words("lga+5+"), (Words{"lga", "5", ""})) << "neither is lost: both are refused";
+}
+
 TEST(Directories, ShippedThenEnvironmentThenCommandLine) {
   ::setenv("LGABENCH_PLUGIN_PATH", "/first::/second", 1);
   const auto directories = plugin_directories({"/third"});

@@ -23,6 +23,7 @@ void fill(FabricatedRun& run) {
         FabricatedRun::Spec lga{"lga", 0, scenario, n, seed};
         lga.arms = {{"control", 10 + n / 10 + seed, {0}, .5}, {"hard", 5 + seed, {0}, .5}};
         lga.attribution = seed == 0 ? "abstraction" : "policy";
+        lga.inputs_seen = 3 + seed;
         run.add(lga);
         FabricatedRun::Spec gcbc{"gcbc_dart", 0, scenario, n, seed, "method", "cells", "wrong_object"};
         gcbc.arms = {{"control", 3, {0}, .4}, {"hard", seed, {0}, .6}};
@@ -48,7 +49,7 @@ Json data_of(const std::string& page) {
 // The sections whose tables are made of summary.json.
 std::string measured(const std::string& page) {
   std::string text;
-  for (const char* id : {"success", "arms", "scenarios", "phi", "failures", "attribution"}) {
+  for (const char* id : {"success", "arms", "scenarios", "seen", "phi", "failures", "attribution"}) {
     const std::size_t begin = page.find(std::string("<section id=") + id + " ");
     if (begin != std::string::npos) text += page.substr(begin, page.find("</section>", begin) - begin);
   }
@@ -61,7 +62,9 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
     if (several_arms) {
       fill(run);
     } else {
-      run.add({"lga", 15});
+      FabricatedRun::Spec lga{"lga", 15};
+      lga.inputs_seen = 7;
+      run.add(lga);
       run.add({"lga", 12, "letter", 50});
       run.add({"oracle", 20, "heart", 0, 0, "reference"});
     }
@@ -84,6 +87,7 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
       if (row.at("success").is_null()) continue;
       const std::string place = "/rows/" + std::to_string(i) + "/";
       for (const char* member : {"success", "low", "high"}) EXPECT_EQ(shown.count(place + member), 1u) << place;
+      EXPECT_EQ(shown.count(place + "inputs_seen"), row.at("inputs_seen").is_null() ? 0u : 1u) << place;
       if (!row.at("shift").is_null()) {
         for (const char* member : {"difference", "low", "high"})
           EXPECT_EQ(shown.count(place + "shift/" + member), 1u) << place;

@@ -21,6 +21,7 @@ constexpr const char* surroundings =
     "  2    a command line, a file or a directory is not as expected; nothing was overwritten\n"
     "  3    a cell failed\n"
     "  4    a plugin is missing or was refused\n"
+    "  5    `verify`: other bytes, of another build, processor or data, no more different than chance allows\n"
     "  130  interrupted; what was finished is kept\n"
     "\n"
     "Examples\n"

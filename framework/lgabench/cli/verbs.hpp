@@ -13,8 +13,17 @@
 
 namespace lgabench::cli {
 
-/// What the process returns (`lgabench --help`).
-enum Exit { ok = 0, regression = 1, usage = 2, cells_failed = 3, plugin_refused = 4, interrupted = 130 };
+/// What the process returns (docs/troubleshooting.md). not_identical: verify's, where only the record's own word says why
+/// it has other bytes.
+enum Exit {
+  ok = 0,
+  regression = 1,
+  usage = 2,
+  cells_failed = 3,
+  plugin_refused = 4,
+  not_identical = 5,
+  interrupted = 130
+};
 
 // In `lgabench`: start in milliseconds, load no engine, no LibTorch.
 void add_list(CLI::App& app, int& exit);

@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
-#include <map>
-#include <set>
 
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/files.hpp>
@@ -26,98 +23,6 @@ std::string folder_hash(const fs::path& folder) {
 
 std::uint64_t seed_at(const JsonReader& reader) {
   return static_cast<std::uint64_t>(reader.integer(0, std::numeric_limits<std::int64_t>::max()));
-}
-
-// Options of "ID+OPTION=VALUE+OPTION=VALUE". A '+' separates only before a letter, so that a value may be 1e+30.
-Json own_options(const std::string& method) {
-  Json options = Json::object();
-  const auto next = [&method](std::size_t from) {
-    const auto separates = [&](std::size_t i) {
-      return method[i] == '+' && (i + 1 == method.size() || std::isalpha(static_cast<unsigned char>(method[i + 1])));
-    };
-    while (from < method.size() && !separates(from)) ++from;
-    return from;
-  };
-  for (std::size_t at = std::min(method.find('+'), method.size()); at < method.size();) {
-    const std::size_t end = next(at + 1), equals = method.find('=', at);
-    const std::string option = method.substr(at + 1, std::min(equals, end) - at - 1);
-    if (option.empty() || equals >= end || options.contains(option))
-      throw InputError(fmt::format("method \"{}\": expected ID+OPTION=VALUE+..., each option once", method));
-    options[option] = option_value(method.substr(equals + 1, end - equals - 1));
-    at = end;
-  }
-  return options;
-}
-
-// The layer's values for the method: those of its id, then those of "*" for options that it has.
-Json layer_for(const PluginInfo& info, const Json& layer) {
-  const Json any = layer.value("*", Json::object());
-  Json values = Json::object();
-  for (const auto& [option, value] : any.items())
-    if (info.options.contains(option)) values[option] = value;
-  values.update(layer.value(info.id, Json::object()));
-  return values;
-}
-
-// Throws for an option in "*" that no plugin has, and for a value that a method of the run does not take.
-void check_layer(const Json& layer, const std::string& file, const std::string& place,
-                 const std::vector<const PluginInfo*>& methods, const Catalogue& catalogue) {
-  const Json any = layer.value("*", Json::object());
-  std::set<std::string> known;
-  for (const PluginInfo& plugin : catalogue.plugins)
-    if (plugin.kind == "method")
-      for (const auto& option : plugin.options.items()) known.insert(option.key());
-  JsonReader(any, file, place + "/*").only({known.begin(), known.end()});
-  for (const PluginInfo* info : methods) {
-    const Json of_any = layer_for(*info, {{"*", any}}), own = layer.value(info->id, Json::object());
-    check_options(*info, JsonReader(of_any, file, place + "/*"));
-    check_options(*info, JsonReader(own, file, place + "/" + info->id));
-  }
-}
-
-std::string named(const PluginInfo& info, const Json& options, const Json& usual, const std::set<std::string>& told) {
-  std::string name = info.id;
-  for (const std::string& option : told)
-    if (const Json& value = options.at(option); value != usual.at(option))
-      name += fmt::format("+{}={}", option, value.is_string() ? value.get<std::string>() : canonical(value));
-  return name;
-}
-
-std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const Json& settings,
-                                    const Catalogue& catalogue) {
-  std::vector<const PluginInfo*> infos;
-  std::vector<Competitor> methods;
-  std::map<std::string, Json> usual;                  // id -> options of its row without options of its own
-  std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
-  for (const std::string& written : grid.methods)
-    infos.push_back(&catalogue.find("method", written.substr(0, written.find('+'))));
-  check_layer(grid.options, suite.file, grid.options_place, infos, catalogue);
-  check_layer(settings, "--set", "", infos, catalogue);
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    const PluginInfo& info = *infos[i];
-    Json given = layer_for(info, grid.options);
-    given.update(layer_for(info, settings));
-    usual[info.id] = check_options(info, JsonReader(given, info.id));
-    given.update(own_options(grid.methods[i]));
-    methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});
-    for (const Competitor& other : methods)
-      if (other.id == info.id)
-        for (const auto& [option, value] : other.options.items())
-          if (value != methods.back().options.at(option)) told[info.id].insert(option);
-  }
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    Competitor& method = methods[i];
-    method.name = named(*infos[i], method.options, usual.at(method.id), told[method.id]);
-    for (std::size_t before = 0; before < i; ++before)
-      if (methods[before].name == method.name)
-        throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",
-                                     grid.methods[before], grid.methods[i], method.name));
-  }
-  for (const auto& item : settings.items())
-    if (item.key() != "*" && usual.count(item.key()) == 0)
-      throw InputError(
-          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
-  return methods;
 }
 
 // Those whose answers the method is based on in this scenario; one that is nobody where it asks no people, or where the

@@ -8,22 +8,11 @@
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/harness/competitors.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
-
-/// A method, or a row of the table that a method is measured against.
-struct Competitor {
-  std::string kind = "method";  // or "reference": constant_action, random_object, oracle
-  std::string id;
-  std::string name;  // its row's: the id, and what tells it from the run's other rows of that id (see expand())
-  std::string version;
-  Json options = Json::object();  // every option, defaults included
-  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
-
-  bool is_reference() const { return kind == "reference"; }
-};
 
 /// A person whose answers a cell is based on.
 struct CellParticipant {
@@ -78,12 +67,8 @@ struct Variation {
 
 /// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
-/// An option's value is the first that is given by: the row itself, the variation for its id, the variation for "*",
-/// the grid for its id, the grid for "*", the plugin's default.
-/// A row is named by its id, followed by "+option=value" (sorted) for each option in which the grid's rows of that id
-/// differ and it has another value than without options of its own.
-/// @throws PluginError for an unknown method or engine, InputError for an unknown option, for a method that is not
-/// written ID+OPTION=VALUE+..., for two that name one row, and for one that no participant answered at all.
+/// @throws as competitors(); PluginError for an unknown engine, InputError for a method that no participant answered at
+/// all.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

@@ -124,7 +124,9 @@ class Host {
     const JsonReader reader(hello.header, "hello");
     expect_this_layout(reader);
     options_ = reader.at("options").json();
-    seed_ = reader.at("seed").json().get<std::uint64_t>();
+    const JsonReader seed = reader.at("seed");
+    if (!seed.json().is_number_unsigned()) seed.fail("a whole number, 0 or more");
+    seed_ = seed.json().get<std::uint64_t>();
     plugin_ = read_plugin(reader.at("method").at("file").string());
     if (plugin_.sha256 != reader.at("method").at("sha256").string())
       throw PluginError(fmt::format("{}: changed since the run began", plugin_.file.string()));

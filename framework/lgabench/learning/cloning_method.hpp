@@ -14,8 +14,8 @@
   R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},)"  \
   R"("loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)"   \
   R"("source": "norm: released code; squared: paper"},)"                                                           \
-  R"("batches": {"default": "shuffled", "values": ["shuffled", "drawn"],)"                                         \
-  R"("help": "each sample once a pass, or each batch drawn with replacement",)"                                    \
+  R"("batches": {"default": "drawn", "values": ["drawn", "shuffled"],)"                                            \
+  R"("help": "each batch drawn with replacement, or each sample once a pass",)"                                    \
   R"("source": "drawn: released code"},)"                                                                          \
   R"("network": {"default": "text", "values": ["text", "released", "plain"],)"                                     \
   R"("help": "batch normalisation before each ReLU, after it, or none",)"                                          \

@@ -65,6 +65,11 @@ std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
 /// An option's value as written on a command line: a number, or true or false, where the whole word is one; else a
 /// text.
 Json option_value(const std::string& word);
+/// The other way: the value as a command line and a row's name write it.
+std::string option_text(const Json& value);
+/// "ID+OPTION=VALUE+OPTION=VALUE", as rows are written and named -> "ID", "OPTION=VALUE", "OPTION=VALUE". Behind the
+/// first '+' another one separates only at the end and before a letter, so that a value may be 1e+30.
+std::vector<std::string> row_words(const std::string& row);
 
 /// Every option of the plugin: those of `overrides` (an object), defaults for the rest. A whole number given for an
 /// option with a fractional default becomes fractional.

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include <lgabench/plugin/loader.hpp>
 
@@ -24,6 +25,20 @@ bool contains(const Json& values, const Json& value) {
 Json option_value(const std::string& word) {
   const Json value = json_or_null(word);
   return value.is_number() || value.is_boolean() ? value : Json(word);
+}
+
+std::string option_text(const Json& value) { return value.is_string() ? value.get<std::string>() : canonical(value); }
+
+std::vector<std::string> row_words(const std::string& row) {
+  std::vector<std::string> words{""};
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const bool ends = words.size() == 1 || i + 1 == row.size() || std::isalpha(static_cast<unsigned char>(row[i + 1]));
+    if (row[i] == '+' && ends)
+      words.emplace_back();
+    else
+      words.back() += row[i];
+  }
+  return words;
 }
 
 Json check_options(const PluginInfo& plugin, const JsonReader& given) {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/pairs.hpp>
 
 namespace lgabench::report {
@@ -29,25 +29,14 @@ std::set<std::string> participants(const Field::People& one, const Field::People
   return names;
 }
 
-// An option's value as a row's name and a command line write it.
-std::string option_text(const Json& value) { return value.is_string() ? value.get<std::string>() : canonical(value); }
-
-// The options that a row's name tells: "lga+instances=first" one. A '+' before a digit belongs to a number.
-std::vector<std::string> named_options(const std::string& row) {
-  std::vector<std::string> options;
-  for (std::size_t i = row.find('+'); i < row.size(); ++i)
-    if (row[i] == '+' && i + 1 < row.size() && std::isalpha(static_cast<unsigned char>(row[i + 1])))
-      options.push_back(row.substr(i + 1, row.find('=', i) - i - 1));
-  return options;
-}
-
 bool is_method(const CellResult& cell, const ClaimedMethod& method) {
   if (cell.id != method.id) return false;
   for (const auto& [option, value] : method.options)
     if (!cell.options.contains(option) || option_text(cell.options.at(option)) != value) return false;
-  const std::vector<std::string> named = named_options(cell.method);
-  return std::all_of(named.begin(), named.end(),
-                     [&method](const std::string& option) { return method.options.count(option) != 0; });
+  const std::vector<std::string> words = row_words(cell.method);  // the id, then the options that the row's name tells
+  return std::all_of(words.begin() + 1, words.end(), [&method](const std::string& word) {
+    return method.options.count(word.substr(0, word.find('='))) != 0;
+  });
 }
 
 // Student's t on the scenarios' differences.

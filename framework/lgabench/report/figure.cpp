@@ -184,7 +184,7 @@ std::string bars_script(const std::string& suite, const Table& table) {
 
   std::string ticks;
   for (std::size_t arm = 0; arm < table.arms.size(); ++arm)
-    ticks += fmt::format("{}{} {}", arm == 0 ? "" : ", ", quoted(table.arms[arm]), arm);
+    ticks += fmt::format("{}{} {}", arm == 0 ? "" : ", ", quoted(table.arm_title(table.arms[arm])), arm);
   return script.text("set errorbars 0.7 front lw 1.4 lc rgb '#222222'\n" +
                      settings(title(suite, table, ", " + table.demonstrations_text(n)), "arm", -0.6,
                               static_cast<double>(table.arms.size()) - 0.4, 0, ticks));

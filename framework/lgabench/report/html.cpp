@@ -180,9 +180,10 @@ std::string html(const RunResults& run, const Summary& summary, const std::vecto
   const fs::path installed = data_directory() / "page";
   const RowNumbers numbers(summary);
   const std::string body = what_was_run(run, summary, pictures) + success(summary, paper, numbers) +
-                           arms(summary, paper, numbers) + scenarios(summary, paper, numbers) + claims(tested) +
-                           phi(run, summary, numbers) + failures(summary, numbers) + attribution(summary, numbers) +
-                           engines(agreements, pictures) + times(run) + failed_cells(summary) + provenance(run);
+                           arms(summary, paper, numbers) + scenarios(summary, paper, numbers) +
+                           seen_inputs(summary, numbers) + claims(tested) + phi(run, summary, numbers) +
+                           failures(summary, numbers) + attribution(summary, numbers) + engines(agreements, pictures) +
+                           times(run) + failed_cells(summary) + provenance(run);
   return filled(read_file(installed / "page.html"), {{"suite", escaped(run.suite)},
                                                      {"style", read_file(installed / "page.css")},
                                                      {"body", body},

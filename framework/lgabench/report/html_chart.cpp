@@ -52,8 +52,8 @@ std::vector<Place> places(const Table& table, const std::string& arm) {
   } else {
     const double step = (width - left - right) / static_cast<double>(table.arms.size());
     for (std::size_t i = 0; i < table.arms.size(); ++i)
-      all.push_back(
-          {table.arms[i], table.arms[i], demonstrations.front(), left + step * (static_cast<double>(i) + 0.5)});
+      all.push_back({table.arm_title(table.arms[i]), table.arms[i], demonstrations.front(),
+                     left + step * (static_cast<double>(i) + 0.5)});
   }
   return all;
 }

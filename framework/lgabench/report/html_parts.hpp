@@ -48,6 +48,7 @@ std::string legend(const Table& table, const PaperValues& paper);
 std::string success(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
 std::string arms(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
 std::string scenarios(const Summary& summary, const PaperValues& paper, const RowNumbers& numbers);
+std::string seen_inputs(const Summary& summary, const RowNumbers& numbers);
 std::string claims(const std::vector<Claim>& all);
 std::string phi(const RunResults& run, const Summary& summary, const RowNumbers& numbers);
 std::string failures(const Summary& summary, const RowNumbers& numbers);

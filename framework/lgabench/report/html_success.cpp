@@ -1,4 +1,4 @@
-// Tables of success: on the mean, of the arms, of each scenario.
+// Tables of success: on the mean, of the arms, of each scenario; and of what was tested by heart.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -155,6 +155,34 @@ std::string scenarios(const Summary& summary, const PaperValues& paper, const Ro
                     view.columns, each, paper, numbers);
   }
   return section("scenarios", "Each scenario", text + of_paper(paper, false));
+}
+
+std::string seen_inputs(const Summary& summary, const RowNumbers& numbers) {
+  std::string text;
+  for (const Table& table_ : summary.tables) {
+    if (!any_seen(table_)) continue;
+    for (const View& view : views(table_)) {
+      std::vector<std::string> heads{"scenario", "method"};
+      for (const Column& column : view.columns) heads.push_back(escaped(column.head));
+      std::string body;
+      for (const std::string& scenario : table_.scenarios()) {
+        const std::vector<std::string> methods = table_.methods(scenario);
+        for (std::size_t i = 0; i < methods.size(); ++i) {
+          std::vector<std::string> cells{escaped(table_.title(scenario)), named(methods[i], i)};
+          for (const Column& c : view.columns) {
+            const Row* row = table_.find(c.arm, scenario, methods[i], c.demonstrations);
+            const bool told = row && row->seen_share();
+            cells.push_back(told ? numbers.value(*row, "inputs_seen", seen_text(row)) : seen_text(row));
+          }
+          body += row_of(cells, 2);
+        }
+      }
+      text += table(fmt::format("Share of test inputs that stood in training to the byte, {}; columns: {}",
+                                escaped(table_.title()), corner(view, table_)),
+                    heads, body, true);
+    }
+  }
+  return text.empty() ? "" : section("seen", "Test inputs seen in training", text);
 }
 
 }  // namespace lgabench::report::html_parts

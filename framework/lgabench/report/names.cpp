@@ -1,10 +1,14 @@
 #include <lgabench/report/names.hpp>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <iterator>
 #include <string_view>
+
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -27,7 +31,7 @@ constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#A5
 // The entry of the row's id; nullptr where it has none.
 template <typename Names>
 const Name* find(const Names& names, const std::string& method) {
-  const std::string id = method.substr(0, method.find('+'));
+  const std::string id = row_words(method).front();
   const auto it = std::find_if(names.begin(), names.end(), [&id](const Name& n) { return id == n.id; });
   return it == names.end() ? nullptr : &*it;
 }
@@ -35,13 +39,10 @@ const Name* find(const Names& names, const std::string& method) {
 }  // namespace
 
 std::string display_name(const std::string& method) {
-  const std::size_t plus = std::min(method.find('+'), method.size());
-  std::string shown = method.substr(0, plus), options = method.substr(plus);
-  for (std::size_t i = 0; i + 1 < options.size(); ++i)  // a '+' before a digit belongs to a number
-    if (options[i] == '+' && std::isalpha(static_cast<unsigned char>(options[i + 1]))) options[i] = ' ';
-  if (const Name* name = find(methods, method)) shown = name->shown;
-  if (const Name* name = find(references, method)) shown = name->shown;
-  return shown + options;
+  std::vector<std::string> words = row_words(method);
+  if (const Name* name = find(methods, method)) words.front() = name->shown;
+  if (const Name* name = find(references, method)) words.front() = name->shown;
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 int display_rank(const std::string& method) {

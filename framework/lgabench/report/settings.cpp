@@ -5,14 +5,11 @@
 
 #include <map>
 
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
 namespace {
-
-std::string option_text(const std::string& option, const Json& value) {
-  return fmt::format("{}={}", option, value.is_string() ? value.get<std::string>() : canonical(value));
-}
 
 // Names of the rows that have this option at this value, in the order of tables.
 std::vector<std::string> rows_with(const RunResults& run, const std::string& option, const std::string& value) {
@@ -30,7 +27,7 @@ std::vector<std::string> options_beside_defaults(const Json& settings) {
   std::map<std::pair<int, std::string>, std::string> rows;  // by rank and name: their options
   for (const auto& [row, options] : settings.items()) {
     std::vector<std::string> texts;
-    for (const auto& [option, value] : options.items()) texts.push_back(option_text(option, value));
+    for (const auto& [option, value] : options.items()) texts.push_back(option + "=" + option_text(value));
     rows[{display_rank(row), row}] = fmt::format("{}", fmt::join(texts, ", "));
   }
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // options, rows

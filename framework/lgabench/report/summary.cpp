@@ -216,7 +216,8 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   return draft;
 }
 
-// The row over all scenarios, from their rows of the same method and number of demonstrations.
+// The row over the scenarios that have the arm, so many, from their rows of the same method and number of
+// demonstrations.
 Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, const std::string& first_arm) {
   Draft mean;
   Row& row = mean.row = drafts.front()->row;
@@ -321,7 +322,7 @@ Table make_table(const Cells& cells) {
         table.rows.push_back(drafts.back().row);
       }
     for (const auto& [place, rows] : over_scenarios)
-      table.rows.push_back(mean_row(rows, scenarios.size(), table.arms.front()));
+      table.rows.push_back(mean_row(rows, table.scenarios_with(arm).size(), table.arms.front()));
   }
   mark_low_rows(table);
   mark_errors(table);
@@ -337,6 +338,13 @@ std::vector<std::string> Table::scenarios() const {
   for (const Row& row : rows)
     if (!row.is_mean()) add_new(all, row.scenario);
   all.emplace_back(mean_scenario);
+  return all;
+}
+
+std::vector<std::string> Table::scenarios_with(const std::string& arm) const {
+  std::vector<std::string> all;
+  for (const Row& row : rows)
+    if (!row.is_mean() && row.arm == arm) add_new(all, row.scenario);
   return all;
 }
 
@@ -375,6 +383,11 @@ std::string Table::title(const std::string& scenario) const {
   if (scenario != mean_scenario) return scenario;
   const std::size_t n = scenarios().size() - 1;
   return fmt::format("mean over {} scenario{}", n, n == 1 ? "" : "s");
+}
+
+std::string Table::arm_title(const std::string& arm) const {
+  const std::size_t with = scenarios_with(arm).size(), all = scenarios().size() - 1;
+  return with == all ? arm : fmt::format("{} ({} of {})", arm, with, all);
 }
 
 std::string Table::title() const { return fmt::format("layout {}, engine {}", layout, engine); }

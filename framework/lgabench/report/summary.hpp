@@ -68,8 +68,12 @@ struct Table {
   /// Ids of a scenario's methods, or of its reference rows, in order.
   std::vector<std::string> methods(const std::string& scenario) const { return ids(scenario, "method"); }
   std::vector<std::string> references(const std::string& scenario) const { return ids(scenario, "reference"); }
+  /// Those that have the arm; a mean in an arm is over these.
+  std::vector<std::string> scenarios_with(const std::string& arm) const;
   /// "mean over 3 scenarios" for the mean, else the scenario's own id.
   std::string title(const std::string& scenario) const;
+  /// The arm's own name, or "hard (1 of 3)" for an arm of one of three scenarios.
+  std::string arm_title(const std::string& arm) const;
   /// "layout cells, engine mujoco"
   std::string title() const;
 

@@ -37,7 +37,7 @@ std::vector<View> views(const Table& table) {
   }
   for (const int n : demonstrations) {
     View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
-    for (const std::string& arm : table.arms) view.columns.push_back({arm, arm, n});
+    for (const std::string& arm : table.arms) view.columns.push_back({table.arm_title(arm), arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
   }
@@ -82,12 +82,17 @@ bool any_seen(const Table& table) {
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   std::set<std::string> marked;
   std::set<std::string> same_as;              // arms
+  std::set<std::string> of_some;              // lines on arms that not all scenarios have
   std::map<std::string, std::string> people;  // method -> whom its Selections measure, where that has to be said
   std::set<std::string> models, live;         // behind cassettes, and asked while cells ran
   std::set<std::string> edited;               // methods whose Selections began as a language model's
   for (const CellResult& cell : run.cells)
     if (cell.asks == "edit") edited.insert(cell.method);
-  for (const Table& table : summary.tables)
+  for (const Table& table : summary.tables) {
+    for (const std::string& arm : table.arms)
+      if (const auto some = table.scenarios_with(arm); some.size() + 1 < table.scenarios().size())
+        of_some.insert(fmt::format("{}: the mean is over {}; no other scenario has this arm.", table.arm_title(arm),
+                                   fmt::join(some, ", ")));
     for (const Row& row : table.rows) {
       marked.insert(row.marks.begin(), row.marks.end());
       if (acts_the_same(row)) same_as.insert(row.shift->against);
@@ -101,6 +106,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
                                          edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
+  }
   std::vector<std::string> lines;
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   if (run.not_run > 0)
@@ -112,6 +118,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : same_as)
     lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
+  lines.insert(lines.end(), of_some.begin(), of_some.end());
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
   for (const Table& table : summary.tables)
     if (const auto& near = table.nearness)
