@@ -73,6 +73,12 @@ class Package(Consumer):
     def test_holds_no_path_of_where_it_was_built(self):
         self.assert_no_path_of_the_sources(self.prefix)
 
+    def test_holds_a_manual_and_completions(self):
+        for file in "man/man1/lgabench.1", "bash-completion/completions/lgabench", "zsh/site-functions/_lgabench":
+            text = (self.prefix / "share" / file).read_text().replace("\\-", "-")
+            for word in "check-plugin", "--demos":
+                self.assertIn(word, text, file)
+
     def test_works_where_it_was_moved_to(self):
         self.assertIn("mujoco", self.lgabench("list").stdout)
         self.runs("lga", self.prefix, "--set", "lga.epochs=2")

@@ -157,7 +157,7 @@ class Verify(unittest.TestCase):
         shutil.rmtree(self.run_directory / "cells")
         self.assertIn("no finished cell: nothing to verify", self.verify(expect=2).stderr)
         (self.run_directory / "run.json").unlink()
-        self.assertIn("run.json: cannot be read", self.verify(expect=2).stderr)
+        self.assertIn("not the directory of a run (no run.json)", self.verify(expect=2).stderr)
 
 
 class Compare(unittest.TestCase):

@@ -289,7 +289,8 @@ TEST(Scenario, RefusesBadInput) {
   json["direction"] = "clockwise";
   json["angle_deg"] = -120;
   EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 0, at most 180, got -120");
-  EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "scenario \"hart\": expected one of: ");
+  EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }),
+              "no scenario \"hart\" (did you mean \"heart\"?), expected one of: ");
 }
 
 TEST(Action, VectorHasOneSignOfEachQuaternion) {

@@ -91,7 +91,7 @@ TEST(InfoCommand, RefusedAndUnknownNames) {
   EXPECT_SAYS(refused.err, "SDK \"0.0.9\"");
   const Outcome unknown = lgabench("info nothing_of_that_name");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_SAYS(unknown.err, "nothing_of_that_name: expected the name of a method, engine, suite or scenario");
+  EXPECT_SAYS(unknown.err, "no method, engine, suite or scenario \"nothing_of_that_name\"");
 }
 
 }  // namespace

@@ -161,8 +161,9 @@ TEST(Options, WrongOnesAreNamedWithWhatIsExpected) {
     EXPECT_SAYS(message, "options of method fixture_constant: ");
     return message;
   };
-  EXPECT_SAYS(refusal({{"scael", 2}}),
-              "unknown member \"scael\", expected one of: demonstration, mode, scale, verbose");
+  EXPECT_SAYS(
+      refusal({{"scael", 2}}),
+      "unknown member \"scael\" (did you mean \"scale\"?), expected one of: demonstration, mode, scale, verbose");
   EXPECT_SAYS(refusal({{"scale", "big"}}), "/scale: expected a number, got \"big\"");
   EXPECT_SAYS(refusal({{"demonstration", 0.5}}), "/demonstration: expected a whole number, got 0.5");
   EXPECT_SAYS(refusal({{"demonstration", -3}}), "/demonstration: expected a whole number of 0 or more, got -3");

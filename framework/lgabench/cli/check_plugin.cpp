@@ -6,7 +6,9 @@
 #include <array>
 #include <memory>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/colour.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -96,7 +98,9 @@ bool has_problem(const CheckReport& report) {
 
 void print(const CheckReport& report) {
   for (const auto& [state, check, detail, fix] : report.findings) {
-    to_stdout("  {:<8} {:<22} {}\n", to_string(state), check, detail);
+    const std::string word = fmt::format("{:<8}", to_string(state));
+    put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
+    to_stdout(" {:<22} {}\n", check, detail);
     if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
   }
 }
@@ -124,7 +128,9 @@ int check_plugin(const Arguments& a) {
     if (!plugin.id.empty())
       to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
     print(report);
-    to_stdout("{}\n", good ? "good" : "not good: see the problems above");
+    put(stdout,
+        painted(stdout, good ? Colour::green : Colour::red, good ? "good" : "not good: see the problems above"));
+    to_stdout("\n");
   }
   return good ? ok : regression;
 }
@@ -135,15 +141,16 @@ void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb =
       app.add_subcommand("check-plugin", "Look for what is wrong with a plugin, and say what to do about it");
-  verb->add_option("file", a->file, "The plugin's library, or a method in Python")
+  verb->add_option("file", a->file, "The plugin's library, FILE.so, or a method in Python, FILE.py:CLASS")
       ->required()
-      ->type_name("FILE.so or FILE.py:Class");
+      ->type_name("FILE");
   verb->add_option("--python", a->python, "The interpreter of a method in Python")->capture_default_str();
-  verb->add_option("--set", a->settings, "option=value of the plugin; may be given again")->allow_extra_args(false);
+  verb->add_option("--set", a->settings, "An option of the plugin; may be given again")->allow_extra_args(false);
   verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
       ->check(within(1, 1e6))
       ->capture_default_str();
   verb->add_flag("--json", a->json, "One JSON object on stdout");
+  arrange(*verb, "", {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--timeout", "SECONDS"}});
   verb->footer(
       "Two fresh processes use it as cells do, with the same seed. Exit 1 if there is a problem.\n"
       "Example: lgabench check-plugin build/my_method.so");

@@ -3,7 +3,8 @@
 
 #include <memory>
 
-#include <lgabench/cli/verbs.hpp>
+#include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/help.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/demonstrations.hpp>
@@ -56,19 +57,34 @@ void inspect(const std::string& file) {
 
 void add_demos(CLI::App& app, int&) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5");
-  verb->add_option("scenario", a->scenario, "Its true distribution is demonstrated");
-  verb->add_option("--layout", a->layout, "cells, continuous or released")->capture_default_str();
+  CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
+  verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
+  verb->add_option("--layout", a->layout, "How objects are placed")
+      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->capture_default_str();
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
   verb->add_option("--noisy", a->noisy, "DART: noisy rollouts for each demonstration")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  verb->add_option("--noise", a->noise, "DART: sigma of the last of them")->check(within(0, 10))->capture_default_str();
+  verb->add_option("--noise", a->noise,
+                   "DART: standard deviation of the noise in the last of these; it grows up to there")
+      ->check(within(0, 10))
+      ->capture_default_str();
   verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
-  verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
+  add_plugin_path(*verb, a->plugin_path);
   auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");
   verb->add_option("--inspect", a->inspect, "Print what is in a file of demonstrations")->excludes(out);
+  arrange(*verb, "", {{"scenario", "SCENARIO"}});
+  arrange(*verb, "What is demonstrated",
+          {{"--layout", "cells|continuous|released"},
+           {"--n", "N"},
+           {"--seed", "N"},
+           {"--noisy", "N"},
+           {"--noise", "SIGMA"},
+           {"--engine", "ENGINE"},
+           {"--plugin-path", "PATH"}});
+  arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
   verb->footer("Example: lgabench demos heart --n 10 --out heart.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
 }

@@ -1,45 +1,92 @@
 #include <fmt/format.h>
 
-#include <sstream>
+#include <algorithm>
 #include <string_view>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/colour.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench::cli {
+namespace {
+
+// The first option among the words that there is none of, with what may have been meant; "" if all that begins with a
+// dash is one.
+std::string unknown_option(const CLI::App& verb, const std::vector<std::string>& words) {
+  const auto option =
+      std::find_if(words.begin(), words.end(), [](const auto& w) { return w.size() > 1 && w[0] == '-'; });
+  if (option == words.end()) return "";
+  std::vector<std::string> known;
+  for (const CLI::Option* one : verb.get_options())
+    for (const std::string& name : one->get_lnames()) known.push_back("--" + name);
+  const std::string name = option->substr(0, option->find('='));
+  return fmt::format("unknown option {}{}", name,
+                     suggestion("--" + name.substr(std::min(name.find_first_not_of('-'), name.size())), known));
+}
+
+// What CLI11 says of a command line, in words that name what is wrong and what to write.
+std::string explained(const CLI::App& app, const CLI::ParseError& e) {
+  const std::vector<const CLI::App*> chosen = app.get_subcommands({});
+  const auto parsed = std::find_if(chosen.begin(), chosen.end(), [](const CLI::App* c) { return c->parsed(); });
+  const CLI::App& verb = parsed == chosen.end() ? app : **parsed;
+  const std::string name = &verb == &app ? app.get_name() : app.get_name() + " " + verb.get_name();
+  const std::vector<std::string> words = app.remaining(true);
+  const bool missing = dynamic_cast<const CLI::RequiredError*>(&e) != nullptr;
+  if (!missing && !dynamic_cast<const CLI::ExtrasError*>(&e)) return e.what();
+  if (const std::string unknown = unknown_option(verb, words); !unknown.empty())
+    return fmt::format("{}; see {} --help", unknown, name);
+  if (missing) {
+    const std::string what = e.what();
+    const CLI::Option* option = verb.get_option_no_throw(what.substr(0, what.find(' ')));
+    if (!option) return what;
+    return fmt::format("{} is missing; usage: {}", option->get_positional() ? option->get_type_name() : what,
+                       usage_line(verb, name));
+  }
+  if (&verb != &app) return fmt::format("\"{}\" is a word too many; usage: {}", words.front(), usage_line(verb, name));
+  std::vector<std::string> known{"--help", "--version"};
+  for (const CommandGroup& group : command_groups(app))
+    for (const CLI::App* command : group.commands) known.push_back(command->get_name());
+  std::string near = suggestion(words.front(), known);
+  if (near.empty()) near = suggestion("--" + words.front(), known);
+  return fmt::format("unknown command \"{}\"{}; see {} --help", words.front(), near, name);
+}
+
+}  // namespace
 
 int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
-  const auto complain = [&app](const std::exception& e, int status) {
+  const auto complain = [&app](std::string_view what, int status) {
     constexpr std::size_t longest = 4000;
-    to_stderr("{}: {}\n", app.get_name(), std::string_view(e.what()).substr(0, longest));
+    put(stderr,
+        fmt::format("{} {}\n", painted(stderr, Colour::red, app.get_name() + ":"), printable(what.substr(0, longest))));
     return status;
   };
   try {
     try {
       app.parse(argc, argv);
-    } catch (const CLI::Success& e) {
-      std::ostringstream text;  // of --help, --version: std::cout would lose why it cannot be written
-      app.exit(e, text);
-      to_stdout("{}", text.str());
-      flush_stdout();
-      return ok;
+      if (app.get_subcommands().empty()) throw CLI::CallForHelp();
+    } catch (const CLI::CallForVersion& e) {
+      to_stdout("{}\n", e.what());
+    } catch (const CLI::Success&) {  // --help
+      to_stdout("{}", app.help());
     }
     flush_stdout();
     return exit;
   } catch (const CLI::ParseError& e) {
-    return complain(e, usage);
+    return complain(explained(app, e), usage);
   } catch (const PluginError& e) {
-    return complain(e, plugin_refused);
+    return complain(e.what(), plugin_refused);
   } catch (const InputError& e) {
-    return complain(e, usage);
+    return complain(e.what(), usage);
   } catch (const fs::filesystem_error& e) {
-    return complain(e, usage);
+    return complain(e.what(), usage);
   } catch (const Json::exception& e) {
-    return complain(InputError(fmt::format("JSON with a member of another type than expected: {}", e.what())), usage);
+    return complain(fmt::format("JSON with a member of another type than expected: {}", e.what()), usage);
   } catch (const std::exception& e) {
-    return complain(e, cells_failed);
+    return complain(e.what(), cells_failed);
   }
 }
 

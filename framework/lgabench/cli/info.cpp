@@ -109,7 +109,14 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
   }
   for (const auto& [file, reason] : catalogue.refused)
     if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
-  throw InputError(fmt::format("{}: expected the name of a method, engine, suite or scenario (lgabench list)", name));
+  std::vector<std::string> known = scenario_ids();
+  for (const PluginInfo& plugin : catalogue.plugins) known.push_back(plugin.id);
+  std::error_code none_to_list;
+  for (const std::string& suite : json_names(data_directory() / "suites", none_to_list)) known.push_back(suite);
+  throw InputError(fmt::format(
+      "no method, engine, suite or scenario \"{}\"{}; lgabench list shows them, those of other plugins with "
+      "--plugin-path DIR",
+      name, suggestion(name, known)));
 }
 
 }  // namespace
@@ -125,9 +132,7 @@ void add_info(CLI::App& app, int& exit) {
   verb->footer("Example: lgabench info lga");
   verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
-  verb->add_option("--plugin-path", arguments->directories, "Look for plugins here too; may be repeated")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
+  add_plugin_path(*verb, arguments->directories);
   verb->callback([arguments, &exit] {
     info(arguments->name, arguments->json, arguments->directories);
     exit = ok;

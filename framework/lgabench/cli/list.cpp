@@ -77,9 +77,7 @@ void add_list(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("list", "Methods, engines, suites and scenarios; what was refused, and why");
   verb->footer("Example: lgabench list --plugin-path my/build");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
-  verb->add_option("--plugin-path", arguments->directories, "Look for plugins here too; may be repeated")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
+  add_plugin_path(*verb, arguments->directories);
   verb->callback([arguments, &exit] {
     const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
     if (arguments->json)

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -21,6 +22,7 @@ void add_merge(CLI::App& app, int& exit) {
   verb->add_option("OUT", options->out, "The directory to write")->required();
   verb->add_option("RUN", options->runs, "Directories of the same run; they stay as they are")->required();
   verb->add_flag("--json", options->json, "Print summary.json instead of the table");
+  arrange(*verb, "", {{"OUT", "OUT"}, {"RUN", "RUN"}});
   verb->footer("Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2");
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, joined(command_line()));

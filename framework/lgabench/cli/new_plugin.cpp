@@ -5,6 +5,7 @@
 #include <cctype>
 #include <memory>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
@@ -80,9 +81,10 @@ void add_new_plugin(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("new-plugin", "Write the project of a new plugin: it builds, and you change it");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
   verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")
-      ->check(CLI::IsMember({"method", "engine", "python"}))
+      ->check(one_of("kind", {"method", "engine", "python"}))
       ->capture_default_str();
   verb->add_option("--directory", a->directory, "Where; by default ./NAME, which must not be there yet");
+  arrange(*verb, "", {{"--kind", "method|engine|python"}, {"--directory", "DIR"}});
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {
     new_plugin(*a);

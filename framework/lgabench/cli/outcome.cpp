@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/report/report.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::cli {
@@ -41,13 +41,38 @@ std::string joined(const Words& words) {
   return fmt::format("{}", fmt::join(quoted, " "));
 }
 
+void expect_run(const fs::path& directory) {
+  std::error_code none_to_list;
+  if (fs::exists(directory / "run.json", none_to_list)) return;
+  Words near;
+  for (const fs::path& parent : {directory, fs::path("runs")})
+    for (const auto& entry : fs::directory_iterator(parent, none_to_list))
+      if (near.size() < 10 && fs::exists(entry.path() / "run.json", none_to_list))
+        near.push_back(entry.path().string());
+  std::sort(near.begin(), near.end());
+  throw InputError(fmt::format("{}: not the directory of a run (no run.json){}{}", directory.string(),
+                               near.empty() ? "" : "; runs: ", fmt::join(near, ", ")));
+}
+
+void print_tables(const report::Report& report) {
+  std::string text =
+      printable(report::plain_text(report.run, report.summary) + report::agreement_text(report.agreements));
+  for (const char* mark : {"†", "‡", "§"}) {
+    const std::string painted_mark = painted(stdout, Colour::yellow, mark);
+    for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos; at += painted_mark.size())
+      text.replace(at, std::string(mark).size(), painted_mark);
+  }
+  put(stdout, text);
+}
+
 void print_report(const fs::path& run, bool json) {
   const report::Report report = report::write_report(run);
-  if (json)
+  if (json) {
     to_stdout("{}", read_file(run / "summary.json"));
-  else
-    to_stdout("{}{}\nreport: {}\n", report::plain_text(report.run, report.summary),
-              report::agreement_text(report.agreements), (run / "report.html").string());
+    return;
+  }
+  print_tables(report);
+  to_stdout("\nreport: {}\n", (run / "report.html").string());
 }
 
 }  // namespace lgabench::cli

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/report.hpp>
 
 namespace lgabench::cli {
 
@@ -14,6 +15,12 @@ Words command_line();
 
 /// One line that a shell splits into these words again.
 std::string joined(const Words& words);
+
+/// @throws InputError for what is no run's directory; it names runs that are near.
+void expect_run(const fs::path& directory);
+
+/// The tables of a report on stdout; on a terminal its marks have a colour.
+void print_tables(const report::Report& report);
 
 /// Writes the run's report; prints its table, or summary.json, on stdout.
 void print_report(const fs::path& run, bool json);

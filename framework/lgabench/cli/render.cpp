@@ -6,9 +6,10 @@
 #include <memory>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/picture.hpp>
-#include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -85,29 +86,45 @@ void render(const Arguments& arguments) {
 
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG");
-  CLI::Option_group* what = verb->add_option_group("What to draw");
-  what->add_option("scenario", arguments->scenario, "A scenario's id");
-  what->add_option("--gallery", arguments->gallery, "objects, textures or scenes: every one, on one sheet");
-  what->require_option(1);
+  CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
+  auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
+  verb->add_option("--gallery", arguments->gallery, "Every object, texture or scenario's scene on one sheet instead")
+      ->check(one_of("gallery", {"objects", "textures", "scenes"}))
+      ->excludes(scenario);
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
-  verb->add_option("--layout", arguments->layout, "cells, continuous or released")->capture_default_str();
-  verb->add_option("--split", arguments->split, "train, dev or test")->capture_default_str();
+  verb->add_option("--layout", arguments->layout, "How objects are placed")
+      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->capture_default_str();
+  verb->add_option("--split", arguments->split, "Whose scenes")
+      ->check(one_of("split", {"train", "dev", "test"}))
+      ->capture_default_str();
   verb->add_option("--arm", arguments->arm,
-                   "One of the scenario's tests (lgabench info SCENARIO), or train; its first");
+                   "One of the scenario's tests (lgabench info SCENARIO), or train; else its first test");
   verb->add_option("--truth", arguments->truth, "The scenario's true distributions, where released and printed differ")
-      ->check(CLI::IsMember({"released", "printed"}))
+      ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
+  arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
+  arrange(*verb, "What is drawn",
+          {{"--gallery", "objects|textures|scenes"},
+           {"--index", "N"},
+           {"--layout", "cells|continuous|released"},
+           {"--split", "train|dev|test"},
+           {"--arm", "ARM"},
+           {"--truth", "released|printed"},
+           {"--seed", "N"}});
   verb->footer(
       "Draws the scene before the first action; the mask is the one of the command's true Selection.\n"
       "Example: lgabench render red_heart --index 3 --out scene.png\n"
       "         lgabench render --gallery objects --out objects.png");
-  verb->callback([arguments] { arguments->gallery.empty() ? render(*arguments) : render_gallery(*arguments); });
+  verb->callback([arguments] {
+    if (arguments->scenario.empty() && arguments->gallery.empty())
+      throw InputError("render: expected a scenario's id, or --gallery");
+    arguments->gallery.empty() ? render(*arguments) : render_gallery(*arguments);
+  });
 }
 
 }  // namespace lgabench::cli

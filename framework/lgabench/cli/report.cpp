@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -56,15 +58,16 @@ void add_report(CLI::App& app, int& exit) {
       "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb->add_option("RUN", options->run, "The run's directory")->required();
   verb->add_option("--format", options->format, "What to print: text, md, json or csv")
-      ->check(CLI::IsMember({"text", "md", "json", "csv"}))
+      ->check(one_of("format", {"text", "md", "json", "csv"}))
       ->capture_default_str();
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
   verb->add_option("--difference", options->difference,
-                   "A,B: test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
+                   "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
                    "above A beyond chance")
       ->delimiter(',')
       ->expected(2);
+  arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
       "claims.json and figures/.\n"
@@ -74,6 +77,7 @@ void add_report(CLI::App& app, int& exit) {
       "Two rows: lgabench report runs/q1 --difference lga,my_method");
   verb->callback([options, &exit] {
     const fs::path run = options->run;
+    expect_run(run);
     const report::Report report = report::write_report(run);
     if (options->claims) {
       exit = print_claims(run, report, options->format);
@@ -84,7 +88,7 @@ void add_report(CLI::App& app, int& exit) {
       return;
     }
     if (options->format == "text")
-      to_stdout("{}{}", report::plain_text(report.run, report.summary), report::agreement_text(report.agreements));
+      print_tables(report);
     else if (options->format == "md")
       to_stdout("{}", read_file(run / "report.md"));
     else

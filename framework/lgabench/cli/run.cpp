@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -10,6 +9,8 @@
 #include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/cli/cache.hpp>
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -28,24 +29,48 @@ struct Arguments {
   std::optional<int> episodes;
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
-  bool unconfined = false, resume = false, fresh = false, no_reference = false, json = false;
+  bool unconfined = false, resume = false, fresh = false, dry_run = false, no_reference = false, json = false;
 };
 
-// 0,1,2 or 0:3 (without its end). What is no number stays a word: the reader then says what it expected there.
-Json numbers(const Words& words) {
+// 0,1,2 or 0:3 (without its end). @throws InputError for anything else, which names the option.
+Json numbers(const char* option, const Words& words) {
   Json all = Json::array();
   for (const std::string& word : words) {
     const std::size_t colon = word.find(':');
     const Json first = option_value(word.substr(0, colon)),
                last = colon == std::string::npos ? Json() : option_value(word.substr(colon + 1));
-    constexpr long long most = 10000;
-    if (first.is_number_unsigned() && last.is_number_unsigned() && first < last &&
-        last.get<long long>() - first.get<long long>() <= most)
-      for (auto n = first.get<long long>(); n < last.get<long long>(); ++n) all.push_back(n);
-    else
-      all.push_back(option_value(word));
+    const bool is_range = first.is_number_unsigned() && last.is_number_unsigned();
+    if (!is_range && (!first.is_number_integer() || colon != std::string::npos))
+      throw InputError(fmt::format(
+          "{}: expected whole numbers, such as 10,50, or a range, such as 0:3 for 0,1,2; got \"{}\"", option, word));
+    if (!is_range) {
+      all.push_back(first);
+      continue;
+    }
+    constexpr std::uint64_t most = 10000;
+    const auto begin = first.get<std::uint64_t>(), end = last.get<std::uint64_t>();
+    if (begin >= end || end - begin > most)
+      throw InputError(fmt::format("{}: expected FIRST:END, END not included, with 1 to {} numbers; {} has {}", option,
+                                   most, word, begin < end ? end - begin : 0));
+    for (auto n = begin; n < end; ++n) all.push_back(n);
   }
   return all;
+}
+
+constexpr const char* command_line_place = "command line";
+
+// "--demos: expected each value once" for "command line: /demonstrations/1: expected each value once".
+std::string by_option(const std::string& complaint) {
+  for (const auto& [member, option] : {std::pair{"methods", "--methods"},
+                                       {"engines", "--engines"},
+                                       {"scenarios", "--scenarios"},
+                                       {"layouts", "--layout"},
+                                       {"demonstrations", "--demos"},
+                                       {"seeds", "--seeds"},
+                                       {"episodes", "--episodes"}})
+    if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
+      return option + complaint.substr(complaint.find(": ", complaint.find('/')));
+  return complaint;
 }
 
 // The command line's part of the grid, checked by the same reader as a suite's file.
@@ -58,10 +83,15 @@ Grid grid_of(const Arguments& a, const Suite& suite) {
   give("engines", a.engines);
   give("scenarios", a.scenarios);
   give("layouts", a.layouts);
-  if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers(a.demonstrations);
-  if (!a.seeds.empty()) overrides["seeds"] = numbers(a.seeds);
+  if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
+  if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
   if (a.episodes) overrides["episodes"] = *a.episodes;
-  Grid grid = apply(JsonReader(overrides, "command line"), preset_grid(suite, a.preset));
+  Grid grid = preset_grid(suite, a.preset);
+  try {
+    grid = apply(JsonReader(overrides, command_line_place), grid);
+  } catch (const InputError& e) {
+    throw InputError(by_option(e.what()));
+  }
   grid.smoke |= a.limit != 0;
   return grid;
 }
@@ -77,13 +107,6 @@ Json options_of(const Words& settings) {
         option_value(setting.substr(equals + 1));
   }
   return options;
-}
-
-fs::path default_cache() {
-  for (const auto& [variable, below] :
-       {std::pair{"LGABENCH_CACHE", ""}, {"XDG_CACHE_HOME", "lgabench"}, {"HOME", ".cache/lgabench"}})
-    if (const char* base = std::getenv(variable); base && *base) return fs::path(base) / below;
-  return fs::temp_directory_path() / "lgabench-cache";
 }
 
 Json participant_hashes(const std::vector<Participant>& participants) {
@@ -119,6 +142,34 @@ std::string resuming_command(const Arguments& a, const fs::path& out) {
   if (a.out.empty()) words.insert(words.end(), {"--out", out.string()});
   words.push_back("--resume");
   return joined(words);
+}
+
+// Where --resume goes on: where the run would be, or was with another build. It begins none.
+fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
+  const fs::path there = fs::exists(plan.out / "run.json") ? plan.out : earlier_run(plan.out, suffix, plan.request);
+  if (there.empty())
+    throw InputError(
+        fmt::format("--resume: no run of this command is in {}; without --resume it begins one of {} cells",
+                    plan.out.parent_path().string(), plan.cells.size()));
+  to_stderr("going on in {}\n", there.string());
+  return there;
+}
+
+// What --dry-run says.
+int print_forecast(const RunPlan& plan, const Forecast& all) {
+  to_stdout("{}: {} cells, {} there, {} to compute\n", plan.out.string(), all.cells, all.there, all.cells - all.there);
+  if (all.cells < plan.cells.size())
+    to_stdout("shard {}/{} of a run of {} cells\n", plan.shard.index, plan.shard.count, plan.cells.size());
+  std::size_t width = 3;
+  for (const Forecast::Row& row : all.rows) width = std::max(width, row.name.size());
+  to_stdout("\n{:<{}}  cells  there    one core  according to\n", "row", width);
+  for (const Forecast::Row& row : all.rows)
+    to_stdout("{:<{}}  {:5}  {:5}  {:>10}  {}\n", row.name, width, row.cells, row.there, duration_text(row.seconds),
+              row.based_on.empty() ? "all there" : row.based_on);
+  to_stdout("\nabout {} with {} worker{}\n", duration_text(all.wall_s), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
+  to_stdout("disk: {} in {}, and at most {} of demonstrations in {}\n", size_text(all.run_bytes), plan.out.string(),
+            size_text(all.cache_bytes), plan.cache.string());
+  return ok;
 }
 
 void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
@@ -167,11 +218,12 @@ int run(Arguments a) {
                        {"limit", a.limit}});
   plan.command = joined(command_line());
   plan.out = a.out;
-  if (a.out.empty())
-    plan.out =
-        fs::path("runs") /
-        fmt::format("{}{}-{}{}", suite.id, a.preset.empty() ? "" : "-" + a.preset, run_hash(plan.cells, catalogue),
-                    plan.shard.count == 1 ? "" : fmt::format("-{}of{}", plan.shard.index, plan.shard.count));
+  if (a.out.empty()) {
+    const std::string suffix = plan.shard.count == 1 ? "" : fmt::format("-{}of{}", plan.shard.index, plan.shard.count);
+    plan.out = fs::path("runs") / fmt::format("{}{}-{}{}", suite.id, a.preset.empty() ? "" : "-" + a.preset,
+                                              run_hash(plan.cells, catalogue), suffix);
+    if (a.resume) plan.out = run_to_resume(plan, suffix);
+  }
   plan.cache = a.cache.empty() ? default_cache() : fs::path(a.cache);
   plan.existing = a.fresh ? Existing::fresh : a.resume ? Existing::resume : Existing::same;
   plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -179,6 +231,7 @@ int run(Arguments a) {
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
 
+  if (a.dry_run) return print_forecast(plan, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
@@ -228,11 +281,14 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
-  verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
+  add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
   verb->add_option("--cache", a->cache,
                    "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
-  auto* resume = verb->add_flag("--resume", a->resume, "Go on in --out; cells of another build are computed again");
+  auto* resume =
+      verb->add_flag("--resume", a->resume,
+                     "Go on with the run in --out, else with that of the same command; cells of another build "
+                     "are computed again");
   verb->add_flag("--fresh", a->fresh, "Drop the run that is in --out")->excludes(resume);
   verb->add_option("--limit", a->limit, "Only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
@@ -265,7 +321,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--truth", a->truth,
                    "The true distributions: those that the paper's authors released with their code, or those printed "
                    "in its appendix, where they differ")
-      ->check(CLI::IsMember({"released", "printed"}))
+      ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--humans", a->humans,
                    "A directory of participants' .json files: methods that ask people then have a cell for each");
@@ -277,6 +333,37 @@ void add_run(CLI::App& app, int& exit) {
       ->type_name("KEY");
   verb->add_flag("--no-reference", a->no_reference, "Without the rows constant_action, random_object and oracle");
   verb->add_flag("--json", a->json, "Print summary.json instead of the table");
+  verb->add_flag("--dry-run", a->dry_run,
+                 "Compute nothing: say how many cells there are, how long they take, and disk");
+  arrange(*verb, "", {{"suite", "SUITE"}});
+  arrange(*verb, "What is computed",
+          {{"--preset", "PRESET"},
+           {"--methods", "METHOD,..."},
+           {"--engines", "ENGINE,..."},
+           {"--scenarios", "SCENARIO,..."},
+           {"--layout", "LAYOUT,..."},
+           {"--demos", "N,..."},
+           {"--seeds", "N,..."},
+           {"--episodes", "N"},
+           {"--set", "M.OPTION=VALUE"},
+           {"--answers", "SOURCE"},
+           {"--model", "MODEL"},
+           {"--cassette", "FILE"},
+           {"--max-queries", "N"},
+           {"--truth", "released|printed"},
+           {"--humans", "DIR"},
+           {"--no-reference", ""}});
+  arrange(
+      *verb, "How much of it",
+      {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});
+  arrange(*verb, "With what",
+          {{"--jobs", "N"},
+           {"--timeout", "SECONDS"},
+           {"--memory", "GIB"},
+           {"--plugin-path", "PATH"},
+           {"--python", "PROGRAM"},
+           {"--unconfined", ""}});
+  arrange(*verb, "Where it goes", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});
   verb->footer(
       "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
       "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
@@ -284,8 +371,7 @@ void add_run(CLI::App& app, int& exit) {
       "With a model asked now: lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl\n"
       "  (the server named by OPENAI_BASE_URL, any that follows its API, with the key in OPENAI_API_KEY)\n"
       "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
-      "as\n"
-      "lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
+      "as lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &exit] { exit = run(*a); });
 }

@@ -11,7 +11,8 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
-#include <lgabench/cli/verbs.hpp>
+#include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/help.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 
@@ -128,12 +129,22 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
 }
 
+// Words that nobody recorded answers for can be asked about.
+Selection selected(const Asked& asked, LanguageModel& model) {
+  try {
+    return select_features(asked.command, asked.space, model);
+  } catch (const InputError& e) {
+    if (!asked.answers_of.empty() || dynamic_cast<const ChatLanguageModel*>(&model)) throw;
+    throw InputError(fmt::format("{}; --answers openai asks a model (lgabench select --help)", e.what()));
+  }
+}
+
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
   if (!model)
     model = &recorded.emplace(asked.space, asked.answers_of,
                               arguments.answers == "recorded" ? asked.recorded : arguments.answers);
-  const Selection selection = select_features(asked.command, asked.space, *model);
+  const Selection selection = selected(asked, *model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
@@ -160,27 +171,28 @@ void select(const Asked& asked, LanguageModel* model, const Arguments& arguments
 
 void add_select(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("select", "Ask which features matter for a command, and print the Selection");
+  CLI::App* verb = app.add_subcommand("select", worker_summary("select"));
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
   verb->add_option("--answers", arguments->answers,
                    "recorded: the scenario's own; gpt4_released, gpt4_study, claude: theirs; openai: ask a server now; "
                    "cassette: "
                    "what it said before")
-      ->check(CLI::IsMember([] {
-        std::vector<std::string> words = recorded_sources();
-        words.insert(words.end(), {"recorded", "openai", "cassette"});
-        return words;
-      }()))
+      ->check(one_of("answers",
+                     [] {
+                       std::vector<std::string> words = recorded_sources();
+                       words.insert(words.end(), {"recorded", "openai", "cassette"});
+                       return words;
+                     }()))
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
                    "What the Selection is compared with, where released and printed differ")
-      ->check(CLI::IsMember({"released", "printed"}))
+      ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
-  verb->add_option("--task", arguments->task, "Of a command that is no scenario's")
-      ->check(CLI::IsMember({"pick_and_place", "rotate", "sweep"}))
+  verb->add_option("--task", arguments->task, "The task, where the command is not one of a scenario")
+      ->check(one_of("task", {"pick_and_place", "rotate", "sweep"}))
       ->capture_default_str();
-  verb->add_option("--space", arguments->space, "Feature space of a command that is no scenario's")
+  verb->add_option("--space", arguments->space, "The feature space, where the command is not one of a scenario")
       ->capture_default_str();
   verb->add_option("--cassette", arguments->cassette, "File of a server's replies; grows as it is asked");
   verb->add_option("--model", arguments->model, "The server's model; of a cassette, by default its only one");
@@ -191,8 +203,20 @@ void add_select(CLI::App& app, int&) {
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
+  arrange(*verb, "", {{"command", "COMMAND"}});
+  arrange(*verb, "What is asked",
+          {{"--suite", "SUITE"},
+           {"--task", "pick_and_place|rotate|sweep"},
+           {"--space", "SPACE"},
+           {"--truth", "released|printed"}});
+  arrange(*verb, "Who answers",
+          {{"--answers", "SOURCE"},
+           {"--model", "MODEL"},
+           {"--cassette", "FILE"},
+           {"--concurrency", "N"},
+           {"--max-queries", "N"}});
   verb->footer(
-      "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one\n"
+      "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one "
       "question for each object type and texture. What was interrupted goes on from the cassette.\n"
       "Example: lgabench select red_heart\n"
       "For lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai --model M --cassette "

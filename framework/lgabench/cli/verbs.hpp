@@ -3,7 +3,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench::cli {
 
@@ -29,6 +35,7 @@ void add_compare(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_new_plugin(CLI::App& app, int& exit);
 void add_check_plugin(CLI::App& app, int& exit);
+void add_cache(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);
@@ -47,6 +54,23 @@ inline CLI::Validator within(double low, double high) {
         return number ? std::string() : fmt::format("expected a number from {} to {}, got {}", low, high, word);
       },
       fmt::format("FLOAT in [{} - {}]", low, high), "");
+}
+
+/// A check for an option: one of those words.
+inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
+  return CLI::Validator(
+      [what = std::move(what), known = std::move(known)](const std::string& word) {
+        const bool is_known = std::find(known.begin(), known.end(), word) != known.end();
+        return is_known ? std::string() : none_named(what, word, known);
+      },
+      "", "");
+}
+
+/// --plugin-path, as every verb has it.
+inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths) {
+  verb.add_option("--plugin-path", paths, "Look for plugins here too: a directory, or a .so file; may be given again")
+      ->type_name("PATH")
+      ->allow_extra_args(false);
 }
 
 /// Parses, runs the verb's callback, turns typed errors into one line on stderr and an exit status.

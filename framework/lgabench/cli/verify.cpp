@@ -10,6 +10,8 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
@@ -226,6 +228,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
 }
 
 int verify(const Arguments& a) {
+  expect_run(a.run);
   const Json record = read_json(a.run / "run.json", Links::refused);
   const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
   if (!same_cells(version, LGABENCH_VERSION))
@@ -314,8 +317,11 @@ void add_verify(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "FILE.py:Class of methods in Python; several with commas")->delimiter(',');
   verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
-  verb->add_option("--plugin-path", a->plugin_path, "A directory of more plugins; may be given again");
+  add_plugin_path(*verb, a->plugin_path);
   verb->add_flag("--json", a->json, "Print JSON instead of lines");
+  arrange(*verb, "", {{"RUN", "RUN"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
+  arrange(*verb, "Which cells", {{"--sample", "N"}, {"--seed", "N"}, {"--all", ""}});
+  arrange(*verb, "How they are computed and judged", {{"--strict", ""}, {"--jobs", "N"}, {"--timeout", "SECONDS"}});
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\n"
       "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"

@@ -1,4 +1,5 @@
 // lgabench-worker: the process that loads plugins and engines. `lgabench` starts it; a person rarely does.
+#include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -9,9 +10,11 @@ int main(int argc, char** argv) {
   using namespace lgabench;
   flush_denormals();
   int exit = cli::ok;
-  CLI::App app("Runs one cell, or a verb that needs an engine", "lgabench-worker");
+  // A person called `lgabench`, which became this process.
+  const std::string name = argc > 0 ? lgabench::fs::path(argv[0]).filename().string() : "lgabench-worker";
+  CLI::App app("Runs one cell, or a verb that needs an engine", name);
   app.set_version_flag("--version", LGABENCH_VERSION);
-  app.require_subcommand(1);
+  app.formatter(cli::help_formatter());
   cli::add_cell(app, exit);
   cli::add_check_job(app, exit);
   cli::add_select(app, exit);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 
@@ -176,8 +177,9 @@ void JsonReader::only(const std::vector<std::string>& known) const {
   if (!value_.is_object()) fail("an object");
   for (const auto& item : value_.items())
     if (std::find(known.begin(), known.end(), item.key()) == known.end())
-      throw InputError(fmt::format("{}: {}: unknown member \"{}\", expected one of: {}", file_,
-                                   place_.empty() ? "/" : place_, item.key(), fmt::join(known, ", ")));
+      throw InputError(fmt::format("{}: {}: unknown member \"{}\"{}, expected one of: {}", file_,
+                                   place_.empty() ? "/" : place_, item.key(), suggestion(item.key(), known),
+                                   fmt::join(known, ", ")));
 }
 
 }  // namespace lgabench

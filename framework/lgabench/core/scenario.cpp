@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -214,8 +215,7 @@ std::vector<std::string> scenario_ids() {
 
 Scenario load_scenario(const std::string& id, Truth truth) {
   const auto known = scenario_ids();
-  if (std::find(known.begin(), known.end(), id) == known.end())
-    throw InputError(fmt::format("scenario \"{}\": expected one of: {}", id, fmt::join(known, ", ")));
+  if (std::find(known.begin(), known.end(), id) == known.end()) throw InputError(none_named("scenario", id, known));
   const fs::path file = data_directory() / "scenarios" / (id + ".json");
   const Json json = read_json(file);
   Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());

@@ -1,12 +1,15 @@
-#include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/progress.hpp>
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
+#include <utility>
+
+#include <lgabench/core/colour.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
@@ -28,12 +31,12 @@ std::size_t terminal_width() {
 
 }  // namespace
 
-Progress::Progress(std::size_t total) : total_(total), start_(std::chrono::steady_clock::now()) {
-  const char* kind = std::getenv("TERM");
-  terminal_ = ::isatty(STDERR_FILENO) && kind && std::string(kind) != "dumb";
-  const char* no_colour = std::getenv("NO_COLOR");
-  colour_ = terminal_ && !(no_colour && *no_colour);
-}
+Progress::Progress(std::size_t total, int jobs, std::function<double()> queued_s)
+    : total_(total),
+      jobs_(jobs),
+      queued_s_(std::move(queued_s)),
+      start_(std::chrono::steady_clock::now()),
+      terminal_(is_terminal(stderr)) {}
 
 Progress::~Progress() { wipe(); }
 
@@ -47,8 +50,18 @@ void Progress::say(const std::string& line) {
   put(stderr, printable(line) + '\n');
 }
 
-void Progress::started(std::size_t cell, const std::string& title) {
-  running_[cell] = {one_line(title), "", 0, std::chrono::steady_clock::now()};
+std::string Progress::left() const {
+  double work_s = queued_s_(), longest_s = 0;
+  for (const auto& each : running_) {
+    const double rest_s = std::max(0., each.second.expected_s - seconds_since(each.second.start));
+    work_s += rest_s;
+    longest_s = std::max(longest_s, rest_s);
+  }
+  return clock_text(std::max(work_s / jobs_, longest_s)) + " left";
+}
+
+void Progress::started(std::size_t cell, const std::string& title, double expected_s) {
+  running_[cell] = {one_line(title), "start", 0, expected_s, std::chrono::steady_clock::now()};
 }
 
 void Progress::phase(std::size_t cell, const std::string& phase, long long count) {
@@ -57,17 +70,17 @@ void Progress::phase(std::size_t cell, const std::string& phase, long long count
 }
 
 void Progress::ended(std::size_t cell, const std::string& failure) {
-  const Running& it = running_[cell];
+  const Running it = running_[cell];
+  running_.erase(cell);
   ++done_;
   if (!failure.empty()) {
     ++failed_;
     wipe();
-    put(stderr, fmt::format("{}[{}/{}] {}: {}{}\n", colour_ ? "\x1b[31m" : "", done_, total_, it.title,
-                            one_line(failure), colour_ ? "\x1b[0m" : ""));
+    const std::string line = fmt::format("[{}/{}] {}: {}", done_, total_, it.title, one_line(failure));
+    put(stderr, painted(stderr, Colour::red, line) + '\n');
   } else if (!terminal_) {
-    say(fmt::format("[{}/{}] {} {:.1f} s", done_, total_, it.title, seconds_since(it.start)));
+    say(fmt::format("[{}/{}] {} {:.1f} s; {}", done_, total_, it.title, seconds_since(it.start), left()));
   }
-  running_.erase(cell);
 }
 
 void Progress::tick() {
@@ -78,9 +91,7 @@ void Progress::tick() {
   std::string line = fmt::format("[{}{}] {}/{}", std::string(full, '#'), std::string(cells - full, '-'), done_, total_);
   if (failed_) line += fmt::format(", {} failed", failed_);
   line += " " + clock_text(elapsed);
-  if (done_)
-    line += fmt::format(", {} left",
-                        clock_text(elapsed / static_cast<double>(done_) * static_cast<double>(total_ - done_)));
+  line += ", " + left();
   for (const auto& [cell, it] : running_) {
     line += " | " + it.phase;
     if (it.count) line += fmt::format(" {}", it.count);

@@ -113,6 +113,28 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   return build;
 }
 
+fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request) {
+  constexpr std::size_t hash = 8;
+  const std::string name = wanted.filename().string(), prefix = name.substr(0, name.size() - suffix.size() - hash);
+  fs::path last;
+  std::string last_started;
+  std::error_code none_to_list;
+  for (const auto& entry : fs::directory_iterator(wanted.parent_path(), none_to_list)) {
+    const std::string other = entry.path().filename().string();
+    if (other.size() != name.size() || other.compare(0, prefix.size(), prefix) != 0 ||
+        other.compare(prefix.size() + hash, suffix.size(), suffix) != 0 || !fs::exists(entry.path() / "run.json"))
+      continue;
+    try {
+      const Json run = read_json(entry.path() / "run.json", Links::refused);
+      const std::string started = run.at("started");
+      if (run.at("request") == request && (last.empty() || started > last_started))
+        last = entry.path(), last_started = started;
+    } catch (const std::exception&) {  // no run of ours
+    }
+  }
+  return last;
+}
+
 RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing existing) : path_(path) {
   canonical(run);                                           // what is no UTF-8 is refused before anything is made
   if (existing != Existing::fresh) expect_plain_run(path);  // which removes a link, and never what it leads to

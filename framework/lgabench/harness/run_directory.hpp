@@ -31,6 +31,10 @@ std::string difference(const Json& there, const Json& wanted);
 /// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
 bool same_cells(const std::string& version, const std::string& other);
 
+/// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
+/// before `suffix` alone: another build's. "" if there is none.
+fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);
+
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other

@@ -12,6 +12,7 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/core/colour.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -227,6 +228,19 @@ std::string TimeSpent::text(int jobs) const {
                      wall_s > 0 ? 100 * workers_s / (jobs * wall_s) : 0, wall_s);
 }
 
+Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
+  std::vector<const Cell*> complete, missing;
+  Costs costs;
+  for (const Cell* cell : cells_of(plan.cells, plan.shard)) {
+    const fs::path directory = plan.out / "cells" / key(*cell);
+    const CellState state = cell_state(directory, key(*cell), build_of(*cell, catalogue));
+    const bool there = state.complete && plan.existing != Existing::fresh;
+    (there ? complete : missing).push_back(cell);
+    if (there) costs.learn(*cell, total_seconds(directory));
+  }
+  return forecast(complete, missing, costs, plan.pool.jobs);
+}
+
 Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
               const fs::path& answers, const fs::path& scratch) {
   Json job{{"cell", to_json(cell)},
@@ -254,7 +268,15 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   Schedule schedule(missing);
   for (const Cell* cell : complete) schedule.learn(*cell, total_seconds(directory.cell(key(*cell))));
 
-  Progress progress(missing.size());
+  const Forecast expected = forecast(complete, missing, schedule.costs(), plan.pool.jobs);
+  if (!missing.empty()) {
+    constexpr double long_s = 600;
+    const bool is_long = expected.wall_s > long_s;
+    put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs)) +
+                    (is_long ? "; --dry-run shows of what\n" : "\n"));
+  }
+
+  Progress progress(missing.size(), plan.pool.jobs, [&schedule] { return schedule.left_s(); });
   std::vector<const Cell*> played(missing.size());
   std::vector<fs::path> scratch(missing.size());
   const Scratch hosts("hosts");  // not below the run's directory: a method does not learn where that is
@@ -268,7 +290,9 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   };
   std::set<std::string> failed;
   PoolEvents events;
-  events.started = [&](std::size_t i) { progress.started(i, played[i]->title()); };
+  events.started = [&](std::size_t i) {
+    progress.started(i, played[i]->title(), schedule.costs().expected_seconds(*played[i]));
+  };
   events.progress = [&](std::size_t i, const std::string& phase, long long n) { progress.phase(i, phase, n); };
   events.tick = [&] { progress.tick(); };
   events.ended = [&](std::size_t i, const WorkerEnd& end) {

@@ -8,6 +8,7 @@
 
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/forecast.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/worker_pool.hpp>
@@ -63,5 +64,8 @@ Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,
 /// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.
 /// @throws InputError, with nothing overwritten, if the directory cannot be used; PluginError for a missing plugin.
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue);
+
+/// What run_suite() would have to do. Reads the run directory, if it is there, and changes nothing.
+Forecast forecast(const RunPlan& plan, const Catalogue& catalogue);
 
 }  // namespace lgabench

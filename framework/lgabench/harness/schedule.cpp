@@ -4,15 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <numeric>
 #include <tuple>
 
 namespace lgabench {
-namespace {
-
-// A row that learns nothing still plays its episodes.
-double size(const Cell& cell) { return std::max(1, cell.demonstrations); }
-
-}  // namespace
 
 Shard read_shard(const std::string& text) {
   Shard shard;
@@ -35,21 +30,22 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard) {
   return dealt;
 }
 
-void Schedule::learn(const Cell& cell, double seconds) {
-  Cost& cost = known_[cell.method.name];
-  cost.seconds += seconds;
-  cost.demonstrations += size(cell);
+Schedule::Schedule(const std::vector<const Cell*>& cells) {
+  for (const Cell* cell : cells) left_.push_back({cell, usual_seconds(*cell)});
+}
+
+double Schedule::left_s() const {
+  return std::accumulate(left_.begin(), left_.end(), 0.,
+                         [this](double sum, const Waiting& one) { return sum + expected_s(one); });
 }
 
 const Cell* Schedule::next() {
-  const auto expected = [this](const Cell* cell) {
-    const auto known = known_.find(cell->method.name);
-    if (known == known_.end()) return std::pair(true, size(*cell));
-    return std::pair(false, size(*cell) * known->second.seconds / known->second.demonstrations);
+  const auto urgency = [this](const Waiting& one) {
+    return std::pair(!costs_.knows(one.cell->method.name), expected_s(one));
   };
   const auto longest = std::max_element(left_.begin(), left_.end(),
-                                        [&](const Cell* a, const Cell* b) { return expected(a) < expected(b); });
-  const Cell* cell = *longest;
+                                        [&](const Waiting& a, const Waiting& b) { return urgency(a) < urgency(b); });
+  const Cell* cell = longest->cell;
   left_.erase(longest);
   return cell;
 }

@@ -1,10 +1,10 @@
 // Which cells are played where, and in which order. Neither changes a result.
 #pragma once
-#include <map>
 #include <string>
 #include <vector>
 
 #include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/costs.hpp>
 
 namespace lgabench {
 
@@ -21,24 +21,30 @@ Shard read_shard(const std::string& text);
 std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard);
 
 /// Gives out cells, those that are expected to take longest first, so that no worker ends long after the others. It
-/// learns from the cells that are done how long each row's method takes for a demonstration.
+/// learns from the cells that are done how long each row's take.
 class Schedule {
  public:
   /// The cells must outlive it.
-  explicit Schedule(std::vector<const Cell*> cells) : left_(std::move(cells)) {}
+  explicit Schedule(const std::vector<const Cell*>& cells);
 
   /// What a cell of this run took, played now or earlier.
-  void learn(const Cell& cell, double seconds);
-  /// The next one: of the rows that nothing is known of yet the one with most demonstrations, then by expected time.
+  void learn(const Cell& cell, double seconds) { costs_.learn(cell, seconds); }
+  const Costs& costs() const { return costs_; }
+  /// Seconds of one worker for all that were not given out yet.
+  double left_s() const;
+  /// The next one: of the rows that nothing is known of yet the one that usually takes longest, then by expected time.
   /// @pre not all were given.
   const Cell* next();
 
  private:
-  struct Cost {
-    double seconds = 0, demonstrations = 0;
+  struct Waiting {
+    const Cell* cell;
+    double usual_s;
   };
-  std::vector<const Cell*> left_;
-  std::map<std::string, Cost> known_;  // by the row's name
+  double expected_s(const Waiting& one) const { return costs_.expected_seconds(one.cell->method.name, one.usual_s); }
+
+  std::vector<Waiting> left_;
+  Costs costs_;
 };
 
 }  // namespace lgabench

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
 namespace {
@@ -27,11 +28,12 @@ std::vector<T> distinct(const JsonReader& list, Read read) {
   return all;
 }
 
-std::vector<std::string> names(const JsonReader& list, const std::vector<std::string>& known) {
+std::vector<std::string> names(const JsonReader& list, const char* what = "",
+                               const std::vector<std::string>& known = {}) {
   return distinct<std::string>(list, [&](const JsonReader& element) {
     const std::string name = element.string();
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
-      element.fail(fmt::format("one of {}", fmt::join(known, ", ")));
+      throw InputError(fmt::format("{}: {}: {}", element.file(), element.place(), none_named(what, name, known)));
     return name;
   });
 }
@@ -67,10 +69,11 @@ Json to_json(const Grid& grid) {
 
 Grid apply(const JsonReader& overrides, Grid grid) {
   overrides.only(grid_members);
-  if (overrides.has("scenarios")) grid.scenarios = names(overrides.at("scenarios"), scenario_ids());
-  if (overrides.has("layouts")) grid.layouts = names(overrides.at("layouts"), {"cells", "continuous", "released"});
-  if (overrides.has("engines")) grid.engines = names(overrides.at("engines"), {});
-  if (overrides.has("methods")) grid.methods = names(overrides.at("methods"), {});
+  if (overrides.has("scenarios")) grid.scenarios = names(overrides.at("scenarios"), "scenario", scenario_ids());
+  if (overrides.has("layouts"))
+    grid.layouts = names(overrides.at("layouts"), "layout", {"cells", "continuous", "released"});
+  if (overrides.has("engines")) grid.engines = names(overrides.at("engines"));
+  if (overrides.has("methods")) grid.methods = names(overrides.at("methods"));
   if (overrides.has("demonstrations"))
     grid.demonstrations = distinct<int>(overrides.at("demonstrations"),
                                         [](const JsonReader& n) { return static_cast<int>(n.integer(1, most)); });
@@ -99,7 +102,7 @@ Suite load_suite(const std::string& id) {
   std::error_code none_to_list;
   const auto known = json_names(data_directory() / "suites", none_to_list);
   if (!is_file && std::find(known.begin(), known.end(), id) == known.end())
-    throw InputError(fmt::format("suite \"{}\": expected one of: {}, or a .json file", id, fmt::join(known, ", ")));
+    throw InputError(none_named("suite", id, known) + ", or a .json file");
   const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
   const Json json = read_json(file);
   const JsonReader reader(json, file.string());
@@ -134,7 +137,7 @@ Grid preset_grid(const Suite& suite, const std::string& preset) {
   if (!suite.presets.contains(preset)) {
     std::vector<std::string> known;
     for (const auto& item : suite.presets.items()) known.push_back(item.key());
-    throw InputError(fmt::format("preset \"{}\": {} has: {}", preset, suite.file, fmt::join(known, ", ")));
+    throw InputError(fmt::format("{}: {}", suite.file, none_named("preset", preset, known)));
   }
   return apply(JsonReader(suite.presets[preset], suite.file, "/presets/" + preset), suite.grid);
 }

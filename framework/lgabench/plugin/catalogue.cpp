@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
@@ -24,10 +25,11 @@ const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id
     if (plugin.kind == kind) known.push_back(plugin.id);
   }
   std::sort(known.begin(), known.end());
-  std::string message = fmt::format("no {} \"{}\", expected one of: {}", kind, id, fmt::join(known, ", "));
+  std::string message = none_named(kind, id, known);
   for (const auto& [file, reason] : refused)
-    if (file.stem() == id) message += fmt::format("; {} was refused: {}", file.string(), reason);
-  throw PluginError(message);
+    if (file.stem() == id || file.extension() != ".so")  // of that name, or a whole directory
+      message += fmt::format("; {} was refused: {}", file.string(), reason);
+  throw PluginError(message + "; other plugins are found with --plugin-path DIR");
 }
 
 std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra) {
@@ -48,8 +50,12 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories) {
     std::error_code error;
     if (!seen.insert(fs::weakly_canonical(directory, error)).second) continue;
     std::vector<fs::path> files;
-    for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    const bool is_file = directory.extension() == ".so" && fs::is_regular_file(directory);
+    if (is_file) files.push_back(directory);
+    for (fs::directory_iterator it = is_file ? fs::directory_iterator() : fs::directory_iterator(directory, error), end;
+         !error && it != end; it.increment(error))
       if (it->path().extension() == ".so") files.push_back(it->path());
+    if (!error && files.empty()) catalogue.refused.push_back({directory, "no plugin (*.so) is in it"});
     if (error) {
       catalogue.refused.push_back({directory, "cannot be read: " + error.message()});
       continue;

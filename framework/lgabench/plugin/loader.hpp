@@ -47,10 +47,12 @@ struct Catalogue {
   const PluginInfo& find(const std::string& kind, const std::string& id) const;
 };
 
-/// Shipped plugins, $LGABENCH_PLUGIN_PATH (colon-separated), then `extra` (from the command line).
+/// Where plugins are looked for: the shipped ones', $LGABENCH_PLUGIN_PATH (colon-separated), then `extra` (from the
+/// command line). Directories, or .so files.
 std::vector<fs::path> plugin_directories(const std::vector<fs::path>& extra = {});
 
-/// Reads each *.so of the directories, in their order and by name within each. What is refused does not stop the rest;
+/// Reads each *.so of the directories, in their order and by name within each; one may also be a .so itself. What is
+/// refused does not stop the rest, and a directory without a *.so is refused;
 /// of two with the same kind and id the later is refused.
 Catalogue scan_plugins(const std::vector<fs::path>& directories);
 

@@ -1,0 +1,60 @@
+#include <lgabench/cli/commands.hpp>
+
+#include <lgabench/cli/help.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr const char* surroundings =
+    "Environment\n"
+    "  LGABENCH_CACHE            where demonstrations are kept; else ~/.cache/lgabench\n"
+    "  LGABENCH_PLUGIN_PATH      directories of more plugins, with colons between them\n"
+    "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
+    "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
+    "  OPENAI_BASE_URL, OPENAI_API_KEY\n"
+    "                            the server that `--answers openai` asks\n"
+    "  NO_COLOR                  if set, no colour on a terminal\n"
+    "\n"
+    "Exit status\n"
+    "  0    all went well\n"
+    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`\n"
+    "  2    a command line, a file or a directory is not as expected; nothing was overwritten\n"
+    "  3    a cell failed\n"
+    "  4    a plugin is missing or was refused\n"
+    "  5    `verify`: other bytes, of another build, processor or data, no more different than chance allows\n"
+    "  130  interrupted; what was finished is kept\n"
+    "\n"
+    "Examples\n"
+    "  lgabench run q1 --preset smoke\n"
+    "  lgabench run --help";
+
+}  // namespace
+
+void add_commands(CLI::App& app, int& exit) {
+  app.formatter(help_formatter());
+  app.footer(surroundings);
+  add_list(app, exit);
+  add_info(app, exit);
+  add_run(app, exit);
+  add_report(app, exit);
+  add_compare(app, exit);
+  add_verify(app, exit);
+  add_merge(app, exit);
+  add_new_plugin(app, exit);
+  add_check_plugin(app, exit);
+  add_cache(app, exit);
+}
+
+void arrange_commands(CLI::App& app) {
+  const std::pair<const char*, std::vector<const char*>> titles[] = {
+      {"To look at what there is", {"list", "info", "select", "render", "demos"}},
+      {"To run and to compare", {"run", "report", "compare", "verify", "merge"}},
+      {"To add a method or an engine", {"new-plugin", "check-plugin"}},
+      {"To clean up", {"cache"}}};
+  for (const auto& [title, names] : titles)
+    for (const char* name : names)
+      for (CLI::App* verb : app.get_subcommands([&](CLI::App* one) { return one->get_name() == name; }))
+        verb->group(title);
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,32 @@
+// All commands of `lgabench`, as a person sees them.
+#pragma once
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <lgabench/cli/verbs.hpp>
+
+namespace lgabench::cli {
+
+inline constexpr const char* about = "A benchmark of state abstraction in imitation learning";
+
+/// Those that need an engine and are lgabench-worker's, with what they do.
+inline constexpr std::array<std::pair<const char*, const char*>, 3> worker_verbs{{
+    {"select", "Ask which features matter for a command, and print the Selection"},
+    {"demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5"},
+    {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG"},
+}};
+/// What a verb of worker_verbs does.
+inline const char* worker_summary(std::string_view verb) {
+  for (const auto& [name, summary] : worker_verbs)
+    if (name == verb) return summary;
+  return "";
+}
+
+/// Adds all others, and what --help says around them.
+void add_commands(CLI::App& app, int& exit);
+
+/// Puts the commands that are there below their titles.
+void arrange_commands(CLI::App& app);
+
+}  // namespace lgabench::cli

@@ -1,0 +1,143 @@
+#include <lgabench/cli/help.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr std::size_t widest = 100, text_column = 28;
+
+OptionHelp help_of(const CLI::Option& option) {
+  OptionHelp help;
+  for (const std::string& name : option.get_snames()) help.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) help.names.push_back("--" + name);
+  // CLI11 puts what its checks expect after a colon.
+  if (option.get_type_size() != 0) help.takes = option.get_type_name().substr(0, option.get_type_name().find(':'));
+  help.text = option.get_description();
+  if (const std::string& usual = option.get_default_str(); !usual.empty())
+    help.text += fmt::format(" (default: {})", usual);
+  help.required = option.get_required();
+  help.repeated = option.get_expected_max() > 1 && help.names.empty();
+  return help;
+}
+
+// "  NAME     text", the text below the name where that is long.
+std::string entry(const std::string& name, const std::string& text) {
+  std::string line = "  " + name;
+  if (line.size() + 2 > text_column)
+    line = line + "\n" + std::string(text_column, ' ');
+  else
+    line.resize(text_column, ' ');
+  return wrapped(line + text, text_column) + "\n";
+}
+
+std::string named(const OptionHelp& option) {
+  if (option.names.empty()) return option.takes;
+  return fmt::format("{}{}{}", fmt::join(option.names, ", "), option.takes.empty() ? "" : " ", option.takes);
+}
+
+class HelpFormatter : public CLI::FormatterBase {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
+    std::string help = wrapped(app->get_description(), 0) + "\n\nUsage: " + usage_line(*app, name) + "\n";
+    for (const auto& [title, commands] : command_groups(*app)) {
+      help += "\n" + title + "\n";
+      for (const CLI::App* command : commands) help += entry(command->get_name(), command->get_description());
+    }
+    for (const auto& [title, options] : option_groups(*app)) {
+      help += "\n" + (title.empty() ? "" : title + "\n");
+      for (const OptionHelp& option : options) help += entry(named(option), option.text);
+    }
+    if (!app->get_footer().empty()) help += "\n" + wrapped(app->get_footer(), 2) + "\n";
+    return help;
+  }
+};
+
+}  // namespace
+
+void arrange(CLI::App& verb, const char* title, std::initializer_list<std::pair<const char*, const char*>> options) {
+  for (const auto& [name, takes] : options) {
+    CLI::Option* option = verb.get_option(name);
+    if (*title) option->group(title);
+    if (*takes) option->type_name(takes);
+  }
+}
+
+std::vector<OptionGroup> option_groups(const CLI::App& app) {
+  std::vector<OptionGroup> groups{{"", {}}};
+  std::vector<OptionHelp> others;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;  // hidden
+    if (option->nonpositional() && option->get_group() == "Options") {
+      others.push_back(help_of(*option));
+      continue;
+    }
+    const std::string title = option->nonpositional() ? option->get_group() : "";
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const OptionGroup& g) { return g.title == title; });
+    if (group == groups.end()) {
+      groups.push_back({title, {}});
+      group = groups.end() - 1;
+    }
+    group->options.push_back(help_of(*option));
+  }
+  if (groups.front().options.empty()) groups.erase(groups.begin());
+  const bool titled = !groups.empty() && !groups.back().title.empty();
+  if (!others.empty()) groups.push_back({titled ? "Other options" : "Options", others});
+  return groups;
+}
+
+std::vector<CommandGroup> command_groups(const CLI::App& app) {
+  std::vector<CommandGroup> groups;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_group().empty()) continue;  // hidden
+    const std::string title = command->get_group() == "Subcommands" ? "Other commands" : command->get_group();
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const CommandGroup& g) { return g.title == title; });
+    if (group == groups.end()) {
+      groups.push_back({title, {}});
+      group = groups.end() - 1;
+    }
+    group->commands.push_back(command);
+  }
+  return groups;
+}
+
+std::string usage_line(const CLI::App& app, const std::string& name) {
+  std::string usage = name;
+  if (!command_groups(app).empty()) usage += " COMMAND";
+  usage += " [OPTIONS]";
+  for (const OptionGroup& group : option_groups(app))
+    if (group.title.empty())
+      for (const OptionHelp& one : group.options) {
+        const std::string word = one.takes + (one.repeated ? "..." : "");
+        usage += one.required ? " " + word : " [" + word + "]";
+      }
+  return usage;
+}
+
+std::string wrapped(std::string_view text, std::size_t indent) {
+  std::string out;
+  while (true) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    std::size_t room = widest;
+    while (line.size() > room) {
+      std::size_t cut = line.rfind(' ', room);
+      if (cut == line.npos || line.find_first_not_of(' ') > cut) cut = std::min(line.find(' ', room), line.size());
+      out += line.substr(0, cut);
+      line.remove_prefix(std::min(cut + 1, line.size()));
+      if (line.empty()) break;
+      out += "\n" + std::string(indent, ' ');
+      room = widest - indent;
+    }
+    out += line;
+    if (end == text.size()) return out;
+    out += '\n';
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
+
+}  // namespace lgabench::cli

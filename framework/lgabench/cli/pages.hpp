@@ -1,0 +1,13 @@
+// The man page and the completions of shells, from the words of --help.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace lgabench::cli {
+
+/// Of an app with all its commands: a page for man(1), and what bash and zsh complete by.
+std::string man_page(const CLI::App& app);
+std::string bash_completion(const CLI::App& app);
+std::string zsh_completion(const CLI::App& app);
+
+}  // namespace lgabench::cli

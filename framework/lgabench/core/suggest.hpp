@@ -1,0 +1,20 @@
+// What a person may have meant by a name that there is not.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lgabench {
+
+/// The one of `known` that `word` is a slip away from: letters left out, added, exchanged with another or with their
+/// neighbour, one for each three of the word; or the only one that begins with it. "" for none, or for several that are
+/// equally near.
+std::string nearest(std::string_view word, const std::vector<std::string>& known);
+
+/// " (did you mean "heart"?)", or "" where nothing is near.
+std::string suggestion(std::string_view word, const std::vector<std::string>& known);
+
+/// "no scenario "hart" (did you mean "heart"?), expected one of: heart, letter"
+std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace lgabench

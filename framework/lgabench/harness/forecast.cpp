@@ -1,0 +1,75 @@
+#include <lgabench/harness/forecast.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <thread>
+#include <tuple>
+
+namespace lgabench {
+namespace {
+
+// Bytes on the disk, as found in runs of 0.2.0.
+constexpr double cell_bytes = 28e3, episode_bytes = 400, demonstration_bytes = 21e3;
+
+double number(const Json& scenario, const char* list) {
+  return static_cast<double>(scenario.value(list, Json::array()).size());
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const auto minutes = static_cast<long long>(seconds / 60 + .5);
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  return minutes < 60 ? fmt::format("{} min", minutes) : fmt::format("{} h {} min", minutes / 60, minutes % 60);
+}
+
+std::string size_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} KB", bytes / 1e3);
+  return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+std::string Forecast::text(int jobs) const {
+  return fmt::format("{} cell{} to compute, {} {} there: about {} with {} worker{}", cells - there,
+                     cells - there == 1 ? "" : "s", there, there == 1 ? "is" : "are", duration_text(wall_s), jobs,
+                     jobs == 1 ? "" : "s");
+}
+
+Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,
+                  int jobs) {
+  Forecast all;
+  double work_s = 0, longest_s = 0;
+  const auto row_of = [&all](const Cell& cell) -> Forecast::Row& {
+    for (Forecast::Row& row : all.rows)
+      if (row.name == cell.method.name) return row;
+    all.rows.push_back({cell.method.name, 0, 0, 0, ""});
+    return all.rows.back();
+  };
+  // A cell of fewer demonstrations takes the first of those that one of more takes.
+  std::map<std::tuple<std::string, std::string, std::string, std::string, std::uint64_t>, double> demonstrations;
+  const auto add = [&](const Cell& cell, bool there) {
+    Forecast::Row& row = row_of(cell);
+    ++row.cells, ++all.cells;
+    row.there += there;
+    all.there += there;
+    if (there) return;
+    bool of_its_own = false;
+    const double seconds = costs.expected_seconds(row.name, usual_seconds(cell, &of_its_own));
+    row.based_on = costs.knows(row.name) ? "this run's cells" : of_its_own ? "cells measured elsewhere" : "LGA's cells";
+    row.seconds += seconds;
+    work_s += seconds;
+    longest_s = std::max(longest_s, seconds);
+    all.run_bytes += cell_bytes + episode_bytes * cell.episodes * number(cell.scenario, "tests");
+    double& most = demonstrations[{cell.scenario_id(), cell.layout, cell.engine, row.name, cell.training_seed}];
+    most = std::max(most, cell.demonstrations * number(cell.scenario, "commands"));
+  };
+  for (const Cell* cell : missing) add(*cell, false);
+  for (const Cell* cell : complete) add(*cell, true);
+  for (const auto& each : demonstrations) all.cache_bytes += demonstration_bytes * each.second;
+  const double cores = std::min<double>(jobs, std::max(1u, std::thread::hardware_concurrency()));
+  all.wall_s = std::max(work_s / cores, longest_s);
+  return all;
+}
+
+}  // namespace lgabench

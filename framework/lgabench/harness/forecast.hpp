@@ -1,0 +1,37 @@
+// What a run has still to do, before it does it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/harness/costs.hpp>
+
+namespace lgabench {
+
+/// Cells to compute, and what that is expected to take.
+struct Forecast {
+  struct Row {
+    std::string name;
+    std::size_t cells = 0, there = 0;  // all of them, and those that are finished
+    double seconds = 0;                // of one core, for the others
+    std::string based_on;              // whose cells took so long
+  };
+  std::vector<Row> rows;  // in the order of the cells
+  std::size_t cells = 0, there = 0;
+  double wall_s = 0;
+  double run_bytes = 0, cache_bytes = 0;  // more on the disk; of the cache at most
+
+  /// "1365 cells to compute, 26 are there: about 1 h 25 min with 2 workers"
+  std::string text(int jobs) const;
+};
+
+/// `costs` has learnt from the complete cells. With more jobs than cores, cores count.
+Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,
+                  int jobs);
+
+/// "40 s", "12 min" or "1 h 25 min".
+std::string duration_text(double seconds);
+
+/// "950 KB", "47 MB" or "1.2 GB".
+std::string size_text(double bytes);
+
+}  // namespace lgabench

@@ -1,0 +1,263 @@
+"""The command line itself: help, what is said of mistakes, --dry-run, --resume, colour, the cache, completion, man page."""
+import json
+import os
+import pathlib
+import pty
+import re
+import shutil
+import subprocess
+import unittest
+
+from case import BUILD, Case, FIXTURES, PROGRAM, command_line
+
+VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "new-plugin",
+         "check-plugin", "cache"]
+PLUGIN = ["--plugin-path", FIXTURES / "good"]
+# Cells without training, for milliseconds.
+RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",
+       "--episodes", "2", "--no-reference"]
+PAGES = BUILD / "framework/lgabench/cli"
+
+
+class Help(Case):
+    def test_bare_and_asked_for(self):
+        said = self.call().stdout
+        self.assertEqual(said, self.call("--help").stdout)
+        for verb in VERBS:
+            self.assertRegex(said, rf"\n  {verb} +\w")
+        self.assertNotIn("Other commands", said, "each command stands below a title of its own")
+        for word in ("LGABENCH_PLUGIN_PATH", "NO_COLOR", "Exit status", "130"):
+            self.assertIn(word, said)
+
+    def test_of_every_command_fits_and_names_what_is_taken(self):
+        for verb in VERBS:
+            with self.subTest(verb):
+                said = self.call(verb, "--help").stdout
+                self.assertRegex(said, rf"\nUsage: lgabench {verb} \[OPTIONS\]")
+                self.assertEqual([line for line in said.splitlines() if len(line) > 100], [])
+                self.assertEqual(re.findall(r"\b(?:TEXT|U?INT|FLOAT|REQUIRED|Excludes)\b", said), [])
+                self.assertIn("Example", said)
+        said = self.call("run", "--help").stdout
+        titles = re.findall(r"^(\w.*)\n  -", said, re.M)
+        self.assertEqual(titles[:4], ["What is computed", "With what", "How much of it", "Where it goes"])
+        self.assertLess(len(titles), 6)
+
+    def test_version(self):
+        self.assertRegex(self.call("--version").stdout,
+                         r"^lgabench \d+\.\d+\.\d+ \(commit ([0-9a-f]{12}(-dirty)?|unknown), \w+, \w+ \d+\.\d+\.\d+\)\n$")
+
+    @unittest.skipUnless(shutil.which("groff"), "groff is not installed")
+    def test_man_page(self):
+        done = subprocess.run(["groff", "-man", "-ww", "-Tascii", "-P-c", PAGES / "lgabench.1"], capture_output=True,
+                              text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        text = re.sub(r".\x08", "", done.stdout)
+        for verb in VERBS:
+            self.assertIn(f"lgabench {verb}".lower(), text.lower())
+        for word in ("--demos N,...", "Exit status", "LGABENCH_CACHE"):
+            self.assertIn(word, text)
+
+
+class Mistakes(Case):
+    def test_say_what_was_meant(self):
+        (self.dir / "empty").mkdir()
+        for words, says in [
+            (["lst"], r'^lgabench: unknown command "lst" \(did you mean "list"\?\); see lgabench --help$'),
+            (["rnu", "q1"], r'unknown command "rnu" \(did you mean "run"\?\)'),
+            (["version"], r'did you mean "--version"\?'),
+            (["-v"], r"unknown option -v \(did you mean \"--version\"\?\)"),
+            (["run", "q1", "--demo", "10"], r'unknown option --demo \(did you mean "--demos"\?\); see lgabench run --help$'),
+            (["run", "--lmit=3"], r'unknown option --lmit \(did you mean "--limit"\?\)'),
+            (["select", "heart", "--answer", "claude"], r'^lgabench: unknown option --answer \(did you mean "--answers"'),
+            (["run"], r"^lgabench: SUITE is missing; usage: lgabench run \[OPTIONS\] SUITE$"),
+            (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
+            (["compare", "a"], r"B is missing; usage: lgabench compare \[OPTIONS\] A B$"),
+            (["report", "a", "b"], r'"b" is a word too many; usage: lgabench report \[OPTIONS\] RUN$'),
+            (["run", "q11"], r'no suite "q11".*expected one of: .*q1.*or a \.json file'),
+            (["run", "q1", "--preset", "smokey"], r'q1.json: no preset "smokey" \(did you mean "smoke"\?\)'),
+            (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)'),
+            (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\)'),
+            (["run", "q1", "--seeds", "3:0"], r"--seeds: expected FIRST:END, END not included, .*; 3:0 has 0$"),
+            (["run", "q1", "--demos", "10-50"], r'--demos: expected whole numbers, such as 10,50, .* got "10-50"$'),
+            (["run", "q1", "--demos", "ten"], r'--demos: expected whole numbers, such as 10,50, .* got "ten"$'),
+            (["run", "q1", "--truth", "realeased"], r'--truth: no truth "realeased" \(did you mean "released"\?\)'),
+            (["info", "lag"], r'"lag" \(did you mean "lga"\?\); .*--plugin-path'),
+            (["demos", "hart", "--out", "x"], r'no scenario "hart" \(did you mean "heart"\?\)'),
+            (["report", "x", "--format", "latex"], r'--format: no format "latex", expected one of: text, md, json, csv'),
+            (["select", "Bring me the unicorn."], r"expected some for .*; --answers openai asks a model"),
+            (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
+        ]:
+            with self.subTest(words):
+                done = self.call(*words, expect=2)
+                self.assertEqual(done.stdout, "")
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                self.assertRegex(done.stderr, re.compile(says, re.M))
+        self.assertRegex(self.call("run", "q1", "--methods", "lag", expect=4).stderr,
+                         r'no method "lag" \(did you mean "lga"\?\), expected one of: .*; other plugins are found with --plugin-path')
+        self.assertRegex(self.call("run", "q1", "--methods", "mine", "--plugin-path", "empty", expect=4).stderr,
+                         r'no method "mine".*empty was refused: no plugin \(\*\.so\) is in it')
+
+    def test_a_plugin_path_may_be_the_plugin(self):
+        plugin = FIXTURES / "good/fixture_constant.so"
+        self.assertIn("fixture_constant", self.call("list", "--plugin-path", plugin).stdout)
+        self.assertIn("fixture_constant", self.call("info", "--plugin-path", plugin, "fixture_constant").stdout)
+
+    def test_runs_that_are_near_are_named(self):
+        self.call(*RUN, "--out", "runs/mine")
+        self.assertIn("; runs: runs/mine", self.call("report", "runs", expect=2).stderr)
+        self.assertIn("; runs: runs/mine", self.call("verify", "q1", expect=2).stderr)
+
+
+class DryRuns(Case):
+    def test_say_how_much_there_is_to_do_and_do_nothing(self):
+        said = self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN, "--jobs", "1").stdout
+        self.assertEqual([p for p in self.dir.iterdir()], [])
+        self.assertRegex(said, r"^runs/q1-\w{8}: 806 cells, 0 there, 806 to compute\n")
+        self.assertRegex(said, r"\nlga +195 +0 +\d+ min  cells measured elsewhere\n")
+        self.assertRegex(said, r"\nfixture_constant +195 +0 +\d+ min  LGA's cells\n")
+        self.assertRegex(said, r"\nabout \d+ min with 1 worker\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
+        self.assertIn("shard 2/2 of a run of 806 cells",
+                      self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN,
+                                "--shard", "2/2").stdout)
+
+    def test_count_what_is_there(self):
+        said = self.call(*RUN, "--limit", "3", "--out", "out").stderr
+        self.assertIn("3 cells to compute, 0 are there: about ", said)
+        self.assertRegex(said, r"\n\[1/3\] fixture_constant heart .* \d+\.\d s; \d+:\d\d left\n")
+        said = self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run").stdout
+        self.assertIn("out: 3 cells, 3 there, 0 to compute\n", said)
+        shutil.rmtree(next((self.dir / "out/cells").iterdir()))
+        before = sorted(self.dir.rglob("*"))
+        said = self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run").stdout
+        self.assertRegex(said, r"out: 3 cells, 2 there, 1 to compute\n(.*\n)*fixture_constant +3 +2 +\d+ s  this run's cells\n")
+        self.assertIn("3 to compute", self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run", "--fresh").stdout)
+        self.assertEqual(sorted(self.dir.rglob("*")), before)
+
+    def test_a_long_run_says_so_first(self):
+        process = self.start("run", "q1", "--methods", "gcbc_dart", "--jobs", "1", "--cache", "cache")
+        first = process.stderr.readline()
+        process.terminate()
+        process.wait()
+        self.assertRegex(first, r"^416 cells to compute, 0 are there: about \d+ min with 1 worker; --dry-run shows of what\n$")
+
+
+class Resuming(Case):
+    def test_finds_the_run_that_the_same_command_names(self):
+        refused = self.call(*RUN, "--resume", expect=2).stderr
+        self.assertIn("--resume: no run of this command is in runs; without --resume it begins one of 4 cells", refused)
+        self.assertFalse((self.dir / "runs").exists())
+
+        self.call(*RUN)
+        (run,) = (self.dir / "runs").iterdir()
+        said = self.call(*RUN, "--resume").stderr
+        self.assertIn(f"going on in runs/{run.name}\n", said)
+        self.assertIn("0 cells computed, 4 were there", said)
+
+        # As another build leaves it: the same settings, another hash.
+        other = run.rename(run.with_name(run.name[:-8] + "0" * 8))
+        shutil.rmtree(next((other / "cells").iterdir()))
+        said = self.call(*RUN, "--resume").stderr
+        self.assertIn(f"going on in runs/{other.name}\n", said)
+        self.assertIn("1 cell to compute, 3 are there: about ", said)
+        self.assertEqual([p.name for p in (self.dir / "runs").iterdir()], [other.name])
+        another = [word if word != "0:2" else "0:3" for word in RUN]
+        self.assertIn("no run of this command", self.call(*another, "--resume", expect=2).stderr)
+
+
+class Colour(Case):
+    def on_a_terminal(self, *arguments, **environment):
+        """What the program writes to a terminal, stdout and stderr together."""
+        master, terminal = pty.openpty()
+        process = subprocess.Popen(command_line(*arguments), stdin=terminal, stdout=terminal, stderr=terminal, cwd=self.dir,
+                                   env={**self.environment, "TERM": "xterm", "NO_COLOR": "", **environment})
+        os.close(terminal)
+        written = b""
+        while True:
+            try:
+                more = os.read(master, 65536)
+            except OSError:  # the other end is closed
+                break
+            if not more:
+                break
+            written += more
+        os.close(master)
+        process.wait()
+        return written.decode()
+
+    def test_on_terminals_alone(self):
+        self.assertTrue(self.on_a_terminal("lst").startswith("\x1b[31mlgabench:\x1b[0m unknown command"))
+        for environment in {"NO_COLOR": "1"}, {"TERM": "dumb"}:
+            self.assertNotIn("\x1b", self.on_a_terminal("lst", **environment))
+        self.assertNotIn("\x1b", self.call("lst", expect=2).stderr)
+
+    def test_of_marks_and_verdicts(self):
+        self.call(*["10" if word == "2" else word for word in RUN if word != "--no-reference"], "--out", "out")
+        table = self.call("report", "out").stdout
+        self.assertIn("§", table)
+        self.assertNotIn("\x1b", table)
+        shown = self.on_a_terminal("report", "out")
+        self.assertIn("\x1b[33m§\x1b[0m", shown)
+        plain = re.sub(r"\x1b\[\d+m", "", shown).replace("\r\n", "\n")
+        self.assertEqual(plain.split("\n")[:-2], table.split("\n")[:-1])
+        self.assertIn("\x1b[32mgood\x1b[0m", self.on_a_terminal("check-plugin", FIXTURES / "good/fixture_constant.so"))
+
+
+class CacheCommand(Case):
+    def test_tells_the_size_and_clears_its_own_files(self):
+        cache = self.dir / "cache"
+        self.assertIn("cache: 0 files of demonstrations, 0 KB", self.call("cache").stdout)
+        self.call(*RUN, "--out", "out")
+        ours = list(cache.iterdir())
+        size = sum(p.stat().st_size for p in ours)
+        self.assertGreater(len(ours), 1)
+        said = json.loads(self.call("cache", "--json").stdout)
+        self.assertEqual(said, {"directory": str(cache), "files": len(ours), "bytes": size, "cleared": False})
+        (cache / (ours[0].name + ".0123abcd.tmp")).write_text("cut off")
+        (cache / "thesis.hdf5").write_text("kept")
+        (cache / "notes.tmp").write_text("kept")
+        (cache / ("0" * 32 + ".hdf5")).symlink_to(cache / "thesis.hdf5")
+        done = self.call("cache", "clear")
+        self.assertRegex(done.stdout, rf"cache: {len(ours) + 1} files of demonstrations, \d+ KB, removed\n")
+        self.assertEqual(done.stderr, "3 other files in it: left alone\n")
+        self.assertEqual(sorted(p.name for p in cache.iterdir()), ["0" * 32 + ".hdf5", "notes.tmp", "thesis.hdf5"])
+        self.assertIn("no action \"claer\" (did you mean \"clear\"?)", self.call("cache", "claer", expect=2).stderr)
+        self.assertIn("4 were there", self.call(*RUN, "--out", "out").stderr)
+
+
+class Completion(Case):
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        line = "source $SCRIPT; compopt() { :; }; COMP_WORDS=(lgabench \"$@\"); COMP_CWORD=$#; _lgabench; printf '%s\\n' \"${COMPREPLY[@]}\""
+        done = subprocess.run(["bash", "-uec", line, "bash", *words], capture_output=True, text=True, cwd=self.dir,
+                              env={**self.environment, "PATH": f"{PROGRAM.parent}:{os.environ['PATH']}",
+                                   "SCRIPT": str(PAGES / "lgabench.bash")})
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return done.stdout.split()
+
+    def test_of_commands_options_and_ids(self):
+        self.assertEqual(self.completed("re"), ["render", "report"])
+        self.assertEqual(self.completed("run", "q1", "--dem"), ["--demos"])
+        self.assertEqual(self.completed("run", "fac"), ["factorial"])
+        self.assertEqual(self.completed("run", "q1", "--methods", "lga,hu"), ["lga,human"])
+        self.assertEqual(self.completed("run", "q1", "--scenarios", "red_"), ["red_heart"])
+        self.assertEqual(self.completed("report", "out", "--format", ""), ["text", "md", "json", "csv"])
+        self.assertIn("mujoco" if (BUILD / "lib/lgabench/plugins/mujoco.so").exists() else "kinematic",
+                      self.completed("demos", "heart", "--engine", ""))
+        self.assertEqual(self.completed("info", "human"), ["human"])
+        (self.dir / "runs").mkdir()
+        self.assertEqual(self.completed("report", "ru"), ["runs"])
+        for verb in VERBS:
+            listed = set(re.findall(r"(?:^|\s)(--[a-z-]+)", self.call(verb, "--help").stdout.split("Usage")[1]))
+            self.assertLessEqual(set(self.completed(verb, "--")) - {"--help"}, listed)
+
+    def test_scripts_are_well_formed(self):
+        if shutil.which("shellcheck"):
+            done = subprocess.run(["shellcheck", "-s", "bash", PAGES / "lgabench.bash"], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stdout), (0, ""))
+        if shutil.which("zsh"):
+            done = subprocess.run(["zsh", "-n", PAGES / "_lgabench"], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

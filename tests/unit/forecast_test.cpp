@@ -1,0 +1,152 @@
+// What a run is expected to take, on the seconds that the cells of real runs took: no clock.
+#include <cmath>
+#include <sstream>
+
+#include <lgabench/harness/forecast.hpp>
+#include <lgabench/harness/schedule.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+struct Played {
+  Cell cell;
+  double seconds;
+};
+
+// The cells of a run on two busy cores, as they ended: "ROW DEMONSTRATIONS SECONDS" a line. Rows are renamed where
+// `unknown`.
+std::vector<Played> recorded(const std::string& run, std::size_t arms, bool unknown = false) {
+  std::istringstream lines(read_file(fs::path(LGABENCH_TEST_REFERENCE) / ("cell_seconds_" + run + ".txt")));
+  std::vector<Played> all;
+  Played one;
+  while (lines >> one.cell.method.id >> one.cell.demonstrations >> one.seconds) {
+    if (unknown) one.cell.method.id = "my_" + one.cell.method.id;
+    one.cell.method.name = one.cell.method.id;
+    one.cell.method.options = {{"epochs", 750}, {"network", "text"}};
+    one.cell.episodes = 20;
+    one.cell.scenario = {
+        {"id", "s"}, {"commands", Json::array({Json::object()})}, {"tests", Json(arms, Json::object())}};
+    all.push_back(one);
+  }
+  return all;
+}
+
+double seconds_of(const std::vector<Played>& played, std::size_t first) {
+  double sum = 0;
+  for (std::size_t i = first; i < played.size(); ++i) sum += played[i].seconds;
+  return sum;
+}
+
+// After the first `done` cells: what the others are expected to take.
+double expected(const std::vector<Played>& played, std::size_t done) {
+  Costs costs;
+  double sum = 0;
+  for (std::size_t i = 0; i < played.size(); ++i)
+    if (i < done)
+      costs.learn(played[i].cell, played[i].seconds);
+    else
+      sum += costs.expected_seconds(played[i].cell);
+  return sum;
+}
+
+TEST(Remaining, IsRightWithinThreeTenthsAfterTheFirstTenth) {
+  for (const bool unknown : {false, true})
+    for (const auto& [run, arms] : {std::pair{"q1", 1u}, {"q2", 4u}}) {
+      const std::vector<Played> played = recorded(run, arms, unknown);
+      ASSERT_GE(played.size(), 80u);
+      const std::size_t tenth = played.size() / 10 + 1;
+      const double left = seconds_of(played, tenth), all = seconds_of(played, 0);
+      EXPECT_NEAR(expected(played, tenth) / left, 1, unknown ? .4 : .3) << run;
+      for (std::size_t done = tenth; done < played.size(); done += played.size() / 40) {
+        const double told = all - seconds_of(played, done) + expected(played, done);
+        EXPECT_NEAR(told / all, 1, .3) << run << unknown << " after " << done << " of " << played.size();
+      }
+    }
+}
+
+// The machine of the table was twice as fast as the one of the record, which had other work to do.
+TEST(Remaining, IsOfTheRightSizeBeforeTheFirstCell) {
+  for (const auto& [run, arms] : {std::pair{"q1", 1u}, {"q2", 4u}}) {
+    const std::vector<Played> played = recorded(run, arms);
+    const double ratio = expected(played, 0) / seconds_of(played, 0);
+    EXPECT_GT(ratio, .5) << run;
+    EXPECT_LT(ratio, 2) << run;
+  }
+}
+
+TEST(Remaining, OfAScheduleIsThatOfTheCellsNotGivenOut) {
+  const std::vector<Played> played = recorded("q2", 4);
+  std::vector<const Cell*> cells;
+  for (const Played& one : played) cells.push_back(&one.cell);
+  Schedule schedule(cells);
+  EXPECT_NEAR(schedule.left_s(), expected(played, 0), 1e-9);
+  const Cell* first = schedule.next();
+  EXPECT_NEAR(schedule.left_s(), expected(played, 0) - usual_seconds(*first), 1e-9);
+  schedule.learn(*first, 3 * usual_seconds(*first));
+  EXPECT_NEAR(schedule.left_s(), 3 * (expected(played, 0) - usual_seconds(*first)), 1e-6);
+}
+
+TEST(UsualSeconds, GrowWithWhatIsLearntAndPlayed) {
+  Cell cell = recorded("q1", 1).front().cell;
+  const auto with = [&](const char* option, const Json& value) {
+    Cell other = cell;
+    other.method.options[option] = value;
+    return usual_seconds(other) / usual_seconds(cell);
+  };
+  EXPECT_EQ(cell.method.id, "gcbc_seg");
+  EXPECT_NEAR(with("epochs", 75), .14, .05);
+  EXPECT_LT(with("network", "plain"), .9);
+  EXPECT_LT(with("policy", "centroid"), .1);
+  Cell two = cell, hundred = cell;
+  two.scenario["commands"] = {Json::object(), Json::object(), {{"seen", false}}};
+  EXPECT_NEAR(usual_seconds(two) / usual_seconds(cell), 2, .1) << "demonstrations are of each seen command";
+  hundred.episodes = 100;
+  EXPECT_GT(usual_seconds(hundred), usual_seconds(cell) + .3);
+  bool of_its_own = false;
+  EXPECT_TRUE((usual_seconds(cell, &of_its_own), of_its_own));
+  cell.method.id = "my_method";
+  EXPECT_FALSE((usual_seconds(cell, &of_its_own), of_its_own));
+}
+
+TEST(Forecasts, CountByRow) {
+  std::vector<Played> played = recorded("q2", 4);
+  std::vector<const Cell*> complete, missing;
+  Costs costs;
+  for (Played& one : played) {
+    if (one.cell.method.id == "lga_l") one.cell.method.id = one.cell.method.name = "my_method";
+    const bool there = one.cell.method.id == "lga" && complete.size() < 5;
+    (there ? complete : missing).push_back(&one.cell);
+    if (there) costs.learn(one.cell, one.seconds);
+  }
+  const Forecast all = forecast(complete, missing, costs, 1);
+  EXPECT_EQ(all.cells, 80u);
+  EXPECT_EQ(all.there, 5u);
+  std::map<std::string, Forecast::Row> rows;
+  double seconds = 0;
+  for (const Forecast::Row& row : all.rows) rows[row.name] = row, seconds += row.seconds;
+  EXPECT_EQ(rows.size(), 8u);
+  EXPECT_EQ(rows["lga"].cells, 12u);
+  EXPECT_EQ(rows["lga"].there, 5u);
+  EXPECT_EQ(rows["lga"].based_on, "this run's cells");
+  EXPECT_EQ(rows["gcbc_dart"].based_on, "cells measured elsewhere");
+  EXPECT_EQ(rows["my_method"].based_on, "LGA's cells");
+  EXPECT_NEAR(all.wall_s, seconds, 1e-6) << "one worker";
+  EXPECT_NEAR(rows["lga"].seconds / 7, 2.3, .5) << "as the five took";
+  EXPECT_EQ(all.text(1), "75 cells to compute, 5 are there: about 6 min with 1 worker");
+  EXPECT_GT(all.run_bytes, 75 * 28e3);
+}
+
+TEST(Texts, OfTimeAndSize) {
+  EXPECT_EQ(duration_text(0), "0 s");
+  EXPECT_EQ(duration_text(89), "89 s");
+  EXPECT_EQ(duration_text(90), "2 min");
+  EXPECT_EQ(duration_text(3600), "1 h 0 min");
+  EXPECT_EQ(size_text(950e3), "950 KB");
+  EXPECT_EQ(size_text(47e6), "47 MB");
+  EXPECT_EQ(size_text(1.24e9), "1.2 GB");
+}
+
+}  // namespace
+}  // namespace lgabench
