@@ -53,6 +53,7 @@ class OldRuns(Case):
     def test_is_compared_by_what_its_rows_are(self):
         self.call("merge", "old", "shard1", "shard2")
         self.call(*SAME, "--methods", "lga,lga+network=plain,lga_l+network=plain+image=none", "--set", "*.epochs=20",
+                  "--set", "*.batches=shuffled",
                   "--out", "new")
         compared = json.loads(self.call("compare", "old", "new", "--json").stdout)
         self.assertEqual({(row["method_a"], row["method"]) for row in compared["rows"] if row["method_kind"] == "method"},
