@@ -231,6 +231,27 @@ class Stopped(Faults):
         self.call(*self.run_of_class, "--out", "out")
         self.assert_as_undisturbed()
 
+    def test_a_methods_process_that_is_stopped_fails_its_own_cell(self):
+        moments = random.Random(7)
+        for attempt in range(3):
+            out = f"stopped{attempt}"
+            failed = []
+            while not failed:  # the moment may lie between two cells
+                shutil.rmtree(self.dir / out, ignore_errors=True)
+                run = self.start(*self.run_of_class, "--jobs", "1", "--timeout", "4", "--out", out)
+                time.sleep(moments.uniform(.05, .6))
+                for host in [child for worker in self.workers(run.pid) for child in self.workers(worker)]:
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(host, signal.SIGSTOP)
+                said = run.communicate(timeout=120)[1]
+                self.assertIn(run.returncode, (0, 3), said)
+                failed = [status for _, status in self.cells(out).values() if status["state"] == "failed"]
+            self.assertEqual([status["fault"] for status in failed], ["plugin"])
+            self.assertRegex(failed[0]["reason"], r"stopped after 4 s")
+            self.assert_nothing_left_behind()
+            self.call(*self.run_of_class, "--out", out)
+            self.assert_as_undisturbed(out)
+
     def test_the_whole_run_loses_nothing(self):
         # As a batch system suspends it, for longer than the time limit.
         run = self.start(*self.run_of_class, "--jobs", "2", "--timeout", "6", "--out", "out")
