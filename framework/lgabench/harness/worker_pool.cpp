@@ -120,9 +120,7 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
   const std::vector<std::string> variables =
       worker_environment(what.job);  // nothing is allocated between fork and exec
-  std::vector<char*> environment;
-  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
-  environment.push_back(nullptr);
+  const std::vector<char*> environment = pointers(variables);
   char* const arguments[] = {const_cast<char*>(program.c_str()), const_cast<char*>(what.verb.c_str()), nullptr};
   const pid_t parent = ::getpid();
 
@@ -286,9 +284,7 @@ int run_in_foreground(const Json& job) {
   const std::string program = (program_directory() / "lgabench-worker").string();
   const Descriptor file = job_file(job);
   const std::vector<std::string> variables = worker_environment(job);
-  std::vector<char*> environment;
-  for (const std::string& v : variables) environment.push_back(const_cast<char*>(v.c_str()));
-  environment.push_back(nullptr);
+  const std::vector<char*> environment = pointers(variables);
   char cell[] = "cell";
   char* const arguments[] = {const_cast<char*>(program.c_str()), cell, nullptr};
   ::signal(SIGINT, SIG_IGN);

@@ -36,6 +36,13 @@ std::vector<pid_t> children_of(pid_t parent) {
   return all;
 }
 
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> all;
+  for (const std::string& word : words) all.push_back(const_cast<char*>(word.c_str()));
+  all.push_back(nullptr);
+  return all;
+}
+
 namespace {
 
 [[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
@@ -50,13 +57,6 @@ std::vector<std::string> environment_of(const HostCommand& command) {
   for (const char* name : {"PATH", "LD_LIBRARY_PATH", "OPENBLAS_CORETYPE"})
     if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));
   all.insert(all.end(), command.also_set.begin(), command.also_set.end());
-  return all;
-}
-
-std::vector<char*> pointers(const std::vector<std::string>& words) {
-  std::vector<char*> all;
-  for (const std::string& word : words) all.push_back(const_cast<char*>(word.c_str()));
-  all.push_back(nullptr);
   return all;
 }
 

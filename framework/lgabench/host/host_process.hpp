@@ -14,6 +14,9 @@ namespace lgabench {
 /// Processes that a process started, and, if it is a subreaper, those below it whose own parent is gone.
 std::vector<pid_t> children_of(pid_t parent);
 
+/// As exec takes words and variables: pointers into them, and a null pointer at the end.
+std::vector<char*> pointers(const std::vector<std::string>& words);
+
 /// What is started, and with what.
 struct HostCommand {
   std::vector<std::string> words;            // an absolute path, and its arguments
