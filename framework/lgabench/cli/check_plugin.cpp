@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
@@ -91,20 +92,6 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
   return report;
 }
 
-bool has_problem(const CheckReport& report) {
-  return std::any_of(report.findings.begin(), report.findings.end(),
-                     [](const Finding& f) { return f.state == Finding::State::problem; });
-}
-
-void print(const CheckReport& report) {
-  for (const auto& [state, check, detail, fix] : report.findings) {
-    const std::string word = fmt::format("{:<8}", to_string(state));
-    put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
-    to_stdout(" {:<22} {}\n", check, detail);
-    if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
-  }
-}
-
 int check_plugin(const Arguments& a) {
   CheckReport report;
   PluginInfo plugin;
@@ -128,9 +115,6 @@ int check_plugin(const Arguments& a) {
     if (!plugin.id.empty())
       to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
     print(report);
-    put(stdout,
-        painted(stdout, good ? Colour::green : Colour::red, good ? "good" : "not good: see the problems above"));
-    to_stdout("\n");
   }
   return good ? ok : regression;
 }

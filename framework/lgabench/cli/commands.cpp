@@ -9,6 +9,7 @@ constexpr const char* surroundings =
     "Environment\n"
     "  LGABENCH_CACHE            where demonstrations are kept; else ~/.cache/lgabench\n"
     "  LGABENCH_PLUGIN_PATH      directories of more plugins, with colons between them\n"
+    "  LGABENCH_SCENARIO_PATH    directories of more scenarios, likewise\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
     "  OPENAI_BASE_URL, OPENAI_API_KEY\n"
@@ -42,6 +43,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_merge(app, exit);
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
+  add_new_scenario(app, exit);
   add_cache(app, exit);
 }
 
@@ -49,7 +51,7 @@ void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
       {"To look at what there is", {"list", "info", "select", "render", "demos"}},
       {"To run and to compare", {"run", "report", "compare", "verify", "merge"}},
-      {"To add a method or an engine", {"new-plugin", "check-plugin"}},
+      {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
       {"To clean up", {"cache"}}};
   for (const auto& [title, names] : titles)
     for (const char* name : names)

@@ -73,6 +73,7 @@ void add_demos(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
+  add_scenario_path(*verb);
   auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");
   verb->add_option("--inspect", a->inspect, "Print what is in a file of demonstrations")->excludes(out);
   arrange(*verb, "", {{"scenario", "SCENARIO"}});
@@ -83,7 +84,8 @@ void add_demos(CLI::App& app, int&) {
            {"--noisy", "N"},
            {"--noise", "SIGMA"},
            {"--engine", "ENGINE"},
-           {"--plugin-path", "PATH"}});
+           {"--plugin-path", "PATH"},
+           {"--scenario-path", "DIR"}});
   arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
   verb->footer("Example: lgabench demos heart --n 10 --out heart.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });

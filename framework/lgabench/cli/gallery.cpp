@@ -78,6 +78,13 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
 
 }  // namespace
 
+Sheet scene_sheet(const Scenario& scenario) {
+  tabletop::Renderer renderer;
+  std::vector<Tile> tiles;
+  for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(renderer, scenario, arm.id));
+  return sheet(tiles, 1);
+}
+
 Sheet gallery(const std::string& what) {
   tabletop::Renderer renderer;
   std::vector<Tile> tiles;

@@ -2,6 +2,8 @@
 #pragma once
 #include <string>
 
+#include <lgabench/core/scenario.hpp>
+
 namespace lgabench::cli {
 
 struct Sheet {
@@ -12,5 +14,8 @@ struct Sheet {
 /// `what`: "objects" (every type), "textures" (every one, on a pallet) or "scenes" (a test scene of every scenario,
 /// with its goal mask). Twice the observation's size. @throws InputError for anything else.
 Sheet gallery(const std::string& what);
+
+/// A test scene of every arm of the scenario, with its goal mask.
+Sheet scene_sheet(const Scenario& scenario);
 
 }  // namespace lgabench::cli

@@ -133,6 +133,7 @@ void add_info(CLI::App& app, int& exit) {
   verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
   add_plugin_path(*verb, arguments->directories);
+  add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
     info(arguments->name, arguments->json, arguments->directories);
     exit = ok;

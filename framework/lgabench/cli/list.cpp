@@ -78,6 +78,7 @@ void add_list(CLI::App& app, int& exit) {
   verb->footer("Example: lgabench list --plugin-path my/build");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
   add_plugin_path(*verb, arguments->directories);
+  add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
     const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
     if (arguments->json)

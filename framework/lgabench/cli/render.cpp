@@ -107,6 +107,7 @@ void add_render(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
+  add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
           {{"--gallery", "objects|textures|scenes"},
@@ -115,7 +116,8 @@ void add_render(CLI::App& app, int&) {
            {"--split", "train|dev|test"},
            {"--arm", "ARM"},
            {"--truth", "released|printed"},
-           {"--seed", "N"}});
+           {"--seed", "N"},
+           {"--scenario-path", "DIR"}});
   verb->footer(
       "Draws the scene before the first action; the mask is the one of the command's true Selection.\n"
       "Example: lgabench render red_heart --index 3 --out scene.png\n"

@@ -197,7 +197,7 @@ int run(Arguments a) {
     CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
-  } else {
+  } else if (a.answers != no_answers) {
     check_recorded(a.answers, grid.scenarios);
   }
   if (!a.humans.empty())
@@ -282,6 +282,7 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--shard", a->shard,
                    "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
   add_plugin_path(*verb, a->plugin_path);
+  add_scenario_path(*verb);
   verb->add_option("--out", a->out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
   verb->add_option("--cache", a->cache,
                    "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
@@ -299,14 +300,17 @@ void add_run(CLI::App& app, int& exit) {
   verb->add_option("--answers", a->answers,
                    "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
                    "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
-                   "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run")
+                   "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run; "
+                   "none: nobody, for "
+                   "methods that ask no language model")
       ->check([](const std::string& word) {
         const std::vector<std::string> sources = recorded_sources();
-        const bool known = word == "recorded" || word == "openai" || word.rfind(cassette_prefix, 0) == 0 ||
+        const bool known = word == "recorded" || word == "openai" || word == no_answers ||
+                           word.rfind(cassette_prefix, 0) == 0 ||
                            std::find(sources.begin(), sources.end(), word) != sources.end();
         return known ? ""
-                     : fmt::format("expected recorded, {}, openai or cassette:FILE, got {}", fmt::join(sources, ", "),
-                                   word);
+                     : fmt::format("expected recorded, {}, openai, none or cassette:FILE, got {}",
+                                   fmt::join(sources, ", "), word);
       })
       ->capture_default_str();
   verb->add_option("--model", a->model, "With --answers openai: the server's model");
@@ -361,6 +365,7 @@ void add_run(CLI::App& app, int& exit) {
            {"--timeout", "SECONDS"},
            {"--memory", "GIB"},
            {"--plugin-path", "PATH"},
+           {"--scenario-path", "DIR"},
            {"--python", "PROGRAM"},
            {"--unconfined", ""}});
   arrange(*verb, "Where it goes", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});

@@ -202,13 +202,15 @@ void add_select(CLI::App& app, int&) {
   verb->add_option("--max-queries", arguments->max_queries, "Ask a server no more than so many questions; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
+  add_scenario_path(*verb);
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
   arrange(*verb, "", {{"command", "COMMAND"}});
   arrange(*verb, "What is asked",
           {{"--suite", "SUITE"},
            {"--task", "pick_and_place|rotate|sweep"},
            {"--space", "SPACE"},
-           {"--truth", "released|printed"}});
+           {"--truth", "released|printed"},
+           {"--scenario-path", "DIR"}});
   arrange(*verb, "Who answers",
           {{"--answers", "SOURCE"},
            {"--model", "MODEL"},

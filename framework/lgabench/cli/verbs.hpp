@@ -9,12 +9,13 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench::cli {
 
-/// What the process returns (docs/troubleshooting.md). not_identical: verify's, where only the record's own word says why
-/// it has other bytes.
+/// What the process returns (docs/troubleshooting.md). not_identical: verify's, where only the record's own word says
+/// why it has other bytes.
 enum Exit {
   ok = 0,
   regression = 1,
@@ -36,6 +37,7 @@ void add_verify(CLI::App& app, int& exit);
 void add_new_plugin(CLI::App& app, int& exit);
 void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
+void add_new_scenario(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);
@@ -44,6 +46,7 @@ void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
+void add_check_scenario(CLI::App& app, int& exit);
 
 /// A check for an option: a number from `low` to `high`, which NaN is not.
 inline CLI::Validator within(double low, double high) {
@@ -70,6 +73,18 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
 inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths) {
   verb.add_option("--plugin-path", paths, "Look for plugins here too: a directory, or a .so file; may be given again")
       ->type_name("PATH")
+      ->allow_extra_args(false);
+}
+
+/// --scenario-path, as every verb that reads scenarios has it.
+inline void add_scenario_path(CLI::App& verb) {
+  verb.add_option_function<std::vector<fs::path>>(
+          "--scenario-path",
+          [](const std::vector<fs::path>& directories) {
+            for (const fs::path& directory : directories) lgabench::add_scenario_path(directory);
+          },
+          "Look for scenarios here too: a directory of .json files; may be given again")
+      ->type_name("DIR")
       ->allow_extra_args(false);
 }
 

@@ -21,5 +21,6 @@ int main(int argc, char** argv) {
   cli::add_demos(app, exit);
   cli::add_render(app, exit);
   cli::add_pictures(app, exit);
+  cli::add_check_scenario(app, exit);
   return cli::dispatch(app, argc, argv, exit);
 }

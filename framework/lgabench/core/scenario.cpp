@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
@@ -209,14 +210,15 @@ int Scenario::training_scenes(int demonstrations) const {
 }
 
 std::vector<std::string> scenario_ids() {
-  std::error_code none_to_list;
-  return json_names(data_directory() / "scenarios", none_to_list);
+  std::vector<std::string> ids;
+  for (const auto& [id, file] : scenario_files()) ids.push_back(id);
+  return ids;
 }
 
 Scenario load_scenario(const std::string& id, Truth truth) {
-  const auto known = scenario_ids();
-  if (std::find(known.begin(), known.end(), id) == known.end()) throw InputError(none_named("scenario", id, known));
-  const fs::path file = data_directory() / "scenarios" / (id + ".json");
+  const auto files = scenario_files();
+  if (files.count(id) == 0) throw InputError(none_named("scenario", id, scenario_ids()));
+  const fs::path& file = files.at(id);
   const Json json = read_json(file);
   Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
   if (s.id != id)

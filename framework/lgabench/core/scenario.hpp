@@ -81,14 +81,14 @@ struct Scenario {
 /// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.
 Scenario read_scenario(const Json& json, const std::string& file);
 
-/// The scenario named `id` from the data directory's scenarios/. With the printed truth, what the file says under
-/// "printed" stands in its place, and "truth" says so. @throws InputError that lists the known ids.
+/// The scenario named `id` (scenario_files.hpp says where it is looked for). With the printed truth, what the file says
+/// under "printed" stands in its place, and "truth" says so. @throws InputError that lists the known ids.
 Scenario load_scenario(const std::string& id, Truth truth = Truth::released);
 
 /// "released" or "printed". @throws InputError for another word.
 Truth read_truth(const std::string& word);
 
-/// Ids of all shipped scenarios, sorted.
+/// Ids of all scenarios that are found, sorted.
 std::vector<std::string> scenario_ids();
 
 }  // namespace lgabench

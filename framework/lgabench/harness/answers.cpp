@@ -39,6 +39,18 @@ class AskedByCells : public ChatLanguageModel {
   Provenance provenance() const override { return Provenance::live; }
 };
 
+// Of a run in which nobody is asked.
+class NobodyAnswers : public LanguageModel {
+ public:
+  std::vector<bool> answer(const Command& command, const FeatureSpace&, const std::vector<Question>&) override {
+    throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers {} has none",
+                                 command.utterance, no_answers));
+  }
+  std::string model() const override { return no_answers; }
+  Provenance provenance() const override { return Provenance::none; }
+  SelectionCost cost() const override { return {}; }
+};
+
 std::string only_model(const Cassette& cassette, const fs::path& file) {
   const std::set<std::string> models = cassette.models();
   if (models.size() != 1)
@@ -143,8 +155,10 @@ void check_recorded(const std::string& answers, const std::vector<std::string>& 
     known = lm.known();
   }
   if (!lacking.empty())
-    throw InputError(fmt::format("--answers {}: expected answers for {}; there are those for: {}", answers,
-                                 fmt::join(lacking, ", "), fmt::join(known, " | ")));
+    throw InputError(fmt::format(
+        "--answers {}: expected answers for {}; there are those for: {}. Others: --answers cassette:FILE or "
+        "openai (docs/language-models.md); with methods that ask no language model: --answers {}",
+        answers, fmt::join(lacking, ", "), fmt::join(known, " | "), no_answers));
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector<Participant>& all) {
@@ -180,6 +194,8 @@ Answers answers_for(const Cell& cell, const Scenario& scenario, const fs::path& 
     answers.cassette = std::make_unique<Cassette>(file);
     answers.lm = std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr,
                                                      ChatOptions{only_model(*answers.cassette, file)});
+  } else if (cell.answers == no_answers) {
+    answers.lm = std::make_unique<NobodyAnswers>();
   } else {
     answers.lm = std::make_unique<RecordedLanguageModel>(
         scenario, recorded_source(scenario, cell.answers, cell.method.asks == "edit"));

@@ -27,6 +27,7 @@ void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::p
 
 /// What Cell::answers begins with where they are a cassette's; its SHA-256 follows.
 constexpr const char* cassette_prefix = "cassette:";
+constexpr const char* no_answers = "none";  // a method that asks fails the cell
 /// Such a cell's answers, and the file that they are in.
 struct CassetteAnswers {
   std::string answers;

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
@@ -105,6 +106,7 @@ Suite load_suite(const std::string& id) {
     throw InputError(none_named("suite", id, known) + ", or a .json file");
   const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
   const Json json = read_json(file);
+  if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
   members.insert(members.end(), {"id", "note", "environment", "arms", "presets"});

@@ -40,8 +40,9 @@ struct Suite {
   std::string file;  // for messages
 };
 
-/// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json. Every preset is
-/// checked. @throws InputError with file and place; for an unknown id it lists the known ones.
+/// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json; scenarios beside that
+/// file are then found too. Every preset is checked. @throws InputError with file and place; for an unknown id it lists
+/// the known ones.
 Suite load_suite(const std::string& id);
 
 /// The grid of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
