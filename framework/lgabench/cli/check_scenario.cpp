@@ -1,0 +1,143 @@
+// lgabench check-scenario FILE.json: whether a scenario can be shown and solved, before a run depends on it.
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/findings.hpp>
+#include <lgabench/cli/gallery.hpp>
+#include <lgabench/cli/help.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/harness/evaluator.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  std::string file, engine = "mujoco";
+  std::vector<std::string> layouts{"cells", "continuous"};
+  fs::path out;
+  int scenes = 50;
+  std::vector<fs::path> plugin_path;
+};
+
+// The file's scenario, or the one of that id.
+Scenario scenario_of(const std::string& word) {
+  const fs::path file = word;
+  if (file.extension() != ".json") return load_scenario(word);
+  lgabench::add_scenario_path(fs::absolute(file).parent_path());
+  return load_scenario(file.stem().string());
+}
+
+struct Played {
+  int successes = 0;
+  std::map<std::string, int> failures;  // word -> how often
+};
+
+Played play(Environment& environment, const Scenario& scenario, const std::vector<TestScene>& scenes, const char* who) {
+  Played played;
+  for (const Episode& e : evaluate(environment, scenario.space, scenes, reference_actor(who), [](int) {}))
+    e.failure == Failure::none ? ++played.successes : ++played.failures[to_string(e.failure)];
+  return played;
+}
+
+// Scenes of one arm in one layout: sampled, then played by the oracle, then by whoever takes any object.
+void judge_arm(const Scenario& scenario, const std::string& layout, const std::string& arm, int count,
+               Environment& environment, CheckReport& report) {
+  const std::string where = fmt::format("{}, {}", arm, layout);
+  std::vector<TestScene> scenes;
+  try {
+    for (int i = 0; i < count; ++i)
+      scenes.push_back(
+          {arm == "train" ? training_scene(scenario, layout, {}, 0, i) : test_scene(scenario, layout, arm, 0, i)});
+  } catch (const InputError& e) {
+    return report.problem(where, e.what(), "the sets of target, avoid and distractors must leave something to show");
+  }
+  const Played oracle = play(environment, scenario, scenes, "oracle");
+  const Played any = play(environment, scenario, scenes, "random_object");
+  std::string fault;
+  for (const auto& [failure, times] : oracle.failures)
+    if (100 * (count - oracle.successes) > 2 * count)
+      fault += fmt::format("{}{} {}", fault.empty() ? "" : ", ", failure, times);
+  report.judge(where,
+               fault.empty()
+                   ? ""
+                   : fmt::format("the oracle fails in {} of {} scenes: {}", count - oracle.successes, count, fault),
+               fmt::format("the oracle succeeds in {} of {} scenes, any visible object in {}", oracle.successes, count,
+                           any.successes),
+               "look at such scenes: lgabench render SCENARIO --arm ARM --layout LAYOUT --index N");
+  if (any.successes * 10 > count * 9)
+    report.note(where, "any visible object is right",
+                "more distractors, or a narrower command, would test abstraction");
+}
+
+void judge_answers(const Scenario& scenario, CheckReport& report) {
+  const RecordedLanguageModel recorded(scenario, recorded_source(scenario, "recorded"));
+  bool all = true;
+  for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) all &= recorded.knows(scenario.command(i));
+  if (all)
+    report.ok("recorded answers", "for every command");
+  else
+    report.note("recorded answers", "not for every command",
+                "ask a model (docs/language-models.md), or run methods that ask none with --answers none");
+}
+
+int check_scenario(const Arguments& a) {
+  const Scenario scenario = scenario_of(a.file);
+  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
+  CheckReport report;
+  report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", to_string(scenario.task), scenario.environment,
+                                scenario.commands.size(), scenario.tests.size()));
+  std::vector<std::string> arms{"train"};
+  for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
+  for (const std::string& layout : a.layouts)
+    for (const std::string& arm : arms) judge_arm(scenario, layout, arm, a.scenes, *environment, report);
+  judge_answers(scenario, report);
+  to_stdout("{}\n", scenario.id);
+  if (!has_problem(report)) {
+    const fs::path picture = a.out.empty() ? fs::path(scenario.id + ".png") : a.out;
+    write_file(picture, scene_sheet(scenario).png);
+    report.ok("picture", picture.string());
+  }
+  print(report);
+  return has_problem(report) ? regression : ok;
+}
+
+}  // namespace
+
+void add_check_scenario(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("check-scenario", worker_summary("check-scenario"));
+  verb->add_option("scenario", a->file, "The scenario's file, or its id")->required();
+  verb->add_option("--scenes", a->scenes, "How many of each arm and layout")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  verb->add_option("--layout", a->layouts, "cells, continuous or released; several with commas")
+      ->delimiter(',')
+      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->capture_default_str();
+  verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
+  verb->add_option("--out", a->out, "The picture's file; SCENARIO.png if not given");
+  add_plugin_path(*verb, a->plugin_path);
+  add_scenario_path(*verb);
+  arrange(*verb, "",
+          {{"scenario", "FILE"},
+           {"--scenes", "N"},
+           {"--layout", "LAYOUT,..."},
+           {"--engine", "ENGINE"},
+           {"--out", "FILE"},
+           {"--plugin-path", "PATH"},
+           {"--scenario-path", "DIR"}});
+  verb->footer("Exit 1 if there is a problem.\nExample: lgabench check-scenario round.json");
+  verb->callback([a, &exit] { exit = check_scenario(*a); });
+}
+
+}  // namespace lgabench::cli

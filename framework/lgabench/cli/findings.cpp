@@ -1,0 +1,29 @@
+#include <lgabench/cli/findings.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/core/colour.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench::cli {
+
+bool has_problem(const CheckReport& report) {
+  return std::any_of(report.findings.begin(), report.findings.end(),
+                     [](const Finding& f) { return f.state == Finding::State::problem; });
+}
+
+void print(const CheckReport& report) {
+  for (const auto& [state, check, detail, fix] : report.findings) {
+    const std::string word = fmt::format("{:<8}", to_string(state));
+    put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
+    to_stdout(" {:<22} {}\n", check, detail);
+    if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
+  }
+  const bool good = !has_problem(report);
+  put(stdout, painted(stdout, good ? Colour::green : Colour::red, good ? "good" : "not good: see the problems above"));
+  to_stdout("\n");
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,138 @@
+// lgabench new-scenario NAME: a researcher's own command, its truth and its scenes, as a file that runs take.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct Arguments {
+  std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
+  Words commands, unseen, types, textures{"ALL"}, avoid_types, avoid_textures{"ALL"};
+  std::optional<double> angle_deg;
+  bool clockwise = false, hard = false;
+  fs::path directory = ".";
+};
+
+// The words that a person types for what no flag gave, with commas between them where there may be several.
+void ask(Words& words, const char* flag, const char* question, bool several) {
+  if (!words.empty()) return;
+  std::string line;
+  if (::isatty(STDIN_FILENO)) {
+    to_stderr("{} ", question);
+    std::getline(std::cin, line);
+  }
+  if (line.empty()) throw InputError(fmt::format("new-scenario: expected {}", flag));
+  words = several ? CLI::detail::split(line, ',') : Words{line};
+  for (std::string& word : words) CLI::detail::trim(word);
+}
+
+Json set_of(const Words& types, const Words& textures) {
+  const auto names = [](const Words& words) { return words == Words{"ALL"} ? Json("ALL") : Json(words); };
+  return {{"object_types", names(types)}, {"textures", names(textures)}};
+}
+
+Json range_of(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  int fewest = 0, most = 0;
+  if (!CLI::detail::lexical_cast(text.substr(0, colon), fewest) ||
+      !CLI::detail::lexical_cast(colon == std::string::npos ? text : text.substr(colon + 1), most))
+    throw InputError(fmt::format("--distractors: expected FEWEST:MOST, such as 1:2, got \"{}\"", text));
+  return {fewest, most};
+}
+
+Json scenario_json(const Arguments& a) {
+  Json truth{{"target", set_of(a.types, a.textures)}};
+  if (!a.avoid_types.empty()) truth["avoid"] = set_of(a.avoid_types, a.avoid_textures);
+  Json commands = Json::array();
+  for (const std::string& utterance : a.commands) commands.push_back({{"utterance", utterance}, {"truth", truth}});
+  for (const std::string& utterance : a.unseen)
+    commands.push_back({{"utterance", utterance}, {"truth", truth}, {"seen", false}});
+  const Json distractors = range_of(a.distractors);
+  Json tests = Json::array({{{"arm", "test"}, {"distractors", distractors}}});
+  if (a.hard) tests.push_back({{"arm", "hard"}, {"distractors", distractors}, {"hard", true}});
+  if (!a.unseen.empty()) tests.push_back({{"arm", "unseen"}, {"distractors", distractors}, {"unseen", true}});
+  Json json{{"id", a.name},         {"environment", "tabletop"},
+            {"task", a.task},       {"feature_space", a.space},
+            {"commands", commands}, {"tests", tests}};
+  if (a.angle_deg) json["angle_deg"] = *a.angle_deg;
+  if (a.clockwise) json["direction"] = "clockwise";
+  return json;
+}
+
+void new_scenario(Arguments a) {
+  const fs::path file = a.directory / (a.name + ".json");
+  if (std::error_code error; fs::exists(file, error))
+    throw InputError(fmt::format("{}: is there already; nothing was written", file.string()));
+  ask(a.commands, "--command TEXT", "What is the command?", false);
+  ask(a.types, "--types", "Which object types does it mean? (with commas between them, or ALL)", true);
+  const Json json = scenario_json(a);
+  read_scenario(json, file.string());  // the reader of runs judges what was given
+  write_file(file, json.dump(1) + "\n");
+  const std::string path = fs::absolute(a.directory).lexically_normal().string();
+  to_stdout("{}\n\nTo sample it, let the oracle play it, and draw it:\n  lgabench check-scenario {}\n", file.string(),
+            file.string());
+  to_stdout("To run it:\n  lgabench run q1 --scenarios {} --scenario-path {} --answers none --methods human,gcbc_seg\n",
+            a.name, path);
+}
+
+}  // namespace
+
+void add_new_scenario(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb =
+      app.add_subcommand("new-scenario", "Write a scenario of your own: a command, what it means, its scenes");
+  const auto list = [verb](const char* name, Words& words, const char* help) {
+    verb->add_option(name, words, help)->delimiter(',')->allow_extra_args(false);
+  };
+  verb->add_option("name", a->name, "Its id, and the name of its file")->required();
+  verb->add_option("--command", a->commands, "The command's words; asked for if left out; may be given again")
+      ->allow_extra_args(false);
+  verb->add_option("--unseen", a->unseen, "A command that is tested but never demonstrated; may be given again")
+      ->allow_extra_args(false);
+  list("--types", a->types, "Object types that the command means, or ALL; asked for if left out");
+  list("--textures", a->textures, "Their textures, or ALL");
+  list("--avoid-types", a->avoid_types, "sweep: object types that must not be touched");
+  list("--avoid-textures", a->avoid_textures, "sweep: their textures, or ALL");
+  verb->add_option("--space", a->space, "The words there are (lgabench render --gallery objects)")
+      ->check(one_of("space", {"tabletop", "household"}))
+      ->capture_default_str();
+  verb->add_option("--task", a->task, "What is done with it")->capture_default_str();
+  verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
+  verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
+  verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();
+  verb->add_flag("--hard", a->hard, "A second arm, where a distractor shares the target's type or texture");
+  verb->add_option("--directory", a->directory, "Where the file is written")->capture_default_str();
+  arrange(*verb, "", {{"name", "NAME"}, {"--directory", "DIR"}});
+  arrange(*verb, "The command",
+          {{"--command", "TEXT"},
+           {"--unseen", "TEXT"},
+           {"--space", "SPACE"},
+           {"--types", "TYPE,..."},
+           {"--textures", "TEXTURE,..."},
+           {"--avoid-types", "TYPE,..."},
+           {"--avoid-textures", "TEXTURE,..."}});
+  arrange(*verb, "The task and its scenes",
+          {{"--task", "TASK"}, {"--angle", "DEGREES"}, {"--clockwise", ""}, {"--distractors", "N:M"}, {"--hard", ""}});
+  verb->footer(
+      "docs/own-scenarios.md says more; docs/formats has every member of the file.\n"
+      "Example: lgabench new-scenario round --command \"Bring me something round.\" --types round,ring");
+  verb->callback([a, &exit] {
+    new_scenario(*a);
+    exit = ok;
+  });
+}
+
+}  // namespace lgabench::cli

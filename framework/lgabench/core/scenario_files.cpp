@@ -1,0 +1,68 @@
+#include <lgabench/core/scenario_files.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr const char* variable = "LGABENCH_SCENARIO_PATH";
+
+// A file that cannot be read counts: whoever names it is told why it cannot.
+bool may_be_scenario(const fs::path& file) {
+  try {
+    const Json json = read_json(file);
+    return json.is_object() && json.contains("task");
+  } catch (const InputError&) {
+    return true;
+  }
+}
+
+std::vector<fs::path> scenario_path() {
+  std::vector<fs::path> directories;
+  const char* listed = std::getenv(variable);
+  std::istringstream words(listed ? listed : "");
+  for (std::string word; std::getline(words, word, ':');)
+    if (!word.empty()) directories.emplace_back(word);
+  return directories;
+}
+
+}  // namespace
+
+void add_scenario_path(const fs::path& directory) {
+  std::error_code error;
+  const fs::path canonical = fs::canonical(directory, error);
+  if (error || !fs::is_directory(canonical))
+    throw InputError(fmt::format("--scenario-path {}: expected a directory", directory.string()));
+  std::string all = canonical.string();
+  for (const fs::path& other : scenario_path()) {
+    if (other == canonical) return;
+    all = other.string() + ":" + all;
+  }
+  ::setenv(variable, all.c_str(), 1);
+}
+
+std::map<std::string, fs::path> scenario_files() {
+  std::map<std::string, fs::path> files;
+  std::error_code none_to_list;
+  const fs::path shipped = data_directory() / "scenarios";
+  for (const std::string& id : json_names(shipped, none_to_list)) files[id] = shipped / (id + ".json");
+  for (const fs::path& directory : scenario_path()) {
+    for (const std::string& id : json_names(directory, none_to_list)) {
+      const fs::path file = directory / (id + ".json");
+      if (!may_be_scenario(file)) continue;
+      const auto [there, is_new] = files.emplace(id, file);
+      if (!is_new && !fs::equivalent(there->second, file, none_to_list))
+        throw InputError(fmt::format("{}: expected another id: {} has it", file.string(), there->second.string()));
+    }
+  }
+  return files;
+}
+
+}  // namespace lgabench

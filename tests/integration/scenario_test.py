@@ -1,0 +1,90 @@
+"""A scenario of one's own: written, checked, drawn, run, without touching what is installed.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 scenario_test.py OwnScenario
+"""
+import json
+import os
+import unittest
+
+from case import Case
+
+NAME = ("round", "--command", "Bring me something round.", "--types", "round,ring")
+SMALL = ("--demos", "2", "--seeds", "0", "--episodes", "2", "--set", "*.epochs=2")
+
+
+class OwnScenario(Case):
+    def new(self, *words, expect=0):
+        return self.call("new-scenario", *words, expect=expect)
+
+    def test_from_nothing_to_a_table(self):
+        said = self.new(*NAME, "--textures", "red,blue", "--hard", "--unseen", "Bring me the wheel.").stdout
+        self.assertIn("lgabench check-scenario ./round.json", said)
+        arms = [arm["arm"] for arm in json.loads((self.dir / "round.json").read_text())["tests"]]
+        self.assertEqual(arms, ["test", "hard", "unseen"])
+        checked = self.call("check-scenario", "round.json", "--scenes", "4").stdout
+        for arm in "train", *arms:
+            self.assertRegex(checked, rf"ok +{arm}, cells +the oracle succeeds in 4 of 4")
+        self.assertIn("note     recorded answers", checked)
+        self.assertTrue((self.dir / "round.png").read_bytes().startswith(b"\x89PNG"))
+        self.call("render", "round", "--scenario-path", ".", "--arm", "hard", "--index", "1")
+
+        run = ("run", "q1", "--scenarios", "round,heart", "--scenario-path", ".", *SMALL)
+        self.assertIn("expected answers for round", self.call(*run, "--methods", "human", expect=2).stderr)
+        self.call(*run, "--answers", "none", "--methods", "human,gcbc_seg", "--out", "out")
+        self.assertEqual({cell["scenario"]["id"] for cell, _ in self.cells("out").values()}, {"round", "heart"})
+        (self.dir / "round.json").unlink()  # a run holds the scenarios that it played
+        self.call("report", "out")
+        self.call("verify", "out", "--sample", "2")
+
+    def test_a_method_that_asks_fails_where_nobody_answers(self):
+        self.new(*NAME)
+        words = ("--scenario-path", ".", *SMALL, "--answers", "none", "--methods", "lga", "--out", "out")
+        done = self.call("run", "q1", "--scenarios", "round", *words, expect=3)
+        self.assertIn('asks a language model about "Bring me something round.", and --answers none', done.stderr)
+
+    def test_scenarios_beside_a_suite_are_found(self):
+        self.new(*NAME)
+        suite = {"id": "mine", "environment": "tabletop", "scenarios": ["round"], "layouts": ["cells"],
+                 "engines": ["mujoco"], "methods": ["human"], "demonstrations": [2], "seeds": [0], "episodes": 2,
+                 "scene_seed": 0}
+        (self.dir / "suites").mkdir()
+        (self.dir / "round.json").rename(self.dir / "suites/round.json")
+        (self.dir / "suites/mine.json").write_text(json.dumps(suite))
+        self.call("run", "suites/mine.json", "--answers", "none", "--set", "*.epochs=2", "--out", "out")
+
+    def test_what_is_wrong_is_said_and_nothing_is_written(self):
+        for words, reason in [
+            (("round", "--command", "Bring it."), "expected --types"),
+            (("round", "--types", "round"), "expected --command"),
+            ((*NAME, "--textures", "rde"), "rde"),
+            ((*NAME, "--task", "sweep"), '"avoid" for sweep'),
+            ((*NAME, "--task", "rotate"), "angle_deg"),
+            ((*NAME, "--distractors", "x"), "--distractors: expected FEWEST:MOST"),
+        ]:
+            with self.subTest(words):
+                self.assertIn(reason, self.new(*words, expect=2).stderr)
+                self.assertFalse((self.dir / "round.json").exists())
+        self.new(*NAME)
+        self.assertIn("is there already", self.new(*NAME, expect=2).stderr)
+
+    def test_what_cannot_be_shown_or_solved_is_a_problem(self):
+        self.new("any", "--command", "Bring me anything.", "--types", "ALL")
+        said = self.call("check-scenario", "any.json", "--scenes", "2", expect=1).stdout
+        self.assertRegex(said, r"problem +test, cells")
+        self.assertFalse((self.dir / "any.png").exists())
+        self.new("lone", "--command", "Bring me the heart.", "--types", "heart", "--distractors", "0:0")
+        said = self.call("check-scenario", "lone.json", "--scenes", "2").stdout
+        self.assertRegex(said, r"note +test, cells +any visible object is right")
+
+    def test_ids_are_unique(self):
+        self.new("heart", "--command", "Bring me the heart.", "--types", "heart")
+        done = self.call("list", "--scenario-path", ".", expect=2)
+        self.assertIn("heart.json: expected another id", done.stderr)
+        self.assertIn("expected a directory", self.call("list", "--scenario-path", "missing", expect=2).stderr)
+        os.rename(self.dir / "heart.json", self.dir / "mine.json")
+        done = self.call("render", "mine", "--scenario-path", ".", expect=2)
+        self.assertIn('/id: expected "mine", as the file is named', done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
