@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scratch.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>

@@ -281,6 +281,24 @@ class Shards(Case):
         for shard in ("0/2", "3/2", "1", "1/2/3", "x/2", "1/"):
             self.assertRegex(self.call(*one, "--shard", shard, expect=2).stderr, rf"--shard {shard}: expected i/n")
 
+    def test_runs_of_other_methods_and_seeds_make_one(self):
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--episodes", "2", "--plugin-path", FIXTURES / "good"]
+        self.call(*one, "--methods", "fixture_constant", "--seeds", "0", "--out", "first")
+        self.call(*one, "--methods", "fixture_constant", "--seeds", "0,1", "--no-reference", "--out", "seeds")
+        self.call(*one, "--methods", "gcbc_seg+epochs=1", "--seeds", "0", "--no-reference", "--out", "method")
+        self.call("merge", "all", "first", "seeds", "method")
+        self.assert_matches_schemas("all")
+        together = set().union(*(self.cells(run) for run in ("first", "seeds", "method")))
+        self.assertEqual(set(self.cells("all")), together)
+        run = json.loads((self.dir / "all/run.json").read_text())
+        self.assertEqual(sorted(run["cells"]), sorted(together))
+        self.assertEqual((run["request"]["methods"], run["request"]["seeds"], run["request"]["references"]),
+                         (["fixture_constant", "gcbc_seg+epochs=1"], [0, 1], True))
+        self.assertEqual({plugin["id"] for plugin in run["plugins"]} - {"mujoco", "bullet"}, {"fixture_constant", "gcbc_seg"})
+        self.assertEqual(run["settings"], {"gcbc_seg": {"epochs": 1}} | json.loads(
+            (self.dir / "first/run.json").read_text())["settings"])
+        self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")
+
     def test_one_without_cells_says_so(self):
         said = self.call("run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10",
                          "--seeds", "0", "--plugin-path", FIXTURES / "good", "--no-reference", "--shard", "2/2", "--out", "out")

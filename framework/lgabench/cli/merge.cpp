@@ -1,4 +1,4 @@
-// lgabench merge: the shards of a run put together.
+// lgabench merge: the shards of a run, or runs of several methods or seeds, put together.
 #include <fmt/format.h>
 
 #include <memory>
@@ -18,20 +18,29 @@ void add_merge(CLI::App& app, int& exit) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("merge", "Put the shards of a run together, and print its table");
+  CLI::App* verb =
+      app.add_subcommand("merge", "Put shards, or runs of other methods or seeds, together, and print the table");
   verb->add_option("OUT", options->out, "The directory to write")->required();
-  verb->add_option("RUN", options->runs, "Directories of the same run; they stay as they are")->required();
+  verb->add_option(
+          "RUN", options->runs,
+          "Shards of one run, or runs that differ in methods, scenarios, layouts, engines, demonstrations or seeds "
+          "alone; they stay as they are")
+      ->required();
   verb->add_flag("--json", options->json, "Print summary.json instead of the table");
   arrange(*verb, "", {{"OUT", "OUT"}, {"RUN", "RUN"}});
-  verb->footer("Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2");
+  verb->footer(
+      "Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2\n"
+      "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method");
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, joined(command_line()));
     if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);
     to_stderr("{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
               outcome.missing);
     if (outcome.failed + outcome.missing > 0)
-      to_stderr("The command of one of the runs, with --out {} and without --shard, computes the rest.\n",
-                options->out.string());
+      to_stderr(
+          "Shards: the command of one of them, with --out {} and without --shard, computes the rest. Other runs: "
+          "resume each, and merge again.\n",
+          options->out.string());
     exit = outcome.failed ? cells_failed : ok;
   });
 }

@@ -10,8 +10,8 @@ namespace lgabench {
 /// The files of a finished cell, status.json, which is written last, excepted.
 extern const std::vector<std::string> cell_files;
 
-/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names are
-/// letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
+/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names
+/// are letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
 std::vector<std::string> artefact_names(const fs::path& files);
 
 /// 16 hexadecimal digits: the name of a cell's directory.

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <map>
+#include <string_view>
 
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -17,12 +19,16 @@
 namespace lgabench {
 namespace {
 
+// Of a run's settings: what another part may have more of.
+constexpr std::array<std::string_view, 6> grid_lists{"methods", "scenarios",      "layouts",
+                                                     "engines", "demonstrations", "seeds"};
+
 // A run to read from, which nobody writes into meanwhile.
 class Part {
  public:
   explicit Part(const fs::path& path) : path_(path), json_(read_json(path / "run.json", Links::refused)) {
     const JsonReader reader(json_, (path / "run.json").string());
-    keys_ = read_cell_keys(reader);
+    read_cell_keys(reader);
     expect_plain_run(path);
     reader.at("command").string();
     reader.at("version").string();
@@ -44,39 +50,65 @@ class Part {
   Part(Part&& other) noexcept
       : path_(std::move(other.path_)),
         json_(std::move(other.json_)),
-        keys_(std::move(other.keys_)),
         programs_(std::move(other.programs_)),
         lock_(std::exchange(other.lock_, -1)) {}
   Part& operator=(Part&&) = delete;
 
   const fs::path& path() const { return path_; }
   const Json& json() const { return json_; }
-  const std::vector<std::string>& keys() const { return keys_; }
   const std::map<std::string, Json>& programs() const { return programs_; }
   fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
 
  private:
   fs::path path_;
   Json json_;
-  std::vector<std::string> keys_;
   std::map<std::string, Json> programs_;  // file, or kind and id of a plugin -> sha256
   int lock_ = -1;
 };
 
-void expect_one_run(const Part& first, const Part& other) {
-  const auto refuse = [&](const std::string& what) {
-    throw InputError(
-        fmt::format("{} and {} are not parts of one run: {}", first.path().string(), other.path().string(), what));
-  };
+[[noreturn]] void refuse(const Part& first, const Part& other, const std::string& what) {
+  throw InputError(
+      fmt::format("{} and {} are not parts of one run: {}", first.path().string(), other.path().string(), what));
+}
+
+// The programs that both name are the same; a part may lack another part's plugins.
+void expect_same_programs(const Part& first, const Part& other) {
   const std::string version = first.json().at("version"), other_version = other.json().at("version");
   if (!same_cells(version, other_version))
-    refuse(fmt::format("one is of lgabench {}, one of {}", version, other_version));
-  if (first.json().at("cells") != other.json().at("cells"))
-    refuse("other cells: " + difference(first.json(), other.json()));
-  for (const auto& [program, hash] : first.programs()) {
-    const auto there = other.programs().find(program);
-    if (there == other.programs().end() || there->second != hash) refuse("other builds of " + program);
+    refuse(first, other, fmt::format("one is of lgabench {}, one of {}", version, other_version));
+  for (const auto& [program, hash] : first.programs())
+    if (const auto there = other.programs().find(program); there != other.programs().end() && there->second != hash)
+      refuse(first, other, "other builds of " + program);
+}
+
+// Adds to a list of `all` what `more` has beyond it.
+void unite(Json& all, const Json& more) {
+  for (const Json& item : more)
+    if (std::find(all.begin(), all.end(), item) == all.end()) all.push_back(item);
+}
+
+// What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
+// nothing else in the settings changed.
+Json united(Json all, const Part& first, const Part& more) {
+  if (all.at("cells") == more.json().at("cells")) return all;
+  const Json request = more.json().value("request", Json::object());
+  const std::string differs = difference(all, more.json());
+  if (!all.value("request", Json()).is_object() || !request.is_object()) refuse(first, more, "other cells: " + differs);
+  for (const auto& [member, value] : request.items()) {
+    const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
+    Json& there = all["request"][member];
+    if (may_grow && there.is_array() && value.is_array())
+      unite(there, value);
+    else if (member == "references" && there.is_boolean() && value.is_boolean())
+      there = there.get<bool>() || value.get<bool>();
+    else if (there != value)
+      refuse(first, more, "other cells: " + differs);
   }
+  unite(all["cells"], more.json().at("cells"));
+  unite(all["plugins"], more.json().at("plugins"));
+  const Json settings = more.json().value("settings", Json::object());
+  for (const auto& [row, options] : settings.items()) all["settings"][row] = options;
+  return all;
 }
 
 // What status.json says of a cell that the run's own programs computed.
@@ -157,8 +189,8 @@ const Part& with_all_replies(const std::vector<Part>& parts) {
   return *all;
 }
 
-Json merged_json(const std::vector<Part>& parts, const Json& answers, const std::string& command) {
-  Json json = parts.front().json(), merged = Json::array();
+Json merged_json(Json json, const std::vector<Part>& parts, const Json& answers, const std::string& command) {
+  Json merged = Json::array();
   if (!answers.is_null()) json["answers"] = answers;
   for (const Part& part : parts) {
     Json own = Json::object();
@@ -195,16 +227,18 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     if (fs::equivalent(run, out, not_there))
       throw InputError(fmt::format("{}: both to be read and to be written; expected another OUT", out.string()));
     parts.emplace_back(run);
-    expect_one_run(parts.front(), parts.back());
+    expect_same_programs(parts.front(), parts.back());
   }
+  Json all = parts.front().json();
+  for (const Part& part : parts) all = united(std::move(all), parts.front(), part);
   MergeOutcome outcome;
   std::map<std::string, fs::path> chosen;
-  for (const std::string& key : parts.front().keys())
+  for (const std::string& key : all.at("cells").get<std::vector<std::string>>())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
 
   const Part& replies = with_all_replies(parts);
   const Json answers = replies.json().value("answers", Json());
-  const RunDirectory directory(out, merged_json(parts, answers, command), Existing::resume);
+  const RunDirectory directory(out, merged_json(std::move(all), parts, answers, command), Existing::resume);
   for (const Part& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;
