@@ -18,7 +18,7 @@ class OwnScenario(Case):
 
     def test_from_nothing_to_a_table(self):
         said = self.new(*NAME, "--textures", "red,blue", "--hard", "--unseen", "Bring me the wheel.").stdout
-        self.assertIn("lgabench check-scenario ./round.json", said)
+        self.assertIn("lgabench check-scenario round.json", said)
         arms = [arm["arm"] for arm in json.loads((self.dir / "round.json").read_text())["tests"]]
         self.assertEqual(arms, ["test", "hard", "unseen"])
         checked = self.call("check-scenario", "round.json", "--scenes", "4").stdout
@@ -68,10 +68,10 @@ class OwnScenario(Case):
         self.assertIn("is there already", self.new(*NAME, expect=2).stderr)
 
     def test_what_cannot_be_shown_or_solved_is_a_problem(self):
-        self.new("any", "--command", "Bring me anything.", "--types", "ALL")
-        said = self.call("check-scenario", "any.json", "--scenes", "2", expect=1).stdout
-        self.assertRegex(said, r"problem +test, cells")
-        self.assertFalse((self.dir / "any.png").exists())
+        self.new("fixed", "--command", "Bring me the pallet.", "--types", "pallet")
+        said = self.call("check-scenario", "fixed.json", "--scenes", "2", expect=1).stdout
+        self.assertRegex(said, r"problem +test, cells +.*expected a distribution with a target that can be shown")
+        self.assertFalse((self.dir / "fixed.png").exists())
         self.new("lone", "--command", "Bring me the heart.", "--types", "heart", "--distractors", "0:0")
         said = self.call("check-scenario", "lone.json", "--scenes", "2").stdout
         self.assertRegex(said, r"note +test, cells +any visible object is right")

@@ -58,7 +58,10 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
       scenes.push_back(
           {arm == "train" ? training_scene(scenario, layout, {}, 0, i) : test_scene(scenario, layout, arm, 0, i)});
   } catch (const InputError& e) {
-    return report.problem(where, e.what(), "the sets of target, avoid and distractors must leave something to show");
+    constexpr std::size_t most = 160;  // some hold a whole distribution
+    const std::string reason = e.what();
+    return report.problem(where, reason.size() > most ? reason.substr(0, most) + "..." : reason,
+                          "the sets of target, avoid and distractors must leave something to show");
   }
   const Played oracle = play(environment, scenario, scenes, "oracle");
   const Played any = play(environment, scenario, scenes, "random_object");

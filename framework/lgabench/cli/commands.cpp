@@ -49,7 +49,7 @@ void add_commands(CLI::App& app, int& exit) {
 
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
-      {"To look at what there is", {"list", "info", "select", "render", "demos"}},
+      {"To look at what there is", {"list", "info", "select", "render", "demos", "replay"}},
       {"To run and to compare", {"run", "report", "compare", "verify", "merge"}},
       {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
       {"To clean up", {"cache"}}};

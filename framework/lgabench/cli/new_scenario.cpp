@@ -73,7 +73,7 @@ Json scenario_json(const Arguments& a) {
 }
 
 void new_scenario(Arguments a) {
-  const fs::path file = a.directory / (a.name + ".json");
+  const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
     throw InputError(fmt::format("{}: is there already; nothing was written", file.string()));
   ask(a.commands, "--command TEXT", "What is the command?", false);
@@ -81,7 +81,7 @@ void new_scenario(Arguments a) {
   const Json json = scenario_json(a);
   read_scenario(json, file.string());  // the reader of runs judges what was given
   write_file(file, json.dump(1) + "\n");
-  const std::string path = fs::absolute(a.directory).lexically_normal().string();
+  const std::string path = fs::weakly_canonical(a.directory).string();
   to_stdout("{}\n\nTo sample it, let the oracle play it, and draw it:\n  lgabench check-scenario {}\n", file.string(),
             file.string());
   to_stdout("To run it:\n  lgabench run q1 --scenarios {} --scenario-path {} --answers none --methods human,gcbc_seg\n",

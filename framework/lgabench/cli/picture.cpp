@@ -2,6 +2,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/core/error.hpp>
@@ -24,6 +25,20 @@ void Picture::paste(int left, int top, int columns, int rows, int zoom,
       const Rgb c = colour(x / zoom, y / zoom);
       std::copy(c.begin(), c.end(), rgb_.begin() + 3 * ((top + y) * width_ + left + x));
     }
+}
+
+void Picture::dot(double x, double y, double radius, const Rgb& colour) {
+  const auto from = [radius](double middle) { return std::max(0, static_cast<int>(middle - radius)); };
+  const auto to = [radius](double middle, int size) { return std::min(size - 1, static_cast<int>(middle + radius)); };
+  for (int row = from(y); row <= to(y, height_); ++row)
+    for (int column = from(x); column <= to(x, width_); ++column)
+      if (std::hypot(column + .5 - x, row + .5 - y) < radius)
+        std::copy(colour.begin(), colour.end(), rgb_.begin() + 3 * (row * width_ + column));
+}
+
+Rgb Picture::at(int x, int y) const {
+  const auto i = static_cast<std::size_t>(3 * (y * width_ + x));
+  return {rgb_[i], rgb_[i + 1], rgb_[i + 2]};
 }
 
 std::string Picture::png() const {

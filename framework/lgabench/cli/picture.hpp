@@ -24,6 +24,16 @@ class Picture {
   /// Draws columns x rows squares of `zoom` pixels each, the first at (left, top). @pre They fit.
   void paste(int left, int top, int columns, int rows, int zoom, const std::function<Rgb(int column, int row)>& colour);
 
+  /// Fills the pixels whose centres are nearer than `radius` to (x, y), as far as they are in the picture.
+  void dot(double x, double y, double radius, const Rgb& colour);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// @pre In the picture.
+  Rgb at(int x, int y) const;
+  /// Row by row, three bytes a pixel.
+  const std::vector<std::uint8_t>& rgb() const { return rgb_; }
+
   /// @throws Error if libpng cannot write it.
   std::string png() const;
 

@@ -46,6 +46,7 @@ void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
+void add_replay(CLI::App& app, int& exit);
 void add_check_scenario(CLI::App& app, int& exit);
 
 /// A check for an option: a number from `low` to `high`, which NaN is not.

@@ -22,5 +22,6 @@ int main(int argc, char** argv) {
   cli::add_render(app, exit);
   cli::add_pictures(app, exit);
   cli::add_check_scenario(app, exit);
+  cli::add_replay(app, exit);
   return cli::dispatch(app, argc, argv, exit);
 }

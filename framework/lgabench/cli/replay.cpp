@@ -1,0 +1,190 @@
+// lgabench replay RUN EPISODE: a recorded episode played again, to be looked at.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <lgabench/cli/commands.hpp>
+#include <lgabench/cli/gif.hpp>
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/watched_world.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/environments.hpp>
+#include <lgabench/plugin/loader.hpp>
+#include <tabletop/renderer.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+constexpr double frame_s = .05;  // of simulated time
+constexpr int zoom = 3;
+
+struct Arguments {
+  fs::path run, out;
+  std::string episode;
+  std::vector<fs::path> plugin_path;
+};
+
+// An episode as recorded.
+struct Recorded {
+  Cell cell;
+  Scenario scenario;
+  std::string arm, outcome, scene;  // outcome: to_string(Failure); scene: its hash
+  int index = 0;
+  Action action;
+};
+
+// The only cell whose key begins so.
+fs::path cell_of(const fs::path& run, const std::string& key) {
+  fs::path found;
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(run / "cells", none_there)) {
+    if (key.empty() || entry.path().filename().string().rfind(key, 0) != 0) continue;
+    if (!found.empty()) throw InputError(fmt::format("replay: several cells begin with {}", key));
+    found = entry.path();
+  }
+  if (found.empty()) throw InputError(fmt::format("replay: no cell of {} begins with \"{}\"", run.string(), key));
+  return found;
+}
+
+// KEY/ARM/INDEX, or KEY/INDEX of the first arm.
+Recorded recorded(const Arguments& a) {
+  const std::size_t first = a.episode.find('/'), last = a.episode.rfind('/');
+  Recorded episode;
+  if (first == std::string::npos || !CLI::detail::lexical_cast(a.episode.substr(last + 1), episode.index))
+    throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", a.episode));
+  const fs::path cell = cell_of(a.run, a.episode.substr(0, first));
+  const std::string cell_file = (cell / "cell.json").string(), episodes_file = (cell / "episodes.jsonl").string();
+  episode.cell = read_cell(read_json(cell_file, Links::refused), cell_file);
+  episode.scenario = read_scenario(episode.cell.scenario, cell_file + ": /scenario");
+  episode.arm = first == last ? episode.scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
+  episode.scenario.arm(episode.arm);  // says which there are
+
+  const std::string text = read_file(episodes_file, Links::refused);
+  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const Json json = parse_json(text.substr(begin, end - begin), episodes_file);
+    const JsonReader line(json, episodes_file);
+    if (line.at("arm").string() != episode.arm || line.at("index").integer(0, 1 << 30) != episode.index) continue;
+    episode.outcome = line.at("failure").string();
+    episode.scene = line.at("scene").string();
+    ActionVector numbers{};
+    if (line.at("action").json().is_null())
+      throw InputError(fmt::format("replay: {} ended without an action: {}", a.episode, episode.outcome));
+    const auto values = line.at("action").elements();
+    if (values.size() != numbers.size()) line.at("action").fail(fmt::format("{} numbers", numbers.size()));
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(values[i].number());
+    episode.action = from_vector(numbers);
+    return episode;
+  }
+  throw InputError(fmt::format("replay: {} has no episode {} in arm {}", cell.string(), episode.index, episode.arm));
+}
+
+// Where a point on the table is in the enlarged picture.
+Vec2 in_picture(Vec2 table_m) {
+  return {zoom * Workspace::columns * (table_m.y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min),
+          zoom * Workspace::rows * (table_m.x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min)};
+}
+
+void draw(const Tool& tool, Picture& picture) {
+  constexpr Rgb colour{255, 0, 160};
+  const Vec2 at{tool.pose.position_m.x, tool.pose.position_m.y};
+  const auto dots = [&](Vec2 from, Vec2 to) {
+    constexpr int count = 40;
+    for (int i = 0; i <= count; ++i) {
+      const double share = static_cast<double>(i) / count;
+      const Vec2 p = in_picture({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
+      picture.dot(p.x, p.y, 2, colour);
+    }
+  };
+  if (tool.box_m) {
+    const Vec3 half = .5 * *tool.box_m;
+    const auto corner = [&](double x, double y) {
+      const Vec3 turned = rotated({x * half.x, y * half.y, 0}, tool.pose.rotation);
+      return Vec2{at.x + turned.x, at.y + turned.y};
+    };
+    dots(corner(-1, -1), corner(1, -1));
+    dots(corner(1, -1), corner(1, 1));
+    dots(corner(1, 1), corner(-1, 1));
+    dots(corner(-1, 1), corner(-1, -1));
+  } else {
+    constexpr double arm_m = .02;
+    dots({at.x - arm_m, at.y}, {at.x + arm_m, at.y});
+    dots({at.x, at.y - arm_m}, {at.x, at.y + arm_m});
+  }
+}
+
+// Eight of the frames, first and last among them, below each other in two columns.
+Picture filmstrip(const std::vector<Picture>& frames) {
+  constexpr int count = 8, across = 2, gutter = 8;
+  const int width = frames.front().width(), height = frames.front().height();
+  Picture strip(across * (width + gutter) - gutter, count / across * (height + gutter) - gutter);
+  for (int i = 0; i < count; ++i) {
+    const Picture& frame = frames[static_cast<std::size_t>(i) * (frames.size() - 1) / (count - 1)];
+    strip.paste(i % across * (width + gutter), i / across * (height + gutter), width, height, 1,
+                [&](int column, int row) { return frame.at(column, row); });
+  }
+  return strip;
+}
+
+void replay(const Arguments& a) {
+  const std::string ending = a.out.extension().string();
+  if (ending != ".gif" && ending != ".png") throw InputError("replay: expected --out FILE.gif or FILE.png");
+  const Recorded episode = recorded(a);
+  const Scene scene = test_scene(episode.scenario, episode.cell.layout, episode.arm, episode.cell.scene_seed,
+                                 episode.index, episode.cell.scenes_of_seed());
+  if (hex(scene.hash()) != episode.scene)
+    throw InputError("replay: this version samples another scene than the run played");
+
+  tabletop::Renderer renderer;
+  std::vector<tabletop::VisibleObject> objects = tabletop::visible_objects(scene);
+  std::vector<Picture> frames;
+  const auto add = [&](const Observation& seen, const std::optional<Tool>& tool) {
+    frames.emplace_back(zoom * Observation::columns, zoom * Observation::rows);
+    frames.back().paste(0, 0, Observation::columns, Observation::rows, zoom, [&](int column, int row) {
+      return pixel_colour(seen, static_cast<std::size_t>(row * Observation::columns + column));
+    });
+    if (tool) draw(*tool, frames.back());
+  };
+  const auto look = [&](const PhysicsWorld& world, const std::optional<Tool>& tool) {
+    for (std::size_t i = 0; i < objects.size(); ++i) objects[i].pose = world.pose(static_cast<int>(i));
+    add(renderer.render(objects, tabletop::ground_of(scene)), tool);
+  };
+  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  const auto environment = make_environment(
+      episode.scenario,
+      std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", episode.cell.engine)), frame_s, look));
+  add(environment->reset(scene), std::nullopt);
+  const StepResult end = environment->step(episode.action);
+  add(end.observation, std::nullopt);
+
+  write_file(a.out, ending == ".gif" ? gif(frames, frame_s) : filmstrip(frames).png());
+  const std::string outcome = to_string(end.failure);
+  to_stdout("{}: {} frames; {} {}\n", a.out.string(), frames.size(), end.failure == Failure::none ? "success" : outcome,
+            outcome == episode.outcome ? "as recorded" : "here, recorded as " + episode.outcome);
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int&) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
+  verb->add_option("run", a->run, "The run's directory")->required();
+  verb->add_option("episode", a->episode,
+                   "The cell's key or its beginning, the arm, the scene's number; without an arm, the scenario's first")
+      ->required();
+  verb->add_option("--out", a->out, "An animation, FILE.gif, or a film strip, FILE.png")->required();
+  add_plugin_path(*verb, a->plugin_path);
+  arrange(*verb, "", {{"run", "RUN"}, {"episode", "KEY/ARM/INDEX"}, {"--out", "FILE"}, {"--plugin-path", "PATH"}});
+  verb->footer(
+      "The recorded action is carried out on the recorded engine; the method is not asked. Pink: where suction holds, "
+      "or the "
+      "spatula.\nExample: lgabench replay runs/q1 752bdc8e/test/3 --out episode.gif");
+  verb->callback([a] { replay(*a); });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,83 @@
+"""Every command that README and docs show: those of seconds run, runs are planned with --dry-run.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 documents_test.py DocumentedCommands
+"""
+import pathlib
+import re
+import shlex
+import shutil
+import unittest
+
+from case import Case, FIXTURES
+
+SOURCE = pathlib.Path(__file__).parents[2]
+PAGES = sorted([SOURCE / "README.md", *(SOURCE / "docs").glob("*.md")])
+# A reader's own things -> what stands for them here.
+OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "run", "runs/BEFORE": "run",
+       "runs/AFTER": "run", "RUN": "run", "runs/q1": "run"}
+WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
+ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin"}  # run_test, verify_test, consumer_test
+
+
+def commands(page):
+    """The words after `lgabench` of each command in a block or a table; a continued line counts as one."""
+    text = re.sub(r" *\\\n *", " ", page.read_text())
+    for line in re.findall(r"^    (?:\S*/)?lgabench (.*)$|^\| `lgabench ([^`]*)` \|", text, re.M):
+        yield shlex.split(re.sub(r" {2,}#.*", "", "".join(line)))
+
+
+class DocumentedCommands(Case):
+    def setUp(self):
+        super().setUp()
+        self.call("run", "q1", "--limit", "4", "--out", "run", "--set", "*.epochs=2")
+        shutil.copy(SOURCE / "examples/python/lga_torch.py", self.dir)
+        self.call("new-plugin", "my_method", "--kind", "python", "--directory", "python")
+        shutil.copy(self.dir / "python/my_method.py", self.dir)
+        suite = (SOURCE / "envs/tabletop/suites/q2.json").read_text()
+        (self.dir / "my_suite.json").write_text(suite.replace('"id": "q2"', '"id": "my_suite"'))
+
+    def here(self, words):
+        """With what stands for a reader's own things."""
+        words = [re.sub(r"\b(my_method|my_engine)\b(?!\.py)", lambda own: OWN[own[1]], OWN.get(word, word))
+                 .replace("examples/python/", "") for word in words]
+        while "--plugin-path" in words:
+            at = words.index("--plugin-path")
+            del words[at:at + 2]
+        for i, word in enumerate(words):
+            if word.startswith(WITH_A_SERVER):
+                words[i] = "recorded"
+        for option in "--model", "--cassette":
+            if option in words:
+                del words[words.index(option):words.index(option) + 2]
+        return words
+
+    def test_each_is_as_the_program_takes_it(self):
+        ran, planned = 0, 0
+        for page in PAGES:
+            for shown in commands(page):
+                verb = shown[0]
+                asks_a_server = any(word.startswith(WITH_A_SERVER) for word in shown)
+                if not verb.islower() or verb in ELSEWHERE or verb == "select" and asks_a_server:
+                    continue
+                words = self.here(shown)
+                with self.subTest(page=page.name, command=" ".join(shown)):
+                    if verb == "run":
+                        words = [word for word in words if word not in ("--debug", "KEY", "--resume")]
+                        dry = [] if "--dry-run" in words else ["--dry-run"]
+                        self.call(*words, *dry, "--plugin-path", FIXTURES / "good")
+                        planned += 1
+                    else:
+                        if "--difference" in words:
+                            words[words.index("--difference") + 1] = "lga,lga_s"
+                        if verb == "replay":
+                            words[2] = next(key for key, (cell, _) in self.cells("run").items()) + "/0"
+                        if verb == "new-scenario":
+                            (self.dir / "round.json").unlink(missing_ok=True)
+                        self.call(*words)
+                        ran += 1
+        self.assertGreater(ran, 12)
+        self.assertGreater(planned, 20)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,60 @@
+"""lgabench replay: a recorded episode played again ends as recorded, and is drawn.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 replay_test.py Replay
+"""
+import json
+import re
+
+import unittest
+
+from case import Case
+
+
+class Replay(Case):
+    def setUp(self):
+        super().setUp()
+        self.call("run", "q1", "--scenarios", "heart,rotate_block,sweep_block_without_touching_pan", "--methods", "lga",
+                  "--demos", "3", "--seeds", "0", "--episodes", "3", "--set", "*.epochs=20", "--out", "out")
+
+    def episodes(self):
+        for key, (cell, _) in sorted(self.cells("out").items()):
+            for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines():
+                yield key, cell["scenario"]["id"], json.loads(line)
+
+    def test_each_ends_as_recorded(self):
+        outcomes = set()
+        for key, scenario, episode in self.episodes():
+            said = self.call("replay", "out", f"{key}/test/{episode['index']}", "--out", "e.gif").stdout
+            expected = "success" if episode["success"] else episode["failure"]
+            self.assertRegex(said, rf"^e.gif: \d+ frames; {expected} as recorded$")
+            outcomes.add((scenario, expected))
+            bytes_ = (self.dir / "e.gif").read_bytes()
+            self.assertTrue(bytes_.startswith(b"GIF89a") and bytes_.endswith(b"\x3b"))
+            frames = int(re.search(r"(\d+) frames", said)[1])
+            self.assertEqual(bytes_.count(b"\x21\xf9\x04"), frames)
+            self.assertGreater(frames, 10 if expected == "success" else 1)
+        self.assertGreater(len(outcomes), 5)
+
+    def test_a_changed_record_is_seen(self):
+        key, _, episode = next(e for e in self.episodes() if e[2]["success"])
+        file = self.dir / "out/cells" / key / "episodes.jsonl"
+        line = json.dumps({**episode, "failure": "wrong_object", "success": False})
+        file.write_text(line + "\n")
+        said = self.call("replay", "out", f"{key[:6]}/{episode['index']}", "--out", "e.png").stdout
+        self.assertIn("success here, recorded as wrong_object", said)
+        self.assertTrue((self.dir / "e.png").read_bytes().startswith(b"\x89PNG"))
+        file.write_text(line.replace(episode["scene"], "0" * 16) + "\n")
+        self.assertIn("another scene", self.call("replay", "out", f"{key}/{episode['index']}", "--out", "e.png", expect=2).stderr)
+
+    def test_what_is_wrong_is_said(self):
+        key = next(iter(self.cells("out")))
+        for episode, out, reason in [(f"{key}/test/3", "e.gif", "has no episode 3 in arm test"),
+                                     (f"{key}/nope/0", "e.gif", 'arm "nope"'), (key, "e.gif", "expected KEY/ARM/INDEX"),
+                                     ("zz/0", "e.gif", 'begins with "zz"'), (f"{key}/0", "e.mp4", "FILE.gif or FILE.png"),
+                                     ("/0", "e.gif", "no cell")]:
+            with self.subTest(episode):
+                self.assertIn(reason, self.call("replay", "out", episode, "--out", out, expect=2).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
