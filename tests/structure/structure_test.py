@@ -34,16 +34,16 @@ class IncludeGraph(unittest.TestCase):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
-        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|tabletop/|torch|ATen|opencv|boost|mujoco")
+        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|tabletop/|torch|ATen|boost|mujoco")
 
     def test_abstraction_knows_only_core(self):
-        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|tabletop/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|tabletop/|torch|ATen|mujoco")
 
     def test_learning_knows_core_and_abstraction(self):
         self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|tabletop/|mujoco")
 
     def test_host_knows_core_and_plugin(self):
-        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|tabletop/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|tabletop/|torch|ATen|mujoco")
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
@@ -70,13 +70,13 @@ class Needed(unittest.TestCase):
 
     def test_programs_do_not_link_torch(self):
         for program in ("bin/lgabench", "bin/lgabench-worker", "bin/lgabench-method"):
-            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning")
+            self.forbid(program, r"torch|c10|mujoco|Bullet|liblgabench_learning")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
-        self.forbid("bin/lgabench", r"tabletop|embree|opencv|hdf5")
+        self.forbid("bin/lgabench", r"tabletop|embree|hdf5")
 
     def test_core_is_light(self):
-        self.forbid("lib/liblgabench_core.so", r"torch|c10|opencv|embree|hdf5")
+        self.forbid("lib/liblgabench_core.so", r"torch|c10|embree|hdf5")
 
     def test_plugins_take_the_framework_as_a_shared_library(self):
         plugins = sorted((BUILD / "lib/lgabench/plugins").glob("*.so"))

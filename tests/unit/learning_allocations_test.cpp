@@ -4,10 +4,12 @@
 #include <cstdlib>
 #include <new>
 #include <numeric>
+#include <vector>
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/inputs.hpp>
 #include <lgabench/learning/network.hpp>
 
 namespace {
@@ -47,6 +49,16 @@ TEST(Allocations, ATrainingStepMakesNone) {
     for (int i = 0; i < 20; ++i) step(i % 11);
     EXPECT_EQ(allocations, before);
   }
+}
+
+TEST(Allocations, ShrinkingColoursMakesNone) {
+  const std::vector<std::uint8_t> rgb(std::size_t{Observation::rows} * Observation::columns * 3, 200);
+  std::vector<float> small(3 * input_pixels);
+  shrink_rgb(rgb, small.data());
+  const long long before = allocations;
+  shrink_rgb(rgb, small.data());
+  EXPECT_EQ(allocations, before);
+  for (const float value : small) EXPECT_NEAR(value, 200 / 255.0, 1e-6);
 }
 
 struct MaskCloner : CloningMethod {
