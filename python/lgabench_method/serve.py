@@ -6,6 +6,7 @@ import os
 import pathlib
 import struct
 import sys
+import time
 import traceback
 
 from lgabench_method import Needs, Refused, Services, values
@@ -53,10 +54,23 @@ class _Human(_Worker):
         return values.selection(self.ask(question, "person")["selection"])
 
 
-class _Log(_Worker):
+class _Log:
+    """Sent twice a second, and before the reply: a frame for each epoch would wake the worker for nothing."""
+
+    def __init__(self, channel):
+        self.channel, self.waiting, self.sent = channel, [], time.monotonic()
+
     def epoch(self, epochs, steps, loss):
         """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass."""
-        self.channel.send({"type": "epoch", "epochs": int(epochs), "steps": int(steps)}, struct.pack("<d", loss))
+        self.waiting.append((int(epochs), int(steps), float(loss)))
+        if len(self.waiting) == 1000 or time.monotonic() - self.sent > .5:
+            self.flush()
+
+    def flush(self):
+        if self.waiting:
+            epochs, steps, losses = zip(*self.waiting)
+            self.waiting, self.sent = [], time.monotonic()
+            self.channel.send({"type": "log", "epochs": epochs, "steps": steps}, struct.pack(f"<{len(losses)}d", *losses))
 
 
 class _Beside:
@@ -89,7 +103,7 @@ def load(file, name, sha256):
 
 
 class Host:
-    """One method from loading to its end."""
+    """One method from loading to its end. What answers a frame returns the reply's header and payload."""
 
     def __init__(self, channel, hello, descriptor):
         self.channel = channel
@@ -98,30 +112,30 @@ class Host:
         layout = {"observation": hello["observation"], "action": hello["action"]}
         self.observation = values.ObservationMemory(descriptor, hello["observation"])
         files = os.path.join(os.environ.get("HOME", "."), "files")
-        self.services = Services(_Model(channel), _Human(channel), hello["options"], hello["seed"], _Log(channel), files,
-                                 layout)
+        self.log = _Log(channel)
+        self.services = Services(_Model(channel), _Human(channel), hello["options"], hello["seed"], self.log, files, layout)
         self.kind = load(hello["method"]["file"], hello["method"]["class"], hello["method"]["sha256"])
         self.method = self.kind()
         self.policy = None
 
     def hello(self, header, payload, descriptor):
-        self.channel.send({"type": "hello", "protocol": PROTOCOL})
+        return {"type": "hello", "protocol": PROTOCOL}, b""
 
     def needs(self, header, payload, descriptor):
         if self.method is None:
             self.method = self.kind()
         needs = self.method.needs(self.services.options) if hasattr(self.method, "needs") else Needs()
-        self.channel.send({"type": "needs", **values.needs_json(needs)})
+        return {"type": "needs", **values.needs_json(needs)}, b""
 
     def select(self, header, payload, descriptor):
         chosen = self.method.select(values.command(header["command"]), values.space(header["space"]), self.services)
-        self.channel.send({"type": "selection", "selection": values.selection_json(chosen)})
+        return {"type": "selection", "selection": values.selection_json(chosen)}, b""
 
     def learn(self, header, payload, descriptor):
         self.policy = self.method.learn(values.demonstrations(header, descriptor), self.services)
         if not hasattr(self.policy, "act"):
             raise TypeError(f"learn() returned {type(self.policy).__name__}, expected an object with act()")
-        self.channel.send({"type": "learned"})
+        return {"type": "learned"}, b""
 
     def act(self, header, payload, descriptor):
         if header["reset"] and hasattr(self.policy, "reset"):
@@ -131,17 +145,24 @@ class Host:
         reply = {"type": "action"}
         if getattr(self.policy, "seen_in_training", None) is not None:
             reply["seen_in_training"] = bool(self.policy.seen_in_training)
-        self.channel.send(reply, action)
+        return reply, action
 
     def drop(self, header, payload, descriptor):
         setattr(self, "method" if header["what"] == "method" else "policy", None)
-        self.channel.send({"type": "dropped"})
+        return {"type": "dropped"}, b""
 
     def bye(self, header, payload, descriptor):
         self.policy = self.method = None
         sys.stdout.flush()  # the worker ends this process once it has the answer
         sys.stderr.flush()
-        self.channel.send({"type": "bye"})
+        return {"type": "bye"}, b""
+
+    def answer(self, frame):
+        try:
+            reply = getattr(self, frame[0]["type"])(*frame)
+        finally:  # what was logged comes before the reply, and before what the method raises
+            self.log.flush()
+        self.channel.send(*reply)
 
 
 def _told(channel, kind, call, *arguments):
@@ -166,12 +187,11 @@ def serve(channel):
     host = _told(channel, "plugin", Host, channel, frame[0], frame[2])
     if host is None:
         return
-    answers = {name: getattr(host, name) for name in ("hello", "needs", "select", "learn", "act", "drop", "bye")}
     while frame is not None:
         kind = frame[0]["type"]
-        if kind not in answers:
+        if kind not in ("hello", "needs", "select", "learn", "act", "drop", "bye"):
             raise Malformed(f"no frame of a worker: \"{kind}\"")
-        _told(channel, "method", answers[kind], *frame)
+        _told(channel, "method", host.answer, frame)
         if kind == "bye":
             return
         frame = channel.receive()

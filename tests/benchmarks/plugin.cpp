@@ -87,8 +87,8 @@ void demonstrations(benchmark::State& state) {
   std::size_t bytes = 0;
   for (auto _ : state) {
     const protocol::DemonstrationFile packed = protocol::pack(all);
-    benchmark::DoNotOptimize(protocol::unpack(JsonReader(packed.header, "learn"), packed.memory->file()));
-    bytes = packed.memory->size();
+    benchmark::DoNotOptimize(protocol::unpack(JsonReader(packed.header, "learn"), packed.file));
+    bytes = packed.size;
   }
   state.counters["bytes"] = static_cast<double>(bytes);
 }

@@ -33,8 +33,8 @@ void read(const Frame& frame, Asked& asked, Channel& channel) {
     canonical(to_json(asked.account(protocol::read_selection(reader.at("selection")))));
   } else if (type == "action") {
     protocol::to_bytes(protocol::read_action(frame.payload));
-  } else if (type == "epoch") {
-    reader.at("steps").integer(0, 1LL << 60);
+  } else if (type == "log") {
+    protocol::read_log(frame);
   } else {
     asked.answer(frame, channel);
   }

@@ -153,6 +153,25 @@ TEST(Messages, actions_keep_what_is_no_number) {
   EXPECT_SAYS(message_of<InputError>([] { protocol::read_action("short"); }), "expected 96 bytes");
 }
 
+TEST(Messages, a_log_arrives_as_it_was_reported) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Frame frame = protocol::log_frame({{10, 40, .1}, {20, 80, nan}});
+  const auto read = protocol::read_log(frame);
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].epochs, 10);
+  EXPECT_EQ(read[0].steps, 40);
+  EXPECT_EQ(read[0].loss, .1);
+  EXPECT_EQ(read[1].epochs, 20);
+  EXPECT_TRUE(std::isnan(read[1].loss));
+
+  const auto refusal = [](const Json& header, const std::string& payload) {
+    return message_of<InputError>([&] { protocol::read_log({header, payload}); });
+  };
+  EXPECT_SAYS(refusal({{"epochs", {1, 2}}, {"steps", {1}}}, frame.payload), "/steps: expected as many as epochs");
+  EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}}, frame.payload), "a double for each epoch");
+  EXPECT_SAYS(refusal({{"epochs", {-1}}, {"steps", {1}}}, std::string(8, 0)), "/epochs/0");
+}
+
 Observation observation(std::uint8_t colour) {
   Observation o;
   o.rgb.assign(std::size_t{3} * Observation::rows * Observation::columns, colour);
@@ -175,7 +194,7 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
       {{"other", {}}, {{observation(3), {}}}}};
   const protocol::DemonstrationFile packed = protocol::pack(given);
   const Json header = Json::parse(packed.header.dump());
-  const auto read = protocol::unpack(JsonReader(header, "learn"), packed.memory->file());
+  const auto read = protocol::unpack(JsonReader(header, "learn"), packed.file);
   ASSERT_EQ(read.size(), given.size());
   for (std::size_t d = 0; d < given.size(); ++d) {
     EXPECT_EQ(read[d].instruction.utterance, given[d].instruction.utterance);
@@ -190,8 +209,8 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
     }
   }
   Json beyond = header;
-  beyond["arrays"]["ids"]["offset"] = packed.memory->size();
-  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(JsonReader(beyond, "learn"), packed.memory->file()); }),
+  beyond["arrays"]["ids"]["offset"] = packed.size;
+  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(JsonReader(beyond, "learn"), packed.file); }),
               "an array within the file");
 }
 
@@ -199,7 +218,8 @@ TEST(Messages, an_observation_arrives_through_shared_memory) {
   protocol::SharedMemory memory(protocol::observation_bytes);
   protocol::write(observation(7), memory);
   const Json instances = protocol::instances_json(observation(7));
-  const Observation read = protocol::read_observation(memory, JsonReader(instances, "act"));
+  Observation read;
+  protocol::read_observation(memory, JsonReader(instances, "act"), read);
   EXPECT_EQ(read.rgb, observation(7).rgb);
   EXPECT_EQ(read.ids, observation(7).ids);
   EXPECT_EQ(protocol::instances_json(read), instances);

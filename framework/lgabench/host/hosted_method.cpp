@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <new>
 
@@ -50,8 +49,8 @@ Reach reach_of(const HostJob& job) {
   const fs::path data = data_directory(), bin = program_directory();
   Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/ssl/openssl.cnf",
                "/etc/localtime", "/usr/share/zoneinfo", "/usr/share/locale", "/proc/cpuinfo", "/proc/meminfo",
-               "/sys/devices/system/cpu", "/dev/urandom", bin / "lgabench-method", bin.parent_path() / "lib",
-               job.method.file.parent_path()},
+               "/sys/devices/system/cpu", "/sys/kernel/mm/transparent_hugepage", "/dev/urandom",
+               bin / "lgabench-method", bin.parent_path() / "lib", job.method.file.parent_path()},
               {job.scratch, "/dev/null", "/dev/zero"},
               job.hidden,
               job.method.asks == "network"};
@@ -179,13 +178,6 @@ class HostedPolicy : public Policy {
   std::optional<bool> seen_;
 };
 
-double number_of(const std::string& payload) {
-  double value = 0;
-  if (payload.size() != sizeof value) throw Malformed("epoch: expected a payload of one double");
-  std::memcpy(&value, payload.data(), sizeof value);
-  return value;
-}
-
 }  // namespace
 
 HostedMethod::HostedMethod(const HostJob& job) : files_(job.scratch / "files") {
@@ -220,20 +212,16 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
   const FeatureSpace none;
   Asked asked(none, services);
   const auto answer = [&](const Frame& frame, Channel& channel) {
-    if (frame.type() != "epoch") return asked.answer(frame, channel);
-    const auto [epochs, steps] = protocol::read_or_malformed([&] {
-      const JsonReader reader(frame.header, "epoch");
-      return std::pair(static_cast<int>(reader.at("epochs").integer(0, 1 << 30)),
-                       reader.at("steps").integer(0, 1LL << 60));
-    });
-    services.log.epoch(epochs, steps, number_of(frame.payload));
+    if (frame.type() != "log") return asked.answer(frame, channel);
+    for (const auto& [epochs, steps, loss] : protocol::read_or_malformed([&] { return protocol::read_log(frame); }))
+      services.log.epoch(epochs, steps, loss);
     return true;
   };
   const protocol::DemonstrationFile packed = protocol::pack(demonstrations);
   Json request = packed.header;
   request["type"] = "learn";
   try {
-    session_->call(request, "learned", answer, &packed.memory->file());
+    session_->call(request, "learned", answer, &packed.file);
   } catch (const MethodError&) {
     asked.rethrow();
     throw;

@@ -130,6 +130,30 @@ ProcessState read_state(const JsonReader& reader) {
   return state;
 }
 
+Frame log_frame(const std::vector<LogEntry>& entries) {
+  Frame frame{{{"type", "log"}, {"epochs", Json::array()}, {"steps", Json::array()}}};
+  for (const LogEntry& entry : entries) {
+    frame.header["epochs"].push_back(entry.epochs);
+    frame.header["steps"].push_back(entry.steps);
+    frame.payload.append(reinterpret_cast<const char*>(&entry.loss), sizeof entry.loss);
+  }
+  return frame;
+}
+
+std::vector<LogEntry> read_log(const Frame& frame) {
+  const JsonReader reader(frame.header, "log");
+  const std::vector<JsonReader> epochs = reader.at("epochs").elements(), steps = reader.at("steps").elements();
+  std::vector<LogEntry> entries(epochs.size());
+  if (steps.size() != entries.size()) reader.at("steps").fail("as many as epochs");
+  if (frame.payload.size() != entries.size() * sizeof(double)) reader.fail("a payload of a double for each epoch");
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i].epochs = static_cast<int>(epochs[i].integer(0, 1 << 30));
+    entries[i].steps = steps[i].integer(0, 1LL << 60);
+    std::memcpy(&entries[i].loss, frame.payload.data() + i * sizeof(double), sizeof(double));
+  }
+  return entries;
+}
+
 std::string to_bytes(const Action& action) {
   const std::array<double, 12> values = numbers(action);
   return {reinterpret_cast<const char*>(values.data()), sizeof values};

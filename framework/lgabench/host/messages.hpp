@@ -1,7 +1,6 @@
 // What frames and shared memory hold, written and read: the same code at both ends (docs/formats/method-protocol.md).
 // What reads throws InputError for a value of another kind; whoever reads knows whose fault that is.
 #pragma once
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -47,6 +46,16 @@ SelectionCost read_cost(const JsonReader& reader);
 Json to_json(const ProcessState& state);
 ProcessState read_state(const JsonReader& reader);
 
+/// What a method said of one pass over its data.
+struct LogEntry {
+  int epochs = 0;
+  long long steps = 0;
+  double loss = 0;
+};
+/// "log": NaN and infinite losses included.
+Frame log_frame(const std::vector<LogEntry>& entries);
+std::vector<LogEntry> read_log(const Frame& frame);
+
 /// 12 doubles: pose0's position and rotation, then pose1's; NaN and infinity included.
 std::string to_bytes(const Action& action);
 /// @throws InputError for another number of bytes.
@@ -82,12 +91,14 @@ constexpr std::size_t observation_bytes = std::size_t{Observation::rows} * Obser
 /// Copies the pictures; instances are instances_json().
 void write(const Observation& observation, SharedMemory& memory);
 Json instances_json(const Observation& observation);
-Observation read_observation(const SharedMemory& memory, const JsonReader& instances);
+/// Into `observation`, whose memory it uses again.
+void read_observation(const SharedMemory& memory, const JsonReader& instances, Observation& observation);
 
-/// All demonstrations as arrays in one file, and the JSON that says where each lies.
+/// All demonstrations as arrays in one sealed file, and the JSON that says where each lies.
 struct DemonstrationFile {
   Json header;
-  std::unique_ptr<SharedMemory> memory;
+  Descriptor file;
+  std::size_t size = 0;  // bytes
 };
 DemonstrationFile pack(const std::vector<Demonstration>& demonstrations);
 std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file);

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <new>
 #include <optional>
+#include <vector>
 
 #include <lgabench/host/messages.hpp>
 #include <lgabench/plugin/guarded.hpp>
@@ -90,17 +91,28 @@ class RemoteHuman : public HumanAnswers {
   Channel& channel_;
 };
 
+// Sent twice a second, and before the reply: a frame for each epoch would wake the worker and its parent for nothing.
 class RemoteLog : public TrainingLog {
  public:
   explicit RemoteLog(Channel& channel) : channel_(channel) {}
   void epoch(int epochs, long long steps, double loss) override {
-    std::string bytes(sizeof loss, 0);
-    std::memcpy(bytes.data(), &loss, sizeof loss);
-    channel_.send({{"type", "epoch"}, {"epochs", epochs}, {"steps", steps}}, bytes);
+    constexpr std::size_t most = 1000;
+    waiting_.push_back({epochs, steps, loss});
+    if (waiting_.size() == most || Clock::now() - sent_ > std::chrono::milliseconds(500)) flush();
+  }
+  void flush() {
+    if (waiting_.empty()) return;
+    const Frame frame = protocol::log_frame(waiting_);
+    waiting_.clear();
+    sent_ = Clock::now();
+    channel_.send(frame.header, frame.payload);
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
   Channel& channel_;
+  std::vector<protocol::LogEntry> waiting_;
+  Clock::time_point sent_ = Clock::now();
 };
 
 void expect_this_layout(const JsonReader& hello) {
@@ -120,7 +132,7 @@ class Host {
         model_(channel),
         human_(channel),
         log_(channel),
-        observation_(hello.file, protocol::observation_bytes) {
+        memory_(hello.file, protocol::observation_bytes) {
     const JsonReader reader(hello.header, "hello");
     expect_this_layout(reader);
     options_ = reader.at("options").json();
@@ -135,49 +147,18 @@ class Host {
         {{"type", "hello"}, {"protocol", protocol_version}, {"id", plugin_.id}, {"version", plugin_.version}});
   }
 
+  // What was logged comes before the reply, and before what the method throws.
   void answer(const Frame& frame) {
-    const JsonReader reader(frame.header, frame.type());
-    Services services{model_, human_, options_,
-                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
-                      files_};
-    if (frame.type() == "needs") {
-      Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
-      needs["type"] = "needs";
-      channel_.send(needs);
-    } else if (frame.type() == "select") {
-      const Command command = protocol::read_command(reader.at("command"));
-      const FeatureSpace space = protocol::read_space(reader.at("space"));
-      const Selection selection = call([&] { return method().select(command, space, services); });
-      channel_.send({{"type", "selection"}, {"selection", distribution_json(selection)}});
-    } else if (frame.type() == "learn") {
-      const std::vector<Demonstration> demonstrations = protocol::unpack(reader, frame.file);
-      policy_ = call([&] { return method().learn(demonstrations, services); });
-      if (!policy_) throw MethodError("learn returned no policy");
-      channel_.send({{"type", "learned"}});
-    } else if (frame.type() == "act") {
-      if (!policy_) throw MethodError("asked to act before it learned");
-      const Observation observation = protocol::read_observation(observation_, reader.at("instances"));
-      const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
-      const Action action = call([&] {
-        if (reader.at("reset").boolean()) policy_->reset();
-        return policy_->act(observation, instruction);
-      });
-      Json reply{{"type", "action"}};
-      if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
-      channel_.send(reply, protocol::to_bytes(action));
-    } else if (frame.type() == "drop") {
-      const bool drops_method = reader.at("what").string() == "method";
-      call([&] { drops_method ? method_.reset() : policy_.reset(); });
-      channel_.send({{"type", "dropped"}});
-    } else if (frame.type() == "state") {
-      ProcessState state = ProcessState::now().beyond(before_);
-      state.flushed = flushed_;
-      Json reply = protocol::to_json(state);
-      reply["type"] = "state";
-      channel_.send(reply);
-    } else {
-      throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
-    }
+    const auto logged = [this, &frame] {
+      struct Flushes {
+        ~Flushes() { log.flush(); }
+        RemoteLog& log;
+      };
+      const Flushes at_the_end{log_};
+      return reply_to(frame);
+    };
+    const Frame reply = logged();
+    channel_.send(reply.header, reply.payload);
   }
 
   void end() {
@@ -189,6 +170,55 @@ class Host {
   }
 
  private:
+  Frame reply_to(const Frame& frame) {
+    const JsonReader reader(frame.header, frame.type());
+    Services services{model_, human_, options_,
+                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
+                      files_};
+    if (frame.type() == "needs") {
+      Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
+      needs["type"] = "needs";
+      return {needs};
+    }
+    if (frame.type() == "select") {
+      const Command command = protocol::read_command(reader.at("command"));
+      const FeatureSpace space = protocol::read_space(reader.at("space"));
+      const Selection selection = call([&] { return method().select(command, space, services); });
+      return {{{"type", "selection"}, {"selection", distribution_json(selection)}}};
+    }
+    if (frame.type() == "learn") {
+      const std::vector<Demonstration> demonstrations = protocol::unpack(reader, frame.file);
+      policy_ = call([&] { return method().learn(demonstrations, services); });
+      if (!policy_) throw MethodError("learn returned no policy");
+      return {{{"type", "learned"}}};
+    }
+    if (frame.type() == "act") {
+      if (!policy_) throw MethodError("asked to act before it learned");
+      protocol::read_observation(memory_, reader.at("instances"), observation_);
+      const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
+      const Action action = call([&] {
+        if (reader.at("reset").boolean()) policy_->reset();
+        return policy_->act(observation_, instruction);
+      });
+      Json reply{{"type", "action"}};
+      if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
+      return {reply, protocol::to_bytes(action)};
+    }
+    if (frame.type() == "drop") {
+      const bool drops_method = reader.at("what").string() == "method";
+      call([&] { drops_method ? method_.reset() : policy_.reset(); });
+      return {{{"type", "dropped"}}};
+    }
+    if (frame.type() == "state") {
+      ProcessState state = ProcessState::now().beyond(before_);
+      state.flushed = flushed_;
+      Json reply = protocol::to_json(state);
+      reply["type"] = "state";
+      return {reply};
+    }
+    throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
+  }
+
   // Another one, where check-plugin had the first destroyed.
   Method& method() {
     if (!method_) method_ = load_method(plugin_);
@@ -211,7 +241,8 @@ class Host {
   RemoteModel model_;
   RemoteHuman human_;
   RemoteLog log_;
-  protocol::SharedMemory observation_;
+  protocol::SharedMemory memory_;
+  Observation observation_;                              // the last one
   const ProcessState before_ = ProcessState::now();      // the plugin came
   bool flushed_ = true;                                  // subnormal numbers, at the end of every call
   const fs::path files_ = fs::current_path() / "files";  // wherever the plugin goes

@@ -65,18 +65,35 @@ T value_at(const std::uint8_t* bytes, std::size_t index) {
   return value;
 }
 
+Descriptor memory_file(std::size_t size) {
+  Descriptor file(::memfd_create("array", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (file.fd < 0) fail("memfd_create");
+  if (::ftruncate(file.fd, static_cast<off_t>(size)) != 0) fail("ftruncate");
+  return file;
+}
+
+// A map that is there stays writable; nothing else is from now on (Linux 5.1).
+void seal(const Descriptor& file) {
+  if (::fcntl(file.fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
+    fail("seals");
+}
+
+// Half as long as filling a map, which takes a page fault for every 4 KiB.
+void write_at(const Descriptor& file, std::size_t offset, const void* data, std::size_t size) {
+  for (const auto* bytes = static_cast<const char*>(data); size > 0;) {
+    const ssize_t n = ::pwrite(file.fd, bytes, size, static_cast<off_t>(offset));
+    if (n < 0) fail("pwrite");
+    bytes += n, offset += static_cast<std::size_t>(n), size -= static_cast<std::size_t>(n);
+  }
+}
+
 }  // namespace
 
-SharedMemory::SharedMemory(std::size_t size)
-    : file_(::memfd_create("array", MFD_CLOEXEC | MFD_ALLOW_SEALING)), size_(size) {
-  if (file_.fd < 0) fail("memfd_create");
-  if (::ftruncate(file_.fd, static_cast<off_t>(size)) != 0) fail("ftruncate");
+SharedMemory::SharedMemory(std::size_t size) : file_(memory_file(size)), size_(size) {
   if (size == 0) return;
   data_ = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, file_.fd, 0);
   if (data_ == MAP_FAILED) fail("mmap");
-  // Our own map stays writable; every later one is not (Linux 5.1).
-  if (::fcntl(file_.fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
-    fail("seals");
+  seal(file_);
 }
 
 SharedMemory::SharedMemory(const Descriptor& file, std::size_t size) : size_(size) {
@@ -104,15 +121,14 @@ Json instances_json(const Observation& observation) {
   return all;
 }
 
-Observation read_observation(const SharedMemory& memory, const JsonReader& instances) {
-  Observation observation;
+void read_observation(const SharedMemory& memory, const JsonReader& instances, Observation& observation) {
   observation.rgb.assign(memory.data(), memory.data() + 3 * pixels);
   observation.ids.assign(memory.data() + 3 * pixels, memory.data() + 4 * pixels);
+  observation.instances.clear();
   for (const JsonReader& one : instances.elements())
     observation.instances.push_back({static_cast<std::uint8_t>(one.at("id").integer(0, 255)),
                                      one.at("object_type").string(), one.at("texture").string(),
                                      static_cast<int>(one.at("pixels").integer(0, pixels))});
-  return observation;
 }
 
 DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
@@ -130,7 +146,7 @@ DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
   const std::size_t labels = arrays.add("labels", "f8", 8, {steps, action_numbers});
   const std::size_t owners = arrays.add("demonstration", "i4", 4, {steps});
   const std::size_t table = arrays.add("instances", "i4", 4, {instances, instance_numbers});
-  auto memory = std::make_unique<SharedMemory>(arrays.size);
+  Descriptor file = memory_file(arrays.size);
 
   std::map<std::string, std::int32_t> indices;
   Json words = Json::array();
@@ -139,24 +155,28 @@ DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
     if (is_new) words.push_back(text);
     return found->second;
   };
-  std::uint8_t* const data = memory->data();
-  std::size_t step = 0, instance = 0;
+  std::string label_bytes;
+  std::vector<std::int32_t> owner_of, rows_of_instances;
+  std::size_t step = 0;
   for (std::size_t d = 0; d < demonstrations.size(); ++d)
     for (const Step& s : demonstrations[d].steps) {
-      const auto owner = static_cast<std::int32_t>(d), at = static_cast<std::int32_t>(step);
-      std::memcpy(data + rgb + step * 3 * pixels, s.observation.rgb.data(), 3 * pixels);
-      std::memcpy(data + ids + step * pixels, s.observation.ids.data(), pixels);
-      const std::string label = to_bytes(s.label);
-      std::memcpy(data + labels + step * label.size(), label.data(), label.size());
-      std::memcpy(data + owners + step * sizeof owner, &owner, sizeof owner);
+      write_at(file, rgb + step * 3 * pixels, s.observation.rgb.data(), 3 * pixels);
+      write_at(file, ids + step * pixels, s.observation.ids.data(), pixels);
+      label_bytes += to_bytes(s.label);
+      owner_of.push_back(static_cast<std::int32_t>(d));
+      const auto at = static_cast<std::int32_t>(step++);
       for (const Instance& i : s.observation.instances) {
-        const std::int32_t row[instance_numbers] = {at, i.id, word(i.object_type), word(i.texture), i.pixels};
-        std::memcpy(data + table + instance++ * sizeof row, row, sizeof row);
+        const std::int32_t type = word(i.object_type), texture = word(i.texture);
+        rows_of_instances.insert(rows_of_instances.end(), {at, i.id, type, texture, i.pixels});
       }
-      ++step;
     }
+  write_at(file, labels, label_bytes.data(), label_bytes.size());
+  write_at(file, owners, owner_of.data(), owner_of.size() * sizeof owner_of[0]);
+  write_at(file, table, rows_of_instances.data(), rows_of_instances.size() * sizeof rows_of_instances[0]);
+  seal(file);
   return {{{"instructions", std::move(instructions)}, {"words", std::move(words)}, {"arrays", std::move(arrays.json)}},
-          std::move(memory)};
+          std::move(file),
+          arrays.size};
 }
 
 std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file) {
