@@ -10,8 +10,8 @@ namespace lgabench {
 /// The files of a finished cell, status.json, which is written last, excepted.
 extern const std::vector<std::string> cell_files;
 
-/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names are
-/// letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
+/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names
+/// are letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
 std::vector<std::string> artefact_names(const fs::path& files);
 
 /// 16 hexadecimal digits: the name of a cell's directory.
@@ -21,7 +21,7 @@ bool is_cell_key(const std::string& text);
 std::vector<std::string> read_cell_keys(const JsonReader& run);
 
 /// Expects run directories to hold regular files and directories, and no symbolic link: neither beside run.json nor in
-/// cells/, answers/ and figures/. A cell's own entries are checked where the cell is read.
+/// cells/, answers/, figures/ and tables/. A cell's own entries are checked where the cell is read.
 /// @throws InputError naming the first other entry.
 void expect_plain_run(const fs::path& run);
 
