@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     canonical(to_json(agreements));
     to_csv(summary);
     const report::Pictures pictures = all_pictures(results);
-    const report::Material material(results, summary, claims, agreements, paper, pictures);
+    const report::Material material{results, summary, claims, agreements, paper, pictures};
     const report::Document document = report::report_document(material);
     report::terminal(document, run);
     report::markdown(document);

@@ -230,6 +230,25 @@ TEST(Figures, AMethodHasOneColourAndOneMark) {
   EXPECT_EQ(different.size(), 4u);
 }
 
+// WCAG's contrast of a line against the sheet that charts lie on, light and (a quarter nearer to white) dark.
+TEST(Figures, EveryColourIsSeen) {
+  const auto light_of = [](long code, double lift) {
+    double luminance = 0;
+    for (const auto& [shift, weight] : {std::pair(16, .2126), {8, .7152}, {0, .0722}}) {
+      const double value = static_cast<double>(code >> shift & 255) / 255, lifted = value + lift * (1 - value);
+      luminance += weight * (lifted <= .04045 ? lifted / 12.92 : std::pow((lifted + .055) / 1.055, 2.4));
+    }
+    return luminance + .05;
+  };
+  const std::vector<std::string> methods{"lga", "lga_hill", "human", "lga_s", "lga_l", "gcbc_dart", "a", "b", "c", "d"};
+  const report::MethodStyles styles(methods);
+  for (const std::string& method : methods) {
+    const long code = std::stol(styles(method).colour.substr(1), nullptr, 16);
+    EXPECT_GE(light_of(0xf6f7f9, 0) / light_of(code, 0), 3) << method;
+    EXPECT_GE(light_of(code, .25) / light_of(0x1d2126, 0), 3) << method;
+  }
+}
+
 TEST(Figures, SeveralNumbersMakeCurvesOfEachArm) {
   FabricatedRun run;
   Spec spec = shifted("lga", "q2_heart", 0, 20, 20, 10);

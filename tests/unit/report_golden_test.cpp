@@ -73,7 +73,7 @@ TEST(Golden, TheReportOfASmallRunIsAsItWasRead) {
                            "tables/cells_mujoco_50_scenarios.csv", "tables/phi.tex"})
     made[fs::path(file).filename()] = read_file(run.path / file);
 
-  const fs::path golden = fs::path(__FILE__).parent_path() / "golden";
+  const fs::path golden = LGABENCH_GOLDEN;
   const bool write = std::getenv("LGABENCH_WRITE_GOLDEN") != nullptr;
   for (const auto& [name, bytes] : made) {
     if (write) write_file(golden / name, bytes);

@@ -223,7 +223,7 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   const std::vector<report::Claim> claims = report::test_claims(results);
   const std::vector<report::EngineAgreement> agreements;
   const report::PaperValues paper = report::paper_values("q1");
-  const report::Material material(results, summary, claims, agreements, paper, pictures);
+  const report::Material material{results, summary, claims, agreements, paper, pictures};
   const std::string page = report::html(report::report_document(material), report::page_data(material));
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");

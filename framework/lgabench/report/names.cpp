@@ -26,7 +26,7 @@ constexpr std::array<Mark, 7> marks{{{"circle", 0, 0},
                                      {"triangle_down", 3, 90},
                                      {"pentagon", 5, -90},
                                      {"hexagon", 6, 0}}};
-constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#A5AA00"};
+constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#909400"};
 
 struct Known {
   std::string name, colour;  // "" for a reference row

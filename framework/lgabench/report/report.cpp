@@ -31,7 +31,7 @@ Report write_report(const fs::path& run) {
 
   const PaperValues paper = paper_values(summary.suite);
   const Pictures pictures = draw_pictures(run, report.run, report.agreements);
-  const Material material(report.run, summary, report.claims, report.agreements, paper, pictures);
+  const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
   report.document = report_document(material);
   for (const Chart* chart : report.document.charts()) {
     write_file(run / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");

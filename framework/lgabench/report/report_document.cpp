@@ -14,14 +14,6 @@
 namespace lgabench::report {
 namespace {
 
-std::vector<std::string> rows_of(const Summary& summary) {
-  std::set<std::string> names;
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows) names.insert(row.method);
-  for (const CellResult& cell : summary.failed) names.insert(cell.method);
-  return {names.begin(), names.end()};
-}
-
 std::string pictures_note(const Pictures& pictures) {
   if (pictures.wanted == 0) return "";
   if (pictures.scenes.empty()) return fmt::format("No pictures of scenes: {}.", pictures.problem);
@@ -80,16 +72,13 @@ Section how_to_read() {
 
 }  // namespace
 
-Material::Material(const RunResults& run_, const Summary& summary_, const std::vector<Claim>& claims_,
-                   const std::vector<EngineAgreement>& agreements_, const PaperValues& paper_,
-                   const Pictures& pictures_)
-    : run(run_),
-      summary(summary_),
-      claims(claims_),
-      agreements(agreements_),
-      paper(paper_),
-      pictures(pictures_),
-      styles(rows_of(summary_)) {}
+MethodStyles styles_of(const Summary& summary) {
+  std::vector<std::string> names;
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) names.push_back(row.method);
+  for (const CellResult& cell : summary.failed) names.push_back(cell.method);
+  return MethodStyles(names);
+}
 
 Cell named(const Material& material, const std::string& method, Emphasis emphasis) {
   Cell cell(Span(display_name(method), emphasis));

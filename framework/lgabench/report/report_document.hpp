@@ -12,18 +12,18 @@
 
 namespace lgabench::report {
 
+/// Those of a run's rows.
+MethodStyles styles_of(const Summary& summary);
+
 /// What a report is made of; refers to its parts, which must outlive it.
 struct Material {
-  Material(const RunResults& run_, const Summary& summary_, const std::vector<Claim>& claims_,
-           const std::vector<EngineAgreement>& agreements_, const PaperValues& paper_, const Pictures& pictures_);
-
   const RunResults& run;
   const Summary& summary;
   const std::vector<Claim>& claims;
   const std::vector<EngineAgreement>& agreements;
   const PaperValues& paper;
   const Pictures& pictures;
-  MethodStyles styles;
+  MethodStyles styles = styles_of(summary);
 };
 
 /// A report has the same sections in every form. The same material gives the same document.
