@@ -1,9 +1,8 @@
-// Somebody else's run, reported, and compared with itself. Figures and pictures are made by processes: there is none of
-// the former, and a word in place of each of the latter.
+// Somebody else's run, reported, and compared with itself. Pictures are made by a process: here each is a word.
 #include <lgabench/report/agreement.hpp>
 #include <lgabench/report/compare.hpp>
-#include <lgabench/report/html.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/report/report_document.hpp>
+#include <lgabench/report/writers.hpp>
 
 #include "run_files.hpp"
 
@@ -35,10 +34,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     canonical(to_json(summary.suite, claims));
     canonical(to_json(agreements));
     to_csv(summary);
-    plain_text(results, summary);
-    const std::vector<std::vector<report::Figure>> no_figures(summary.tables.size());
-    markdown(results, summary, claims, agreements, paper, no_figures);
-    html(results, summary, claims, agreements, paper, all_pictures(results));
+    const report::Pictures pictures = all_pictures(results);
+    const report::Material material{results, summary, claims, agreements, paper, pictures};
+    const report::Document document = report::report_document(material);
+    report::terminal(document, run);
+    report::markdown(document);
+    report::html(document, report::page_data(material));
+    for (const report::Grid* grid : document.grids()) report::latex(*grid), report::csv(*grid);
+    for (const report::Chart* chart : document.charts()) report::svg(*chart, true), report::pdf(*chart);
     for (const report::CellResult& cell : results.cells) {
       const fs::path directory = run / "cells" / cell.key;
       if (!cell.failed) report::compare_cells(directory, directory, true);

@@ -49,6 +49,14 @@ class Pages(unittest.TestCase):
             self.assertEqual(shown, (example / file).read_text())
         self.assertLessEqual(len((example / "select_only.cpp").read_text().splitlines()), 25)
 
+    @unittest.skipUnless(shutil.which("git"), "needs git")
+    def test_the_patch_of_a_statistic_applies(self):
+        page = (SOURCE / "docs/add-a-statistic.md").read_text()
+        patch = "".join(re.findall(r"^```diff\n(.*?)^```", page, re.S | re.M))
+        self.assertGreater(patch.count("+++ "), 5)
+        tried = subprocess.run(["git", "apply", "--check", "-"], cwd=SOURCE, input=patch, capture_output=True, text=True)
+        self.assertEqual(tried.stderr, "")
+
     def test_every_example_is_listed(self):
         for example in (SOURCE / "examples").glob("*/*.cpp"):
             if "LGABENCH_METHOD(" in example.read_text():

@@ -221,7 +221,7 @@ TEST(CompareCells, OtherBytesNeedAnExcuse) {
 TEST(CompareCells, OutcomesWithinChanceOrNot) {
   const report::CellAgreement chance = agreement({"lga", 15}, {"lga", 11}, true);
   EXPECT_EQ(chance.agreement, Agreement::within_interval);
-  EXPECT_SAYS(chance.detail, "arm test: 15 of 20 won there, 11 here (McNemar p = 0.125)");
+  EXPECT_SAYS(chance.detail, "arm test: 15 of 20 succeeded there, 11 here (McNemar p = 0.125)");
   EXPECT_SAYS(chance.detail, "from episodes.jsonl line 12");
   EXPECT_EQ(agreement({"lga", 15}, {"lga", 5}, true).agreement, Agreement::differs);
 

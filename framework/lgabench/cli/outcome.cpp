@@ -7,7 +7,7 @@
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -55,8 +55,7 @@ void expect_run(const fs::path& directory) {
 }
 
 void print_tables(const report::Report& report) {
-  std::string text =
-      printable(report::plain_text(report.run, report.summary) + report::agreement_text(report.agreements));
+  std::string text = printable(report::terminal(report.document, report.run.directory));
   for (const char* mark : {"†", "‡", "§"}) {
     const std::string painted_mark = painted(stdout, Colour::yellow, mark);
     for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos; at += painted_mark.size())

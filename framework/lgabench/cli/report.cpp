@@ -9,7 +9,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/report.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -22,22 +22,26 @@ int verdict_of(const report::RunResults& results, const std::vector<report::Clai
   return reversed ? regression : ok;
 }
 
+void print_section(const std::vector<report::Claim>& claims, const std::string& title) {
+  to_stdout("{}\n\n{}", title, report::terminal(report::claims_section(claims, report::MethodStyles(), title)));
+}
+
 int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
-  const auto& [results, summary, claims, agreements] = report;
+  const auto& claims = report.claims;
   if (format == "text")
-    to_stdout("{}", report::claims_text(summary.suite, claims));
+    print_section(claims, "The paper's claims");
   else if (format == "json")
     to_stdout("{}", read_file(run / "claims.json"));
   else
     throw InputError("--claims: expected --format text or json");
-  return verdict_of(results, claims);
+  return verdict_of(report.run, claims);
 }
 
 int print_difference(const report::RunResults& results, const std::vector<std::string>& rows,
                      const std::string& format) {
   const std::vector<report::Claim> claims = report::test_difference(results, rows.at(0), rows.at(1));
   if (format == "text")
-    to_stdout("{}", report::claims_text(results.suite, claims, "two rows, paired"));
+    print_section(claims, "Two rows, paired");
   else if (format == "json")
     to_stdout("{}\n", report::to_json(results.suite, claims).dump(2));
   else
@@ -70,7 +74,7 @@ void add_report(CLI::App& app, int& exit) {
   arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
-      "claims.json and figures/.\n"
+      "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
       "         xdg-open runs/q1-smoke/report.html\n"
       "The paper's claims: lgabench report runs/q2 --claims\n"

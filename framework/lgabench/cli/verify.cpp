@@ -176,7 +176,7 @@ void print_other_bytes(const std::vector<Verdict>& verdicts) {
   const std::ptrdiff_t others = other_bytes(verdicts);
   if (others == 0) return;
   for (const report::PooledAgreement& pool : pooled(verdicts))
-    to_stdout("{}: {} episodes won there alone, {} here alone, over {} cells (McNemar p = {:.3f}){}\n",
+    to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar p = {:.3f}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
               pool.p_holm, pool.differs() ? ": differs" : "");
   to_stdout("NOT bit-identical: {} of {} cells\n", others, verdicts.size());

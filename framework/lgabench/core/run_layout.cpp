@@ -38,7 +38,7 @@ std::vector<std::string> read_cell_keys(const JsonReader& run) {
 }
 
 void expect_plain_run(const fs::path& run) {
-  for (const fs::path& directory : {run, run / "cells", run / "answers", run / "figures"})
+  for (const fs::path& directory : {run, run / "cells", run / "answers", run / "figures", run / "tables"})
     expect_plain_entries(directory);
 }
 

@@ -21,7 +21,7 @@ bool is_cell_key(const std::string& text);
 std::vector<std::string> read_cell_keys(const JsonReader& run);
 
 /// Expects run directories to hold regular files and directories, and no symbolic link: neither beside run.json nor in
-/// cells/, answers/ and figures/. A cell's own entries are checked where the cell is read.
+/// cells/, answers/, figures/ and tables/. A cell's own entries are checked where the cell is read.
 /// @throws InputError naming the first other entry.
 void expect_plain_run(const fs::path& run);
 

@@ -151,7 +151,7 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
       for (const char* name : {"cells", "answers", "summary.json", "summary.csv", "claims.json", "report.md",
-                               "report.html", "figures", "run.json"})
+                               "report.html", "figures", "tables", "episodes.csv", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
       there = read_json(record, Links::refused);
@@ -169,7 +169,8 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
                                      path.string(), difference(there, run)));
     }
     // What was half-written when a run was killed goes. run.json comes before all else: it makes the directory a run.
-    for (const fs::path& directory : {path, path / "answers", path / "figures"}) remove_temporaries(directory);
+    for (const fs::path& directory : {path, path / "answers", path / "figures", path / "tables"})
+      remove_temporaries(directory);
     if (!fs::exists(record) || (existing == Existing::resume && other_programs(there, run)))
       write_file(record, run.dump(1) + '\n');
     make_directory(path / "cells");

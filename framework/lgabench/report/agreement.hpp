@@ -10,7 +10,7 @@ namespace lgabench::report {
 
 enum class Agreement {
   identical,        // every byte of what holds no clock
-  same_outcomes,    // every episode won or failed as recorded; actions or training differ
+  same_outcomes,    // every episode succeeded or failed as recorded; actions or training differ
   within_interval,  // some episodes ended otherwise, in each arm no more of them one way than chance allows
   differs
 };
@@ -20,7 +20,7 @@ std::string to_string(Agreement agreement);
 struct CellAgreement {
   Agreement agreement = Agreement::differs;
   std::string detail;  // what differs first, in one line; empty where nothing does
-  // Episodes, over all arms, that were won in one of them alone. Of outcomes that can be compared; else 0.
+  // Episodes, over all arms, that succeeded in one of them alone. Of outcomes that can be compared; else 0.
   int only_recorded = 0, only_recomputed = 0;
 };
 

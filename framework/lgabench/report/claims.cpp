@@ -12,7 +12,7 @@
 namespace lgabench::report {
 namespace {
 
-constexpr double refuse_up_to = 0.05, margin = 0.10;
+constexpr double refuse_up_to = 0.05;
 
 // Both tests of a difference are judged in the same way, each on its own.
 constexpr std::array tests{&ClaimedDifference::these, &ClaimedDifference::alike};
@@ -47,7 +47,7 @@ void judge_orderings(std::vector<ClaimedDifference>& family) {
 }
 
 // All must be equivalent, so none needs a correction for the others (intersection-union).
-void judge_equivalence(ClaimedDifference& d) {
+void judge_equivalence(ClaimedDifference& d, double margin) {
   for (const Test test : tests) {
     Tested& t = d.*test;
     if (!t.change) continue;
@@ -79,19 +79,6 @@ void conclude(Claim& claim) {
     claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
 }
 
-void test_orderings(Claim& claim, const Field& field, const std::vector<std::string>& arms,
-                    const std::vector<ClaimedMethod>& above, const std::vector<ClaimedMethod>& baselines) {
-  for (const std::string& arm : arms)
-    for (const int n : field.demonstrations) {
-      std::vector<ClaimedDifference> family;
-      for (const ClaimedMethod& method : above)
-        for (const ClaimedMethod& baseline : baselines)
-          family.push_back(measured(field, claim.id, method, baseline, arm, n));
-      judge_orderings(family);
-      claim.differences.insert(claim.differences.end(), family.begin(), family.end());
-    }
-}
-
 // Arms that give only commands without demonstrations.
 std::vector<std::string> unseen_arms(const Field& field) {
   std::set<std::string> seen;
@@ -111,23 +98,68 @@ bool from_people(const CellResult& cell) {
   });
 }
 
-// Whether people made every Selection of the row human.
-bool people_selected(const Field& field, int n) {
-  const Field::Policies* policies = field.find("human", n);
+// Whether people made every Selection of the row.
+bool people_selected(const Field& field, const std::string& row, int n) {
+  const Field::Policies* policies = field.find(row, n);
   return policies && std::all_of(policies->begin(), policies->end(), [](const auto& item) {
            return std::all_of(item.second.begin(), item.second.end(),
                               [](const auto& one) { return from_people(*one.second); });
          });
 }
 
-void test_equivalence(Claim& claim, const Field& field) {
-  constexpr int n = 50;
-  if (people_selected(field, n))
-    for (const std::string& arm : field.arms) {
-      claim.differences.push_back(measured(field, claim.id, {"lga"}, {"human"}, arm, n));
-      judge_equivalence(claim.differences.back());
+// All but the first, which is what the others are compared with: nothing shifts there.
+std::vector<std::string> shifted_arms(const Field& field) {
+  return field.arms.empty() ? field.arms : std::vector<std::string>(field.arms.begin() + 1, field.arms.end());
+}
+
+std::vector<std::string> arms_of(const PaperClaim& paper, const Field& field) {
+  switch (paper.arms) {
+    case PaperClaim::Arms::shifted:
+      return shifted_arms(field);
+    case PaperClaim::Arms::unseen:
+      return unseen_arms(field);
+    default:
+      return field.arms;
+  }
+}
+
+// Why no row of the run can be one of `above`: all of them need options that no row has. A mask of all instances, for
+// one, shows two objects where training never did: the claim could not hold for a reason.
+std::string missing_options(const PaperClaim& paper, const Field& field) {
+  for (const ClaimedMethod& method : paper.above)
+    if (method.options.empty() || !find_row(field, method).empty()) return "";
+  const std::string text = paper.above.front().text();
+  return "no row " + text.substr(text.find(" with ") + 1);
+}
+
+void test_ordering(Claim& claim, const PaperClaim& paper, const Field& field) {
+  claim.reason = missing_options(paper, field);
+  if (!claim.reason.empty()) return;
+  for (const std::string& arm : arms_of(paper, field))
+    for (const int n : field.demonstrations) {
+      if (paper.demonstrations && n != *paper.demonstrations) continue;
+      std::vector<ClaimedDifference> family;
+      for (const ClaimedMethod& above : paper.above)
+        for (const ClaimedMethod& below : paper.below)
+          family.push_back(measured(field, claim.id, above, below, arm, n));
+      judge_orderings(family);
+      claim.differences.insert(claim.differences.end(), family.begin(), family.end());
     }
-  if (claim.differences.empty()) claim.reason = "no human data at 50 demonstrations";
+}
+
+void test_equivalence(Claim& claim, const PaperClaim& paper, const Field& field) {
+  const ClaimedMethod &above = paper.above.front(), &below = paper.below.front();
+  for (const int n : field.demonstrations) {
+    if (paper.demonstrations && n != *paper.demonstrations) continue;
+    if (!people_selected(field, find_row(field, below), n)) continue;
+    for (const std::string& arm : arms_of(paper, field)) {
+      claim.differences.push_back(measured(field, claim.id, above, below, arm, n));
+      judge_equivalence(claim.differences.back(), paper.margin);
+    }
+  }
+  if (claim.differences.empty())
+    claim.reason = "no human data" +
+                   (paper.demonstrations ? fmt::format(" at {} demonstrations", *paper.demonstrations) : std::string());
 }
 
 // Of each participant, the seconds that each command took; one command has one answer, however many cells it is in.
@@ -143,15 +175,15 @@ Seconds seconds_of(const Field& field, const std::string& method) {
 }
 
 // Seconds a command, of each participant on the mean over those that they answered in both ways.
-void test_seconds(Claim& claim, const Field& field) {
-  const Seconds human = seconds_of(field, "human"), edited = seconds_of(field, "lga_hill");
+void test_seconds(Claim& claim, const PaperClaim& paper, const Field& field) {
   ClaimedDifference d;
-  d.above = "human", d.below = "lga_hill", d.unit = "seconds";
+  d.above = paper.above.front().id, d.below = paper.below.front().id, d.unit = "seconds";
+  const Seconds slow = seconds_of(field, d.above), fast = seconds_of(field, d.below);
   std::vector<double> differences;
   std::set<std::string> scenarios;
-  for (const auto& [participant, commands] : human) {
-    const auto other = edited.find(participant);
-    if (other == edited.end()) continue;
+  for (const auto& [participant, commands] : slow) {
+    const auto other = fast.find(participant);
+    if (other == fast.end()) continue;
     double sum = 0;
     int both = 0;
     for (const auto& [command, s] : commands)
@@ -162,7 +194,7 @@ void test_seconds(Claim& claim, const Field& field) {
       }
     if (both > 0) differences.push_back(sum / both);
   }
-  if (human.empty() || edited.empty()) {
+  if (slow.empty() || fast.empty()) {
     claim.reason = "no human data";
   } else {
     d.participants = static_cast<int>(differences.size());
@@ -178,43 +210,20 @@ void test_seconds(Claim& claim, const Field& field) {
   }
 }
 
-// All but the first, which is what the others are compared with: nothing shifts there.
-std::vector<std::string> shifted_arms(const Field& field) {
-  return field.arms.empty() ? field.arms : std::vector<std::string>(field.arms.begin() + 1, field.arms.end());
-}
-
-std::vector<Claim> test_field(const std::string& suite, const Field& field) {
-  const auto claim = [&field](const char* id, const char* statement) {
-    Claim c;
-    c.id = id, c.statement = statement, c.layout = field.layout, c.engine = field.engine;
-    return c;
-  };
-  Claim c1 = claim("C1", "LGA above GCBC-SEG and GCBC-DART, at every number of demonstrations"),
-        c2 = claim("C2", "LGA within 0.10 of Human at 50 demonstrations"),
-        c3 = claim("C3", "LGA and LGA-S above GCBC-DART and LGA-L under covariate shift, in each shifted arm"),
-        c4 = claim("C4", "LGA and LGA-S, with instances=first, above GCBC-DART and LGA-L on unseen commands"),
-        c5 = claim("C5", "LGA-HILL takes people fewer seconds than Human");
-  const std::vector<ClaimedMethod> baselines{{"gcbc_dart"}, {"lga_l", {{"image", "rgb"}}}};
-  const std::map<std::string, std::string> first{{"instances", "first"}};
-  const auto needs = [&suite](Claim& c, const char* wanted) {
-    if (suite == wanted) return true;
-    c.reason = fmt::format("needs a run of suite {}", wanted);
-    return false;
-  };
-  if (needs(c1, "q1")) test_orderings(c1, field, field.arms, {{"lga"}}, {{"gcbc_seg"}, {"gcbc_dart"}});
-  if (needs(c2, "q1")) test_equivalence(c2, field);
-  if (needs(c3, "q2")) test_orderings(c3, field, shifted_arms(field), {{"lga"}, {"lga_s"}}, baselines);
-  if (needs(c4, "q3")) {
-    // A mask of all instances shows two objects where training never did: the claim could not hold for a reason.
-    if (find_row(field, {"lga", first}).empty() && find_row(field, {"lga_s", first}).empty())
-      c4.reason = "no row with instances=first";
-    else
-      test_orderings(c4, field, unseen_arms(field), {{"lga", first}, {"lga_s", first}}, baselines);
-  }
-  test_seconds(c5, field);
-  std::vector<Claim> claims{c1, c2, c3, c4, c5};
-  for (Claim& c : claims) conclude(c);
-  return claims;
+Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field& field) {
+  Claim claim;
+  claim.id = paper.id, claim.statement = paper.statement;
+  claim.layout = field.layout, claim.engine = field.engine;
+  if (!paper.suite.empty() && paper.suite != suite)
+    claim.reason = fmt::format("needs a run of suite {}", paper.suite);
+  else if (paper.test == PaperClaim::Test::ordering)
+    test_ordering(claim, paper, field);
+  else if (paper.test == PaperClaim::Test::equivalence)
+    test_equivalence(claim, paper, field);
+  else
+    test_seconds(claim, paper, field);
+  conclude(claim);
+  return claim;
 }
 
 Claim difference_in(const Field& field, const std::string& above, const std::string& below) {
@@ -249,9 +258,10 @@ std::string to_string(Verdict verdict) {
 }
 
 std::vector<Claim> test_claims(const RunResults& run) {
+  const std::vector<PaperClaim> paper = paper_claims();
   std::vector<Claim> claims;
   for (const auto& item : fields_of(run))
-    for (Claim& claim : test_field(run.suite, item.second)) claims.push_back(std::move(claim));
+    for (const PaperClaim& claim : paper) claims.push_back(test_claim(claim, run.suite, item.second));
   return claims;
 }
 

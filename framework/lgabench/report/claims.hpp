@@ -45,11 +45,11 @@ struct Claim {
   std::vector<ClaimedDifference> differences;
 };
 
-/// C1 to C5 for every (layout, engine) of the run. Both tests judge alike: an ordering is held if the 95 % interval of
-/// the difference is above 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if the interval
-/// lies within the margin, reversed if outside. C5 is Student's paired t test over participants. A claim is what the
-/// worst of its differences is: reversed, undecided, not tested, held. Deterministic. @throws InputError where cells of
-/// the run did not play the same scenes.
+/// Each of paper_claims() for every (layout, engine) of the run. Both tests judge alike: an ordering is held if the 95
+/// % interval of the difference is above 0 and Holm's p at most .05, reversed if it is below; an equivalence is held if
+/// the interval lies within the margin, reversed if outside. Seconds have Student's paired t test over participants. A
+/// claim is what the worst of its differences is: reversed, undecided, not tested, held. Deterministic. @throws
+/// InputError where cells of the run did not play the same scenes.
 std::vector<Claim> test_claims(const RunResults& run);
 
 /// One row against another, by the names that the run gives them ("lga+instances=first"), in every arm at every number
@@ -57,12 +57,7 @@ std::vector<Claim> test_claims(const RunResults& run);
 /// does not have.
 std::vector<Claim> test_difference(const RunResults& run, const std::string& above, const std::string& below);
 
-/// claims.json (docs/formats), the terminal's table, and the section of report.md.
+/// claims.json (docs/formats).
 Json to_json(const std::string& suite, const std::vector<Claim>& claims);
-std::string claims_text(const std::string& suite, const std::vector<Claim>& claims,
-                        const std::string& title = "the paper's claims");
-/// "6 policies, 2 scenarios, 40 scenes", and "for this training seed" where there is one: what it is based on.
-std::string sample_text(const ClaimedDifference& difference);
-std::string claims_markdown(const std::vector<Claim>& claims);
 
 }  // namespace lgabench::report

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t scenarios_needed = 6;  // for a test over scenarios
 
-// The policy that stands on the participant's answers, or the one that stands on nobody's; nullptr where it did not
+// The policy based on the participant's answers, or the one based on nobody's; nullptr where it did not
 // finish.
 const CellResult* finished(const Field::People& people, const std::string& participant) {
   auto it = people.find(participant);
@@ -20,7 +20,7 @@ const CellResult* finished(const Field::People& people, const std::string& parti
   return it == people.end() || it->second->failed ? nullptr : it->second;
 }
 
-// Whose answers the one or the other of two rows stands on; "" alone where both stand on nobody's.
+// Whose answers the one or the other of two rows is based on; "" alone where both are based on nobody's.
 std::set<std::string> participants(const Field::People& one, const Field::People& other) {
   std::set<std::string> names;
   for (const Field::People* people : {&one, &other})
@@ -78,13 +78,6 @@ std::vector<const CellResult*> Field::cells() const {
       for (const auto& [which, people] : policies)
         for (const auto& [participant, cell] : people) all.push_back(cell);
   return all;
-}
-
-std::string ClaimedMethod::text() const {
-  std::string text = id;
-  for (const auto& [option, value] : options)
-    text += fmt::format("{}{}={}", text == id ? " with " : ", ", option, value);
-  return text;
 }
 
 std::string find_row(const Field& field, const ClaimedMethod& method) {

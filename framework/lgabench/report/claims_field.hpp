@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <lgabench/report/claims.hpp>
+#include <lgabench/report/paper.hpp>
 
 namespace lgabench::report {
 
@@ -26,15 +27,6 @@ struct Field {
   /// nullptr where there is none.
   const Policies* find(const std::string& row, int n) const;
   std::vector<const CellResult*> cells() const;
-};
-
-/// A method as a claim means it: the id, and the values of options that matter to the claim.
-struct ClaimedMethod {
-  std::string id;
-  std::map<std::string, std::string> options{};
-
-  /// "lga_l with image=rgb"
-  std::string text() const;
 };
 
 /// The row of the field whose resolved options are the method's, and whose name tells it apart by nothing else: "lga"

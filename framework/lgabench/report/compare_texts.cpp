@@ -1,33 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include <lgabench/report/compare.hpp>
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
 namespace {
-
-// Columns of fixed width, aligned to the left.
-class Columns {
- public:
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-  std::string text() const {
-    std::vector<std::size_t> wide(rows_.front().size());
-    for (const auto& row : rows_)
-      for (std::size_t i = 0; i < row.size(); ++i) wide[i] = std::max(wide[i], row[i].size());
-    std::string all;
-    for (const auto& row : rows_) {
-      std::string line;
-      for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("  {:<{}}", row[i], wide[i]);
-      all += line.erase(line.find_last_not_of(' ') + 1) + '\n';
-    }
-    return all;
-  }
-
- private:
-  std::vector<std::vector<std::string>> rows_;
-};
 
 // The row's name, with the one it has in A where that is another.
 std::string row_name(const ComparedRow& row) {
@@ -109,22 +87,24 @@ Json to_json(const RunComparison& comparison) {
 std::string comparison_text(const RunComparison& comparison) {
   std::string text;
   if (!comparison.rows.empty()) {
-    text += fmt::format("{}: success, B - A [95 % interval], Holm's p over all rows\n\n", comparison.suite);
-    Columns rows;
-    rows.add({"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p", "cells worse/better", ""});
+    Grid rows;
+    rows.caption = fmt::format("{}: success, B - A [95 % interval], Holm's p over all rows", comparison.suite);
+    rows.heads = {"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p", "cells worse/better", ""};
     for (const ComparedRow& r : comparison.rows)
-      rows.add({row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
-                fmt::format("{:.2f}", r.success_a), fmt::format("{:.2f}", r.success_b), change_text(r.change),
-                p_text(r.p_holm), fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), verdict(r)});
-    text += rows.text() +
-            "\nSeconds of a cell's phases, B - A [95 % interval of Student's t], Holm's p of Wilcoxon's test\n\n";
-    Columns times;
-    times.add({"method", "layout", "engine", "phase", "A", "B", "B - A", "p", "cells"});
+      rows.rows.push_back(
+          {{},
+           {row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
+            fmt::format("{:.2f}", r.success_a), fmt::format("{:.2f}", r.success_b), change_text(r.change),
+            p_text(r.p_holm), fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), verdict(r)}});
+    Grid times;
+    times.caption = "Seconds of a cell's phases, B - A [95 % interval of Student's t], Holm's p of Wilcoxon's test";
+    times.heads = {"method", "layout", "engine", "phase", "A", "B", "B - A", "p", "cells"};
     for (const ComparedTime& t : comparison.times)
-      times.add({display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2),
-                 fmt::format("{:.3f}", t.mean_a), fmt::format("{:.3f}", t.mean_b), seconds_interval(t),
-                 p_text(t.p_holm), std::to_string(t.cells)});
-    text += times.text() + '\n';
+      times.rows.push_back({{},
+                            {display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2),
+                             fmt::format("{:.3f}", t.mean_a), fmt::format("{:.3f}", t.mean_b), seconds_interval(t),
+                             p_text(t.p_holm), std::to_string(t.cells)}});
+    text += terminal(rows) + '\n' + terminal(times) + '\n';
   }
   for (const OtherScenes& o : comparison.other_scenes)
     text += fmt::format("{}, layout {}, engine {}, arm {}: other scenes ({}), not compared: {}\n", o.scenario, o.layout,

@@ -8,7 +8,7 @@
 
 namespace lgabench::report {
 
-/// An episode that one engine calls won and the other lost.
+/// An episode that one engine calls a success and the other a failure.
 struct Disagreement {
   const CellResult* cell = nullptr;  // the first engine's; of the run that was given
   std::string arm;
@@ -38,7 +38,5 @@ struct EngineAgreement {
 std::vector<EngineAgreement> engine_agreement(const RunResults& run);
 
 Json to_json(const std::vector<EngineAgreement>& agreements);
-std::string agreement_text(const std::vector<EngineAgreement>& agreements);      // for a terminal
-std::string agreement_markdown(const std::vector<EngineAgreement>& agreements);  // "" for none
 
 }  // namespace lgabench::report

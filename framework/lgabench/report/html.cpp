@@ -1,157 +1,130 @@
-#include <lgabench/report/html.hpp>
-
+// report.html. Every number of a table that stands in summary.json or claims.json carries the JSON pointer to it.
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <cctype>
-#include <set>
+#include <map>
 
-#include <lgabench/report/html_parts.hpp>
-#include <lgabench/report/names.hpp>
-#include <lgabench/report/settings.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
-namespace html_parts {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
-    }
-  return out;
-}
-
-RowNumbers::RowNumbers(const Summary& summary) {
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows) numbers_.emplace(&row, numbers_.size());
-}
-
-std::string RowNumbers::value(const Row& row, const std::string& member, const std::string& text) const {
-  return fmt::format("<span data-value=\"/rows/{}/{}\">{}</span>", (*this)(row), member, text);
-}
-
-std::string row_of(const std::vector<std::string>& cells, std::size_t words) {
-  std::string text = "<tr>";
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    text += i < words ? fmt::format("<th scope=row>{}</th>", cells[i]) : fmt::format("<td>{}</td>", cells[i]);
-  return text + "</tr>\n";
-}
-
-std::string table(const std::string& caption, const std::vector<std::string>& heads, const std::string& body,
-                  bool sortable) {
-  std::string head;
-  for (const std::string& one : heads) head += fmt::format("<th scope=col>{}</th>", one);
-  return fmt::format(
-      "<div class=frame tabindex=0 role=region "
-      "aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n<thead><tr>{2}</tr>"
-      "</thead>\n<tbody>\n{3}</tbody></table></div>\n",
-      caption, sortable ? " class=sortable" : "", head, body);
-}
-
-std::string section(const std::string& id, const std::string& title, const std::string& body) {
-  return fmt::format("<section id={0} aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n", id,
-                     title, body);
-}
-
-}  // namespace html_parts
-
 namespace {
 
-using namespace html_parts;
-
-std::string definition(const std::string& name, const Json& value) {
-  return fmt::format("<dt>{}</dt><dd>{}</dd>", escaped(name),
-                     escaped(value.is_string() ? value.get<std::string>() : canonical(value)));
+std::string span_html(const Span& span) {
+  constexpr std::array<std::array<const char*, 2>, 7> around{{{"", ""},
+                                                              {"<b>", "</b>"},
+                                                              {"<i class=paper>", "</i>"},
+                                                              {"<code>", "</code>"},
+                                                              {"<small>", "</small>"},
+                                                              {"<span class=better>", "</span>"},
+                                                              {"<span class=worse>", "</span>"}}};
+  const auto& [open, close] = around[static_cast<std::size_t>(span.emphasis)];
+  std::string text = escaped(span.text);
+  if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
+  return open + text + close;
 }
 
-std::string pictures_note(const Pictures& pictures) {
-  if (pictures.wanted == 0) return "";
-  if (pictures.scenes.empty()) return fmt::format("No pictures of scenes: {}.", pictures.problem);
-  std::string text = fmt::format(
-      "Pictures: {} of the {} scenes in which a method failed (at most {}, each scenario’s "
-      "first)",
-      pictures.scenes.size(), pictures.wanted, most_pictures);
-  return text + (pictures.problem.empty() ? "." : fmt::format("; others could not be drawn: {}.", pictures.problem));
+std::string spans_html(const Spans& spans) {
+  std::string text;
+  for (const Span& span : spans) text += span_html(span);
+  return text;
 }
 
-// Who said which features matter, a line each: what is a measurement of people or of a language model, and what is not.
-std::set<std::string> sources(const Summary& summary) {
-  std::set<std::string> lines;
-  for (const PhiOfRow& of : distinct_phi(summary)) {
-    const Json& phi = of.row->phi.at(of.command);
-    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance),
-                      source = phi.at("source");
-    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? provenance : words,
-                             source.empty() ? "" : ", " + source));
-  }
-  return lines;
+std::string bar_html(const std::vector<BarPart>& parts, int of) {
+  std::string text = "<div class=bar aria-hidden=true>";
+  for (const BarPart& part : parts)
+    if (part.count > 0)
+      text += fmt::format("<i class=\"{}\" style=\"width:{:.2f}%\" title=\"{}: {}\"></i>", part.kind,
+                          100.0 * part.count / of, escaped(part.name), part.count);
+  return text + "</div>";
 }
 
-// Cells, notes, and the commands that were given.
-std::string what_was_run(const RunResults& run, const Summary& summary, const Pictures& pictures) {
-  std::string text = "<ul class=cards>";
-  const auto card = [&text](std::size_t n, const char* what, const char* css = "") {
-    text += fmt::format("<li class=\"{}\"><b>{}</b> {}</li>", css, n, what);
+std::string cell_html(const Cell& cell) {
+  if (cell.bar_of > 0) return bar_html(cell.bar, cell.bar_of);
+  std::string text = spans_html(cell.spans);
+  if (cell.episodes)
+    text = fmt::format("<button type=button class=rate data-row={} style=\"--rate:{:.0f}%\">{}</button>",
+                       *cell.episodes, cell.rate.value_or(0) * 100, text);
+  if (cell.style)
+    text = fmt::format("<span class=\"name{}\">{}{}</span>", cell.style->reference() ? " reference" : "",
+                       cell.style->reference() ? "" : svg_mark(*cell.style), text);
+  if (!cell.log.empty()) text += "<details><summary>end of its log</summary><pre>";
+  for (const std::string& line : cell.log) text += escaped(line) + '\n';
+  if (!cell.log.empty()) text += "</pre></details>";
+  return text;
+}
+
+// In a frame that scrolls sideways, with its caption. Columns up to the method's name head a row.
+std::string grid_html(const Grid& grid) {
+  std::string heads, body;
+  const auto head = [&heads](const Cell& cell) {
+    heads +=
+        fmt::format("<th scope=col>{}{}</th>",
+                    cell.bar.empty() ? "" : fmt::format("<span class=\"swatch {}\"></span>", cell.bar.front().kind),
+                    spans_html(cell.spans));
   };
-  const std::size_t failed = summary.failed.size();
-  card(run.cells.size() - failed, "cells finished");
-  if (failed > 0) card(failed, "cells failed", "bad");
-  if (run.not_run > 0) card(static_cast<std::size_t>(run.not_run), "cells not run", "bad");
-  std::size_t episodes = 0;
-  for (const CellResult& cell : run.cells)
-    for (const auto& item : cell.episodes) episodes += item.second.size();
-  card(episodes, "episodes played");
-  text += "</ul><ul class=notes>";
-  for (const std::string& line : settings(run)) text += fmt::format("<li>{}</li>", escaped(line));
-  for (const std::string& note : notes(run, summary)) text += fmt::format("<li>{}</li>", escaped(note));
-  for (const std::string& line : method_errors(run, "")) text += fmt::format("<li class=bad>{}</li>", escaped(line));
-  for (const std::string& line : sources(summary)) text += fmt::format("<li>{}</li>", escaped(line));
-  if (const std::string note = pictures_note(pictures); !note.empty())
-    text += fmt::format("<li>{}</li>", escaped(note));
-  text += "</ul>";
-
-  const bool tell = has_unseen(run);
-  std::vector<std::string> commands;
-  for (const CellResult& cell : run.cells)
-    for (const CommandResult& command : cell.commands) {
-      const std::string row =
-          row_of({escaped(cell.scenario), escaped(command.utterance) + (!tell          ? ""
-                                                                        : command.seen ? " <small>seen</small>"
-                                                                                       : " <small>unseen</small>")});
-      if (std::find(commands.begin(), commands.end(), row) == commands.end()) commands.push_back(row);
-    }
-  text += fmt::format(
-      "<details{}><summary>The commands</summary>{}</details>", commands.size() <= 4 ? " open" : "",
-      table("Scenarios and their commands", {"scenario", "command"}, fmt::format("{}", fmt::join(commands, ""))));
-  return section("run", "What was run", text);
+  if (!grid.group_head.empty()) head(Span(grid.group_head));
+  for (const Cell& cell : grid.heads) head(cell);
+  for (const Grid::Row& row : grid.rows) {
+    std::size_t headed = 0;
+    while (headed < row.cells.size() && !row.cells[headed].style) ++headed;
+    if (headed == row.cells.size()) headed = 0;  // no method: the first column
+    body += row.reference ? "<tr class=reference>" : "<tr>";
+    if (!grid.group_head.empty()) body += "<th scope=row>" + cell_html(row.group) + "</th>";
+    for (std::size_t i = 0; i < row.cells.size(); ++i)
+      body += fmt::format(i <= headed ? "<th scope=row>{}</th>" : "<td>{}</td>", cell_html(row.cells[i]));
+    body += "</tr>\n";
+  }
+  return fmt::format(
+      "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n"
+      "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n",
+      escaped(grid.caption), grid.rows.size() > 5 ? " class=sortable" : "", heads, body);
 }
 
-std::string provenance(const RunResults& run) {
-  std::string text = "<dl>";
-  for (const auto& [name, value] : run.json.items())
-    if (value.is_primitive() && !value.is_null() && value != "") text += definition(name, value);
-  for (const auto& [name, value] : run.json.at("machine").items()) text += definition("machine, " + name, value);
-  for (const Json& plugin : run.json.value("plugins", Json::array()))
-    text += definition("plugin " + plugin.value("id", ""),
-                       fmt::format("{} {}, sha256 {:.16}", plugin.value("kind", ""), plugin.value("version", ""),
-                                   plugin.value("sha256", "")));
-  const Json builds = run.json.value("build", Json::object());
-  for (const auto& [name, value] : builds.items())
-    if (value.is_string()) text += definition(name, "sha256 " + value.get<std::string>().substr(0, 16));
-  return section("provenance", "Provenance and machine", text + "</dl>");
+std::string charts_html(const Charts& charts) {
+  std::string text = fmt::format("<div class=\"charts{}\">", charts.charts.front().legend ? "" : " small");
+  for (const Chart& chart : charts.charts) text += "<figure>" + svg(chart, false) + "</figure>";
+  return text + "</div>\n";
+}
+
+std::string pictures_html(const PictureRow& row) {
+  std::string text;
+  const std::string where = escaped(row.caption);
+  for (const auto& [caption, png] : row.pictures)
+    text += fmt::format(
+        "<div><img width=256 height=128 alt=\"{}: {}\" src=\"data:image/png;base64,{}\"><br><small>{}</small></div>",
+        where, escaped(caption), png, escaped(caption));
+  return fmt::format("<figure class=engines><div class=pair>{}</div><figcaption>{}</figcaption></figure>\n", text,
+                     where);
+}
+
+std::string block_html(const Block& block) {
+  std::string text;
+  if (const auto* heading = std::get_if<Heading>(&block.content)) text = "<h3>" + escaped(heading->text) + "</h3>\n";
+  if (const auto* words = std::get_if<Paragraph>(&block.content))
+    text = "<p class=hint>" + spans_html(words->spans) + "</p>\n";
+  if (const auto* list = std::get_if<List>(&block.content)) {
+    for (const Spans& item : list->items) text += "<li>" + spans_html(item) + "</li>\n";
+    text = "<ul>\n" + text + "</ul>\n";
+  }
+  if (const auto* facts = std::get_if<Facts>(&block.content)) {
+    for (const auto& [name, value] : facts->items)
+      text += fmt::format("<dt>{}</dt><dd>{}</dd>", escaped(name), escaped(value));
+    text = "<dl>" + text + "</dl>\n";
+  }
+  if (const auto* grid = std::get_if<Grid>(&block.content)) text = grid_html(*grid);
+  if (const auto* charts = std::get_if<Charts>(&block.content)) text = charts_html(*charts);
+  if (const auto* pictures = std::get_if<PictureRow>(&block.content)) text = pictures_html(*pictures);
+  if (block.folded.empty()) return text;
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(block.folded), text);
+}
+
+std::string notes_html(const Document& document) {
+  std::string text;
+  for (const Note& note : document.notes)
+    text += fmt::format("<li{}>{}{}</li>\n", note.kind == Note::error ? " class=bad" : "", escaped(note.text),
+                        note.log.empty() ? "" : fmt::format(" ({})", escaped(note.log)));
+  return text.empty() ? "" : "<ul class=notes>\n" + text + "</ul>\n";
 }
 
 // Every {{name}} of the template. Values are not searched again.
@@ -175,19 +148,34 @@ std::string embedded(const Json& json) {
 
 }  // namespace
 
-std::string html(const RunResults& run, const Summary& summary, const std::vector<Claim>& tested,
-                 const std::vector<EngineAgreement>& agreements, const PaperValues& paper, const Pictures& pictures) {
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    const char* entity = c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : nullptr;
+    if (entity)
+      out += entity;
+    else
+      out += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
+  }
+  return out;
+}
+
+std::string html(const Document& document, const Json& data) {
+  std::string body = notes_html(document);
+  for (const Section& section : document.sections) {
+    if ((section.in & on_page) == 0) continue;
+    std::string blocks;
+    for (const Block& block : section.blocks)
+      if ((block.in & on_page) != 0) blocks += block_html(block);
+    body +=
+        fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+                    section.id, escaped(section.title), blocks);
+  }
   const fs::path installed = data_directory() / "page";
-  const RowNumbers numbers(summary);
-  const std::string body = what_was_run(run, summary, pictures) + success(summary, paper, numbers) +
-                           arms(summary, paper, numbers) + scenarios(summary, paper, numbers) +
-                           seen_inputs(summary, numbers) + claims(tested) + phi(run, summary, numbers) +
-                           failures(summary, numbers) + attribution(summary, numbers) + engines(agreements, pictures) +
-                           times(run) + failed_cells(summary) + provenance(run);
-  return filled(read_file(installed / "page.html"), {{"suite", escaped(run.suite)},
+  return filled(read_file(installed / "page.html"), {{"title", escaped(document.title)},
                                                      {"style", read_file(installed / "page.css")},
                                                      {"body", body},
-                                                     {"data", embedded(episodes(run, summary, pictures, numbers))},
+                                                     {"data", embedded(data)},
                                                      {"script", read_file(installed / "page.js")}});
 }
 

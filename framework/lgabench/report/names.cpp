@@ -5,57 +5,117 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <string_view>
+#include <tuple>
 
+#include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::report {
 namespace {
 
-struct Name {
-  const char *id, *shown, *color;
+struct Mark {
+  const char* name;
+  int sides;
+  double turned;
 };
-constexpr std::array<Name, 7> methods{{{"lga", "LGA", "#0072B2"},
-                                       {"lga_hill", "LGA-HILL", "#009E73"},
-                                       {"human", "Human", "#CC79A7"},
-                                       {"lga_s", "LGA-S", "#56B4E9"},
-                                       {"lga_l", "LGA-L", "#E69F00"},
-                                       {"gcbc_seg", "GCBC-SEG", "#000000"},
-                                       {"gcbc_dart", "GCBC-DART", "#D55E00"}}};
-constexpr std::array<Name, 3> references{{{"constant_action", "best constant action", "#666666"},
-                                          {"random_object", "random visible object", "#888888"},
-                                          {"oracle", "oracle", "#AAAAAA"}}};
-constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#A5AA00"};
+constexpr std::array<Mark, 7> marks{{{"circle", 0, 0},
+                                     {"square", 4, 45},
+                                     {"triangle", 3, -90},
+                                     {"diamond", 4, 0},
+                                     {"triangle_down", 3, 90},
+                                     {"pentagon", 5, -90},
+                                     {"hexagon", 6, 0}}};
+constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#909400"};
 
-// The entry of the row's id; nullptr where it has none.
-template <typename Names>
-const Name* find(const Names& names, const std::string& method) {
-  const std::string id = row_words(method).front();
-  const auto it = std::find_if(names.begin(), names.end(), [&id](const Name& n) { return id == n.id; });
-  return it == names.end() ? nullptr : &*it;
+struct Known {
+  std::string name, colour;  // "" for a reference row
+  int rank = 0;
+  std::size_t mark = 0;
+  std::vector<double> dashes{};
+};
+
+// Those of methods.json, by id.
+const std::map<std::string, Known>& known() {
+  static const std::map<std::string, Known> all = [] {
+    const fs::path file = data_directory() / "paper" / "methods.json";
+    const Json json = read_json(file);
+    const JsonReader reader(json, file.string());
+    std::map<std::string, Known> found;
+    int rank = 0;
+    for (const JsonReader& method : reader.at("methods").elements()) {
+      const std::string word = method.at("mark").string();
+      const auto mark = std::find_if(marks.begin(), marks.end(), [&word](const Mark& m) { return word == m.name; });
+      if (mark == marks.end()) method.at("mark").fail("circle, square, triangle, diamond, triangle_down, ...");
+      found[method.at("id").string()] = {method.at("name").string(), method.at("colour").string(), rank++,
+                                         static_cast<std::size_t>(mark - marks.begin())};
+    }
+    ++rank;  // that of methods which are not there
+    for (const JsonReader& reference : reader.at("references").elements()) {
+      Known& own = found[reference.at("id").string()];
+      own.name = reference.at("name").string();
+      own.rank = rank++;
+      for (const JsonReader& dash : reference.at("dashes").elements()) own.dashes.push_back(dash.number());
+    }
+    return found;
+  }();
+  return all;
+}
+
+// nullptr for an id that methods.json does not have.
+const Known* find(const std::string& method) {
+  const auto it = known().find(row_words(method).front());
+  return it == known().end() ? nullptr : &it->second;
 }
 
 }  // namespace
 
 std::string display_name(const std::string& method) {
   std::vector<std::string> words = row_words(method);
-  if (const Name* name = find(methods, method)) words.front() = name->shown;
-  if (const Name* name = find(references, method)) words.front() = name->shown;
+  if (const Known* own = find(method)) words.front() = own->name;
   return fmt::format("{}", fmt::join(words, " "));
 }
 
 int display_rank(const std::string& method) {
-  constexpr int unknown = static_cast<int>(methods.size());
-  if (const Name* name = find(methods, method)) return static_cast<int>(name - methods.data());
-  if (const Name* name = find(references, method)) return unknown + 1 + static_cast<int>(name - references.data());
-  return unknown;
+  if (const Known* own = find(method)) return own->rank;
+  return static_cast<int>(
+      std::count_if(known().begin(), known().end(), [](const auto& item) { return !item.second.colour.empty(); }));
 }
 
-std::string display_color(const std::string& method, std::size_t index) {
-  if (const Name* name = find(methods, method)) return name->color;
-  if (const Name* name = find(references, method)) return name->color;
-  return spare[index % spare.size()];
+bool ByRank::operator()(const std::string& a, const std::string& b) const {
+  return std::tuple(display_rank(a), a) < std::tuple(display_rank(b), b);
+}
+
+MethodStyles::MethodStyles(const std::vector<std::string>& methods) {
+  std::vector<std::string> ordered = methods, strange;
+  std::sort(ordered.begin(), ordered.end(), ByRank());
+  std::map<std::string, std::size_t> variants;  // so far, by id
+  for (const std::string& method : ordered) {
+    if (styles_.count(method) != 0) continue;
+    const std::string id = row_words(method).front();
+    const std::size_t variant = variants[id]++;
+    std::size_t mark = 0;
+    MethodStyle& style = styles_[method];
+    if (const Known* own = find(method)) {
+      style.colour = own->colour;
+      style.dashes = own->dashes;
+      mark = own->mark;
+    } else {
+      if (variant == 0) strange.push_back(id);
+      mark = static_cast<std::size_t>(std::find(strange.begin(), strange.end(), id) - strange.begin());
+      style.colour = spare[mark % spare.size()];
+    }
+    const Mark& drawn = marks[(mark + variant / 2) % marks.size()];
+    style.sides = drawn.sides;
+    style.turned = drawn.turned;
+    style.hollow = variant % 2 == 1;
+  }
+}
+
+const MethodStyle& MethodStyles::operator()(const std::string& method) const {
+  static const MethodStyle none{};
+  const auto it = styles_.find(method);
+  return it == styles_.end() ? none : it->second;
 }
 
 std::string provenance_words(const std::string& provenance) {

@@ -1,11 +1,13 @@
-// How methods are written and ordered in tables and figures.
+// How methods are written, ordered and drawn, the same in every table and figure.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
 namespace lgabench::report {
 
-// A method is named by its row: its id, and "+option=value" where options tell it from other rows of that id.
+// A method is named by its row: its id, and "+option=value" where options tell it from other rows of that id. The
+// names, order, colours and marks of the paper's methods are data (results/paper/methods.json).
 
 /// "lga_hill" -> "LGA-HILL", as the paper writes it; "lga+loss=squared" -> "LGA loss=squared". An id that is not known
 /// stays as it is.
@@ -14,9 +16,33 @@ std::string display_name(const std::string& method);
 /// Position in tables, by id: the paper's methods in its order, then others (equal rank: by name), then reference rows.
 int display_rank(const std::string& method);
 
-/// Line colour of the id as #rrggbb (Okabe and Ito's palette, told apart by colour-blind readers). `index` is taken for
-/// a method that has none of its own.
-std::string display_color(const std::string& method, std::size_t index);
+/// Orders rows' names as tables do.
+struct ByRank {
+  bool operator()(const std::string& a, const std::string& b) const;
+};
+
+/// What tells a row from others in figures.
+struct MethodStyle {
+  std::string colour;  // #rrggbb; "" for a reference row, which is grey
+  int sides = 0;       // of its mark, a regular polygon; 0 for a circle
+  double turned = 0;   // degrees, of a corner, clockwise from the right
+  bool hollow = false;
+  std::vector<double> dashes{};
+
+  bool reference() const { return colour.empty(); }
+};
+
+/// The styles of a run's rows: a method's own; the second variant of a method has its mark hollow; a method that has
+/// none of its own takes a spare one.
+class MethodStyles {
+ public:
+  explicit MethodStyles(const std::vector<std::string>& methods = {});
+  /// That of a reference row for a name that is none of them.
+  const MethodStyle& operator()(const std::string& method) const;
+
+ private:
+  std::map<std::string, MethodStyle> styles_;
+};
 
 /// A Selection's provenance in words for a reader, e.g. "true φ̂: an upper bound, no human data"; "" for none.
 std::string provenance_words(const std::string& provenance);

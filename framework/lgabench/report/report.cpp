@@ -1,8 +1,7 @@
 #include <lgabench/report/report.hpp>
 
 #include <lgabench/core/error.hpp>
-#include <lgabench/report/html.hpp>
-#include <lgabench/report/tables.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -22,20 +21,28 @@ Report write_report(const fs::path& run) {
   report.summary = summarize(report.run);
   report.claims = test_claims(report.run);
   report.agreements = engine_agreement(report.run);
-  const RunResults& results = report.run;
   const Summary& summary = report.summary;
   Json values = to_json(summary);
   if (!report.agreements.empty()) values["engine_agreement"] = to_json(report.agreements);
   write_file(run / "summary.json", canonical(values) + "\n");
   write_file(run / "summary.csv", to_csv(summary));
+  write_file(run / "episodes.csv", episodes_csv(report.run));
   write_file(run / "claims.json", canonical(to_json(summary.suite, report.claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
-  std::vector<std::vector<Figure>> figures;
-  for (const Table& table : summary.tables) figures.push_back(draw_figures(run, summary.suite, table, paper));
-  write_file(run / "report.md", markdown(results, summary, report.claims, report.agreements, paper, figures));
-  write_file(run / "report.html", html(results, summary, report.claims, report.agreements, paper,
-                                       draw_pictures(run, results, report.agreements)));
+  const Pictures pictures = draw_pictures(run, report.run, report.agreements);
+  const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
+  report.document = report_document(material);
+  for (const Chart* chart : report.document.charts()) {
+    write_file(run / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
+    write_file(run / "figures" / (chart->file + ".pdf"), pdf(*chart));
+  }
+  for (const Grid* grid : report.document.grids()) {
+    write_file(run / "tables" / (grid->name + ".tex"), latex(*grid));
+    write_file(run / "tables" / (grid->name + ".csv"), csv(*grid));
+  }
+  write_file(run / "report.md", markdown(report.document));
+  write_file(run / "report.html", html(report.document, page_data(material)));
   return report;
 }
 

@@ -3,9 +3,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
-#include <lgabench/report/claims.hpp>
-#include <lgabench/report/engines.hpp>
-#include <lgabench/report/summary.hpp>
+#include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
 
@@ -18,11 +16,13 @@ struct Report {
   Summary summary;
   std::vector<Claim> claims;
   std::vector<EngineAgreement> agreements;
+  Document document;
 };
 
-/// Reads RUN's cells, writes RUN/summary.json, summary.csv, claims.json, report.md, report.html and figures/*.svg. The
-/// same cells give the same bytes, but for the times in report.md and report.html. Without gnuplot the report says so
-/// and has no figure; without lgabench-worker beside the program report.html says so and has no pictures.
+/// Reads RUN's cells, writes RUN/summary.json, summary.csv, episodes.csv, claims.json, report.md, report.html, each
+/// figure as SVG and PDF in figures/, and each table as LaTeX and CSV in tables/. The same cells give the same bytes,
+/// but for the times in report.md and report.html. Without lgabench-worker beside the program report.html says so and
+/// has no pictures.
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 Report write_report(const fs::path& run);
 

@@ -65,14 +65,14 @@ struct RunResults {
   int foreign = 0;     // there, not asked for by run.json: ignored
 };
 
-/// Every word that `failure` may be on an episode that was not won, in a fixed order.
+/// Every word that `failure` may be on a failed episode, in a fixed order.
 std::vector<std::string> failure_words();
 
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
 
-/// What a failure may be attributed to, in a fixed order: a failed episode that the same policy wins with the true mask
-/// is the abstraction's, any other the policy's.
+/// What a failure may be attributed to, in a fixed order: a failed episode in which the same policy succeeds with the
+/// true mask is the abstraction's, any other the policy's.
 constexpr std::array<const char*, 2> attributions{"abstraction", "policy"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.

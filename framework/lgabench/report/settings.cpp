@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <map>
+#include <set>
 
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
@@ -13,29 +14,28 @@ namespace {
 
 // Names of the rows that have this option at this value, in the order of tables.
 std::vector<std::string> rows_with(const RunResults& run, const std::string& option, const std::string& value) {
-  std::map<std::pair<int, std::string>, std::string> rows;
+  std::set<std::string, ByRank> rows;
   for (const CellResult& cell : run.cells)
-    if (cell.options.value(option, Json()) == value)
-      rows[{display_rank(cell.method), cell.method}] = display_name(cell.method);
+    if (cell.options.value(option, Json()) == value) rows.insert(cell.method);
   std::vector<std::string> names;
-  for (const auto& row : rows) names.push_back(row.second);
+  for (const std::string& row : rows) names.push_back(display_name(row));
   return names;
 }
 
 // "loss=squared: LGA, Human": rows with the same options together, in the order of tables.
 std::vector<std::string> options_beside_defaults(const Json& settings) {
-  std::map<std::pair<int, std::string>, std::string> rows;  // by rank and name: their options
+  std::map<std::string, std::string, ByRank> rows;  // their options
   for (const auto& [row, options] : settings.items()) {
     std::vector<std::string> texts;
     for (const auto& [option, value] : options.items()) texts.push_back(option + "=" + option_text(value));
-    rows[{display_rank(row), row}] = fmt::format("{}", fmt::join(texts, ", "));
+    rows[row] = fmt::format("{}", fmt::join(texts, ", "));
   }
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;  // options, rows
   for (const auto& [row, options] : rows) {
     std::size_t at = 0;
     while (at < groups.size() && groups[at].first != options) ++at;
     if (at == groups.size()) groups.push_back({options, {}});
-    groups[at].second.push_back(display_name(row.second));
+    groups[at].second.push_back(display_name(row));
   }
   std::vector<std::string> lines;
   for (const auto& [options, names] : groups) lines.push_back(fmt::format("{}: {}", options, fmt::join(names, ", ")));

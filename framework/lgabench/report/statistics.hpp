@@ -13,12 +13,13 @@ struct Interval {
 Interval wilson(double successes, int episodes);
 
 /// Exact two-sided McNemar test of two policies on the same scenes: the probability of a split at least as uneven as
-/// `only_first` against `only_second` (scenes that one of them alone won) were both equally good. @pre both >= 0
+/// `only_first` against `only_second` (scenes in which one of them alone succeeded) were both equally good. @pre both
+/// >= 0
 double mcnemar(int only_first, int only_second);
 
 /// Interval for the difference of two proportions on the same scenes, second minus first, 95 %: Wald's with the
-/// shares of scenes that one alone won taken as (k + 1) / (n + 2), which keeps it honest where few or none differ
-/// (Bonett and Price 2012). @pre only_first, only_second >= 0, their sum <= episodes > 0
+/// shares of scenes in which one alone succeeded taken as (k + 1) / (n + 2), which keeps it honest where few or none
+/// differ (Bonett and Price 2012). @pre only_first, only_second >= 0, their sum <= episodes > 0
 Interval paired_difference(int only_first, int only_second, int episodes);
 
 /// A paired difference with what chance leaves open: 95 % interval, two-sided p.

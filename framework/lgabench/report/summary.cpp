@@ -275,7 +275,8 @@ void mark_errors(Table& table) {
 std::optional<Nearness> nearness(const Table& table, const PaperValues& paper) {
   constexpr double error_bars = 1.5;
   Nearness near;
-  for (const char* method : {"lga", "human", "gcbc_seg"})
+  near.methods = paper.near;
+  for (const std::string& method : paper.near)
     for (const int n : table.demonstrations()) {
       const std::string name = display_name(method);
       const auto rate = paper.find(mean_scenario, name, n), error = paper.error(mean_scenario, name, n);
@@ -405,6 +406,9 @@ Summary summarize(const RunResults& run) {
     summary.tables.push_back(make_table(item.second));
     summary.tables.back().nearness = nearness(summary.tables.back(), paper);
   }
+  std::size_t index = 0;
+  for (Table& table : summary.tables)
+    for (Row& row : table.rows) row.index = index++;
   return summary;
 }
 

@@ -24,6 +24,7 @@ struct Shift {
 
 /// What a method did in one arm at one number of demonstrations, in one scenario or on the mean over all of them.
 struct Row {
+  std::size_t index = 0;  // among summary.json's rows
   std::string scenario, layout, engine, arm, method, kind;
   int demonstrations = 0;
   int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
@@ -93,5 +94,7 @@ Summary summarize(const RunResults& run);
 /// summary.json and summary.csv (docs/formats).
 Json to_json(const Summary& summary);
 std::string to_csv(const Summary& summary);
+/// episodes.csv: a line for each episode of the run (docs/formats).
+std::string episodes_csv(const RunResults& run);
 
 }  // namespace lgabench::report

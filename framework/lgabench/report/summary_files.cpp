@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/summary.hpp>
+#include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -57,43 +57,50 @@ Json to_json(const Summary& summary) {
 }
 
 std::string to_csv(const Summary& summary) {
-  const auto quoted = [](const std::string& name) {  // RFC 4180, and nothing that a spreadsheet takes for a formula
-    std::string text = one_line(name);
-    if (text.find_first_of("=+-@") == 0) text.insert(0, 1, '\'');
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-    std::string inside = text;
-    for (std::size_t at = 0; (at = inside.find('"', at)) != std::string::npos; at += 2) inside.insert(at, 1, '"');
-    return '"' + inside + '"';
+  std::vector<std::pair<std::string, Json::json_pointer>> columns;
+  const auto add = [&columns](const std::string& name, const std::string& place) {
+    columns.emplace_back(name, Json::json_pointer("/" + place));
   };
-  const auto number = [](bool known, double value) { return known ? canonical(value) : std::string(); };
+  for (const char* member : {"scenario", "layout", "engine", "method", "method_kind", "demonstrations", "arm", "seeds",
+                             "participants", "scenes", "episodes", "successes", "success", "low", "high"})
+    add(member, member);
+  add("against", "shift/against");
+  for (const char* member : {"difference", "low", "high"})
+    add(member == std::string("difference") ? member : fmt::format("difference_{}", member),
+        fmt::format("shift/{}", member));
+  add("same_actions", "shift/same_actions");
+  for (const char* member : {"inputs_seen", "n_error", "marks"}) add(member, member);
+  for (const char* to : attributions) add(to, fmt::format("attribution/{}", to));
+  for (const std::string& word : failure_words()) add(word, "failures/" + word);
 
-  const std::vector<std::string> words = failure_words();
-  std::string csv = fmt::format(
-      "scenario,layout,engine,method,method_kind,demonstrations,arm,seeds,participants,scenes,episodes,successes,"
-      "success,low,"
-      "high,"
-      "against,difference,difference_low,difference_high,same_actions,inputs_seen,n_error,marks,{},{}\n",
-      fmt::join(attributions, ","), fmt::join(words, ","));
-  for (const Table& table : summary.tables)
-    for (const Row& row : table.rows) {
-      const bool known = row.success.has_value();
-      const bool shifted = row.shift.has_value();
-      const Shift shift = row.shift.value_or(Shift());
-      csv += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", quoted(row.scenario),
-          quoted(row.layout), quoted(row.engine), quoted(row.method), row.kind, row.demonstrations, quoted(row.arm),
-          row.seeds, row.participants, row.scenes, row.episodes, row.successes, number(known, row.success.value_or(0)),
-          number(known, row.interval.low), number(known, row.interval.high), quoted(shift.against),
-          number(shifted, shift.difference), number(shifted, shift.interval.low), number(shifted, shift.interval.high),
-          shifted ? canonical(shift.same_actions) : "",
-          number(row.seen_share().has_value(), row.seen_share().value_or(0)), row.n_error, fmt::join(row.marks, " "));
-      for (const char* to : attributions) csv += fmt::format(",{}", row.attribution.at(to));
-      for (const std::string& word : words) {
-        const auto it = row.failures.find(word);
-        csv += fmt::format(",{}", it == row.failures.end() ? 0 : it->second);
-      }
-      csv += '\n';
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.push_back(column.first);
+  std::string csv = csv_line(names);
+  const Json all = to_json(summary);
+  for (const Json& row : all.at("rows")) {
+    std::vector<std::string> values;
+    for (const auto& [name, place] : columns) {
+      const bool failure = place.parent_pointer().to_string() == "/failures";
+      values.push_back(row.contains(place) ? csv_text(row.at(place)) : failure ? "0" : "");
     }
+    csv += csv_line(values);
+  }
+  return csv;
+}
+
+std::string episodes_csv(const RunResults& run) {
+  std::string csv =
+      csv_line({"cell", "scenario", "layout", "engine", "method", "method_kind", "demonstrations", "training_seed",
+                "participant", "arm", "index", "command", "scene", "success", "failure", "attribution", "input_seen"});
+  for (const CellResult& cell : run.cells)
+    for (const auto& [arm, episodes] : cell.episodes)
+      for (std::size_t i = 0; i < episodes.size(); ++i) {
+        const PlayedEpisode& e = episodes[i];
+        csv += csv_line({cell.key, cell.scenario, cell.layout, cell.engine, cell.method, cell.kind,
+                         std::to_string(cell.demonstrations), std::to_string(cell.training_seed), cell.participant, arm,
+                         std::to_string(i), cell.commands[e.command].utterance, e.scene, e.success ? "true" : "false",
+                         e.failure, e.attribution, e.input_seen ? (*e.input_seen ? "true" : "false") : ""});
+      }
   return csv;
 }
 

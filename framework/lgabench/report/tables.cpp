@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
@@ -15,16 +14,25 @@ namespace lgabench::report {
 
 namespace {
 
-// Reference rows act alike whatever they see: it says something of methods alone.
-bool acts_the_same(const Row& row) { return !row.is_reference() && row.shift && row.shift->same_actions; }
-
 bool any_shift(const Table& table, const Column& column) {
   return std::any_of(table.rows.begin(), table.rows.end(), [&column](const Row& row) {
     return row.arm == column.arm && row.shift && row.demonstrations == column.demonstrations;
   });
 }
 
+// "LGA, Human and GCBC-SEG"
+std::string listed(const std::vector<std::string>& methods) {
+  std::string text;
+  for (std::size_t i = 0; i < methods.size(); ++i)
+    text += (i == 0 ? "" : i + 1 == methods.size() ? " and " : ", ") + display_name(methods[i]);
+  return text;
+}
+
 }  // namespace
+
+std::string command_text(const std::string& utterance, bool seen, bool tell) {
+  return utterance + (!tell ? "" : seen ? " (seen)" : " (unseen)");
+}
 
 std::vector<View> views(const Table& table) {
   std::vector<View> all;
@@ -51,29 +59,7 @@ std::string marks_text(const Row& row) {
   return text;
 }
 
-std::string success_text(const Row* row) {
-  if (!row) return "";
-  const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
-  if (!row->success) return "–" + marks;
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]{}", *row->success, row->interval.low, row->interval.high, marks);
-}
-
-std::string shift_text(const Row* row) {
-  if (!row || !row->shift) return "";
-  const auto hundredths = [](double x) {  // without "-0.00"
-    const double rounded = std::round(x * 100) / 100;
-    return rounded == 0 ? std::string("0.00") : fmt::format("{:+.2f}", rounded);
-  };
-  const Shift& shift = *row->shift;
-  return fmt::format("{} [{}, {}]{}", hundredths(shift.difference), hundredths(shift.interval.low),
-                     hundredths(shift.interval.high), acts_the_same(*row) ? " =" : "");
-}
-
-std::string seen_text(const Row* row) {
-  if (!row) return "";
-  const std::optional<double> share = row->seen_share();
-  return share ? fmt::format("{:.2f}", *share) : "–";
-}
+bool acts_the_same(const Row& row) { return !row.is_reference() && row.shift && row.shift->same_actions; }
 
 bool any_seen(const Table& table) {
   return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
@@ -123,10 +109,10 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   for (const Table& table : summary.tables)
     if (const auto& near = table.nearness)
       lines.push_back(
-          fmt::format("Beside the paper, {}, {}: {} of {} points of LGA, Human and GCBC-SEG lie within 1.5 of its "
-                      "error bars; the mean "
+          fmt::format("Beside the paper, {}, {}: {} of {} points of {} lie within 1.5 of its error bars; the mean "
                       "distance is {:.3f}.",
-                      table.title(), table.title(mean_scenario), near->near, near->points, near->mean_distance));
+                      table.title(), table.title(mean_scenario), near->near, near->points, listed(near->methods),
+                      near->mean_distance));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   for (const std::string& model : live)
@@ -134,7 +120,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   return lines;
 }
 
-std::vector<std::string> method_errors(const RunResults& run, const fs::path& directory) {
+std::vector<MethodError> method_errors(const RunResults& run) {
   struct Errors {
     int episodes = 0, errors = 0;
     const CellResult* first = nullptr;
@@ -151,14 +137,14 @@ std::vector<std::string> method_errors(const RunResults& run, const fs::path& di
         if (!row.first) row.first = &cell;
       }
   }
-  std::vector<std::string> lines;
+  std::vector<MethodError> found;
   for (const auto& [method, row] : all)
     if (row.first)
-      lines.push_back(fmt::format("{} of {} episodes of {} are method_error: {} ({})", row.errors, row.episodes,
-                                  display_name(method),
-                                  row.first->method_error.empty() ? "no reason is recorded" : row.first->method_error,
-                                  (directory / "cells" / row.first->key / "log.txt").string()));
-  return lines;
+      found.push_back(
+          {fmt::format("{} of {} episodes of {} are method_error: {}", row.errors, row.episodes, display_name(method),
+                       row.first->method_error.empty() ? "no reason is recorded" : row.first->method_error),
+           (fs::path("cells") / row.first->key / "log.txt").string()});
+  return found;
 }
 
 std::vector<PhaseTimes> phase_times(const RunResults& run) {

@@ -1,13 +1,9 @@
-// The texts of a report, from its values.
+// What the sections of a report share: which columns stand side by side, what marks and notes say.
 #pragma once
 #include <array>
 #include <string>
 #include <vector>
 
-#include <lgabench/report/claims.hpp>
-#include <lgabench/report/engines.hpp>
-#include <lgabench/report/figure.hpp>
-#include <lgabench/report/paper.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
@@ -35,20 +31,15 @@ constexpr std::array<Mark, 5> table_marks{
     {{"baseline_not_learned", "†", "baseline not learned: below the best constant action with as many demonstrations"},
      {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
      {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
-     {"method_error", "!", "the method's own code failed in some of the episodes, which count as not won"},
+     {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},
      {"network", "¶", "reached the network on its own: in no leaderboard"}}};
 /// "†§": the row's.
 std::string marks_text(const Row& row);
 
-/// "0.85 [0.64, 0.95]", then †, §, ‡, !, ¶ and = for the row's marks; "–" for a row without episodes, "" where there is
-/// no row.
-std::string success_text(const Row* row);
+/// Whether the row acted exactly as in the first arm. Reference rows act alike whatever they see: it says something of
+/// methods alone.
+bool acts_the_same(const Row& row);
 
-/// "-0.10 [-0.31, +0.11]", then = for the same actions; "" where there is none.
-std::string shift_text(const Row* row);
-
-/// "0.35", of the test inputs those that stood in training; "–" where the row's policies do not tell.
-std::string seen_text(const Row* row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
@@ -56,12 +47,12 @@ bool any_seen(const Table& table);
 /// or that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
-/// "5 of 5 episodes of X are method_error: what the first one threw (DIRECTORY/cells/KEY/log.txt)" for each row's name
-/// that has such episodes, over all of its cells.
-std::vector<std::string> method_errors(const RunResults& run, const fs::path& directory);
-
-/// Text from a file inside a Markdown table's cell: it may neither end the cell nor the line.
-std::string plain(const std::string& text);
+/// "5 of 5 episodes of X are method_error: what the first one threw", and the log of its cell, relative to the run.
+struct MethodError {
+  std::string text, log;
+};
+/// One for each row's name that has such episodes, over all of its cells.
+std::vector<MethodError> method_errors(const RunResults& run);
 
 /// Mean seconds of each of `phases` over the finished cells of a row's name, in the order of tables.
 struct PhaseTimes {
@@ -82,14 +73,7 @@ std::vector<PhiOfRow> distinct_phi(const Summary& summary);
 /// Whether a command of the run is tested only: then each says which it is.
 bool has_unseen(const RunResults& run);
 
-/// report.md. `figures` of each of the summary's tables, in their order.
-std::string markdown(const RunResults& run, const Summary& summary, const std::vector<Claim>& claims,
-                     const std::vector<EngineAgreement>& agreements, const PaperValues& paper,
-                     const std::vector<std::vector<Figure>>& figures);
-
-/// The table for a terminal, fixed width, without colour: a block a scenario and one for their mean; success with its
-/// 95 % interval for each method and number of demonstrations (with several arms: for each arm, and the change against
-/// the first one where they are paired), reference rows below a rule, failed cells last.
-std::string plain_text(const RunResults& run, const Summary& summary);
+/// The command, and where `tell` whether demonstrations with it were given.
+std::string command_text(const std::string& utterance, bool seen, bool tell);
 
 }  // namespace lgabench::report

@@ -39,7 +39,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
 
 // A point's numbers, under the pointer or the focus.
 const tip = $("tip");
-for (const point of document.querySelectorAll(".point[aria-label], .strip g")) {
+for (const point of document.querySelectorAll(".point[aria-label]")) {
   const show = () => {
     const box = point.getBoundingClientRect();
     tip.textContent = point.getAttribute("aria-label");
@@ -121,7 +121,7 @@ function show(row) {
     (failed.length > seen.length ? `; ${seen.length} of these with a picture on this page` : "") +
     ". The arrow is the action, from where it takes hold to where it lets go.</p>";
   if (seen.length) body.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
-  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "won", e.attribution]
+  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
   body.append(growing([...failed, ...all.filter((e) => !e.failure)], 100, (some) =>
     `<div class="frame"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +

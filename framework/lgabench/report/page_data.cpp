@@ -7,10 +7,9 @@
 #include <tuple>
 
 #include <lgabench/core/geometry.hpp>
-#include <lgabench/report/html_parts.hpp>
-#include <lgabench/report/names.hpp>
+#include <lgabench/report/report_document.hpp>
 
-namespace lgabench::report::html_parts {
+namespace lgabench::report {
 namespace {
 
 // Column and row of the picture where the action's pose lies; positions are carried out clipped to the workspace.
@@ -36,19 +35,20 @@ Place place(const std::string& layout, const std::string& engine, const std::str
 
 }  // namespace
 
-Json episodes(const RunResults& run, const Summary& summary, const Pictures& pictures, const RowNumbers& numbers) {
+Json page_data(const Material& material) {
+  const Pictures& pictures = material.pictures;
   std::map<Place, std::size_t> rows;
   Json titles = Json::array();
-  for (const Table& table : summary.tables)
+  for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
-      rows[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = numbers(row);
+      rows[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = row.index;
       titles.push_back(title_of(table, row));
     }
 
   const std::vector<std::string> words = failure_words();
   std::map<std::vector<std::string>, std::size_t> scenes;  // of an arm, shared by the cells that play it
   Json cells = Json::array();
-  for (const CellResult& cell : run.cells) {
+  for (const CellResult& cell : material.run.cells) {
     if (cell.failed) continue;
     Json commands = Json::array(), masks = Json::array();
     for (const CommandResult& command : cell.commands) {
@@ -98,4 +98,4 @@ Json episodes(const RunResults& run, const Summary& summary, const Pictures& pic
           {"pictures", pictures.scenes}, {"masks", pictures.masks}};
 }
 
-}  // namespace lgabench::report::html_parts
+}  // namespace lgabench::report

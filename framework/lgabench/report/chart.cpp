@@ -1,0 +1,150 @@
+#include <lgabench/report/chart.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/report/canvas.hpp>
+
+namespace lgabench::report {
+namespace {
+
+constexpr double left = 40, right = 14, bottom = 46, small_text = 11, radius = 4.2;
+constexpr double spare_width = 1.12;  // a browser without Helvetica sets a wider font
+const Pen grid{Ink::rule};
+
+// One chart on one canvas: where values lie.
+class Drawing {
+ public:
+  Drawing(const Chart& chart, Canvas& canvas)
+      : chart_(chart), canvas_(canvas), top_(chart.subtitle.empty() ? 30 : 44) {}
+
+  double all() {
+    const double fits = 13 * (chart_.width - 16) / (text_width(chart_.title, 13) * spare_width);
+    canvas_.text(chart_.title, 8, 18, Anchor::start, std::min(13., fits), true, Ink::ink);
+    if (!chart_.subtitle.empty()) canvas_.text(chart_.subtitle, 8, 33, Anchor::start, small_text, false, Ink::soft);
+    axes();
+    for (const Series::Kind kind : {Series::reference, Series::published, Series::measured}) draw_all(kind);
+    return chart_.legend ? legend() : chart_.height;
+  }
+
+ private:
+  double x_of(double at) const {
+    return left + (at - chart_.left) / (chart_.right - chart_.left) * (chart_.width - left - right);
+  }
+  double y_of(double rate) const { return top_ + (1 - rate) * (chart_.height - top_ - bottom); }
+  // Points between two ticks.
+  double gap() const {
+    return chart_.ticks.size() < 2 ? chart_.width - left - right : x_of(chart_.ticks[1].at) - x_of(chart_.ticks[0].at);
+  }
+  int count(Series::Kind kind) const {
+    return static_cast<int>(std::count_if(chart_.series.begin(), chart_.series.end(),
+                                          [kind](const Series& series) { return series.kind == kind; }));
+  }
+
+  void axes() {
+    for (int tenth = 0; tenth <= 10; tenth += 2) {
+      const double y = y_of(tenth / 10.0);
+      canvas_.path({{'m', {left, y}}, {'l', {chart_.width - right, y}}}, grid);
+      canvas_.text(fmt::format("{:.1f}", tenth / 10.0), left - 7, y + 4, Anchor::end, small_text, false, Ink::soft);
+    }
+    const double foot = chart_.height - bottom;
+    const bool slanted = std::any_of(chart_.ticks.begin(), chart_.ticks.end(), [this](const Chart::Tick& tick) {
+      return text_width(tick.label, small_text) > gap() - 8;
+    });
+    for (const Chart::Tick& tick : chart_.ticks)
+      canvas_.text(tick.label, x_of(tick.at), foot + 16, slanted ? Anchor::end : Anchor::middle, small_text, false,
+                   Ink::soft, slanted ? -20 : 0);
+    if (!chart_.axis.empty())
+      canvas_.text(chart_.axis, (left + chart_.width - right) / 2, chart_.height - 8, Anchor::middle, small_text, false,
+                   Ink::soft);
+  }
+
+  void draw_all(Series::Kind kind) {
+    const double n = count(kind), apart = std::min(12., .8 * gap() / std::max(n, 1.));
+    double place = -(n - 1) / 2;  // methods lie a little apart, so that no whisker hides another
+    for (const Series& series : chart_.series) {
+      if (series.kind != kind) continue;
+      draw_one(series, kind != Series::measured ? 0 : place * (series.joined ? std::min(apart, 4.) : apart));
+      ++place;
+    }
+  }
+
+  void draw_one(const Series& series, double shift) {
+    canvas_.open(series);
+    Path line;
+    for (const ChartPoint& point : series.points) {
+      const double x = x_of(point.x) + shift, y = y_of(point.y);
+      if (series.joined || series.kind != Series::reference) {
+        line.push_back({line.empty() ? 'm' : 'l', {x, y}});
+      } else {
+        const double half = .44 * gap();
+        line.push_back({'m', {x - half, y}});
+        line.push_back({'l', {x + half, y}});
+      }
+    }
+    if (series.joined || series.kind == Series::reference) canvas_.path(line, line_pen(series));
+    for (const ChartPoint& point : series.points) {
+      const double x = x_of(point.x) + shift;
+      canvas_.open(point, series.kind);
+      if (series.kind == Series::reference) {
+        canvas_.path(mark_path({}, x, y_of(point.y), 2.2), {Ink::soft, Ink::soft});
+      } else {
+        canvas_.path({{'m', {x, y_of(point.low)}}, {'l', {x, y_of(point.high)}}}, {Ink::series, Ink::none, 1.3});
+        MethodStyle style = series.style;
+        style.hollow = style.hollow || series.kind == Series::published;
+        canvas_.path(mark_path(style, x, y_of(point.y), series.kind == Series::published ? 3 : radius),
+                     mark_pen(style));
+      }
+      canvas_.close();
+    }
+    canvas_.close();
+  }
+
+  static Pen line_pen(const Series& series) {
+    if (series.kind == Series::reference) return {Ink::soft, Ink::none, 1.2, series.style.dashes};
+    if (series.kind == Series::published) return {Ink::series, Ink::none, 1.4, {6, 4}};
+    return {Ink::series, Ink::none, 2};
+  }
+
+  // Below the chart, as many rows as it takes. Returns the height of both.
+  double legend() {
+    constexpr double sample = 26, row = 17, between = 16;
+    double x = left, y = chart_.height + 10;
+    const auto entry = [&](const Series& series, const std::string& name) {
+      const double wide = sample + 6 + spare_width * text_width(name, small_text);
+      if (x > left && x + wide > chart_.width - 4) x = left, y += row;
+      canvas_.open(series);
+      if (series.joined || series.kind == Series::reference)
+        canvas_.path({{'m', {x, y}}, {'l', {x + sample, y}}}, line_pen(series));
+      if (series.kind != Series::reference) {
+        MethodStyle style = series.style;
+        style.hollow = style.hollow || series.kind == Series::published;
+        canvas_.path(mark_path(style, x + sample / 2, y, radius), mark_pen(style));
+      }
+      canvas_.close();
+      canvas_.text(name, x + sample + 6, y + 4, Anchor::start, small_text, false, Ink::ink);
+      x += wide + between;
+    };
+    for (const Series& series : chart_.series)
+      if (series.kind == Series::measured) entry(series, series.name);
+    for (const Series& series : chart_.series)
+      if (series.kind == Series::reference) entry(series, series.name + " (reference)");
+    for (const Series& series : chart_.series)
+      if (series.kind == Series::published) {
+        entry(series, "dashed: the paper's, with its error bars");
+        break;
+      }
+    return y + row;
+  }
+
+  const Chart& chart_;
+  Canvas& canvas_;
+  double top_;
+};
+
+}  // namespace
+
+double draw(const Chart& chart, Canvas& canvas) { return Drawing(chart, canvas).all(); }
+
+}  // namespace lgabench::report

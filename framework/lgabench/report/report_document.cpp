@@ -1,0 +1,127 @@
+#include <lgabench/report/report_document.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/settings.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+std::string pictures_note(const Pictures& pictures) {
+  if (pictures.wanted == 0) return "";
+  if (pictures.scenes.empty()) return fmt::format("No pictures of scenes: {}.", pictures.problem);
+  std::string text = fmt::format(
+      "Pictures: {} of the {} scenes in which a method failed (at most {}, each scenario’s "
+      "first)",
+      pictures.scenes.size(), pictures.wanted, most_pictures);
+  return text + (pictures.problem.empty() ? "." : fmt::format("; others could not be drawn: {}.", pictures.problem));
+}
+
+// Who said which features matter, a line each: what is a measurement of people or of a language model, and what is not.
+std::set<std::string> sources(const Summary& summary) {
+  std::set<std::string> lines;
+  for (const PhiOfRow& of : distinct_phi(summary)) {
+    const Json& phi = of.row->phi.at(of.command);
+    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance),
+                      source = phi.at("source");
+    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? provenance : words,
+                             source.empty() ? "" : ", " + source));
+  }
+  return lines;
+}
+
+std::vector<Note> all_notes(const Material& material) {
+  std::vector<Note> all;
+  for (const std::string& line : settings(material.run)) all.push_back({Note::setting, line});
+  for (const std::string& line : notes(material.run, material.summary)) all.push_back({Note::note, line});
+  for (const MethodError& error : method_errors(material.run)) all.push_back({Note::error, error.text, error.log});
+  for (const std::string& line : sources(material.summary)) all.push_back({Note::source, line});
+  if (const std::string line = pictures_note(material.pictures); !line.empty()) all.push_back({Note::source, line});
+  return all;
+}
+
+Section how_to_read() {
+  Section section{"reading", "How to read the numbers"};
+  section.add(
+      reading,
+      List{{{"Success is the mean over scenarios of the mean over training seeds of the share of test episodes that "
+             "succeeded."},
+            {"Brackets hold a 95 % interval: Wilson's where the number is one policy's in one scenario; otherwise a "
+             "percentile interval of 2,000 resamples. The scenarios are taken as they are; in each, test scenes and "
+             "training seeds (participants, where there are several) are drawn again, crossed where the seeds share "
+             "their scenes, else scenes within seeds, and with them two imagined scenes, one success and one failure. "
+             "Three seeds on the same 20 scenes count as 20 scenes. What other scenarios would do is not in it; claims "
+             "test that apart."},
+            {"A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired "
+             "scene by scene. Its interval is found in the same way (one policy: Bonett and Price's for paired "
+             "proportions)."},
+            {"A test input was seen in training where all that the policy is given, pictures and text, is there to the "
+             "byte: a high share measures what was learned by heart. – where a policy does not tell."},
+            {"Reference rows are no methods: the best constant action knows the training actions alone, the random "
+             "visible object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing "
+             "and are the same for every number of demonstrations."}}});
+  return section;
+}
+
+}  // namespace
+
+MethodStyles styles_of(const Summary& summary) {
+  std::vector<std::string> names;
+  for (const Table& table : summary.tables)
+    for (const Row& row : table.rows) names.push_back(row.method);
+  for (const CellResult& cell : summary.failed) names.push_back(cell.method);
+  return MethodStyles(names);
+}
+
+Cell named(const Material& material, const std::string& method, Emphasis emphasis) {
+  Cell cell(Span(display_name(method), emphasis));
+  cell.style = material.styles(method);
+  return cell;
+}
+
+std::string place_of(const Row& row, const std::string& member) {
+  return fmt::format("/rows/{}/{}", row.index, member);
+}
+
+Cell count_cell(const Row& row, const std::string& member, int count) {
+  return Span::number(std::to_string(count), place_of(row, member));
+}
+
+std::string signed_text(double value, int digits) {
+  const double unit = std::pow(10, digits), rounded = std::round(value * unit) / unit;
+  return rounded == 0 ? fmt::format("{:.{}f}", 0., digits) : fmt::format("{:+.{}f}", rounded, digits);
+}
+
+std::string slug(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+  return out;
+}
+
+Document report_document(const Material& material) {
+  Document document{material.run.suite, material.run.suite + ": success of learned policies", all_notes(material), {}};
+  const auto add = [&document](Section section) {
+    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+  };
+  add(what_was_run(material));
+  for (Section& section : success(material)) add(std::move(section));
+  add(claims_section(material.claims, material.styles, "The paper's claims"));
+  add(phi(material));
+  add(failures(material));
+  add(attribution(material));
+  add(engines(material));
+  add(times(material));
+  add(failed_cells(material));
+  add(how_to_read());
+  add(provenance(material));
+  return document;
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,38 @@
+// The document that a run's report is: everything that any of its writers shows.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/report/claims.hpp>
+#include <lgabench/report/document.hpp>
+#include <lgabench/report/engines.hpp>
+#include <lgabench/report/paper.hpp>
+#include <lgabench/report/pictures.hpp>
+#include <lgabench/report/summary.hpp>
+
+namespace lgabench::report {
+
+/// Those of a run's rows.
+MethodStyles styles_of(const Summary& summary);
+
+/// What a report is made of; refers to its parts, which must outlive it.
+struct Material {
+  const RunResults& run;
+  const Summary& summary;
+  const std::vector<Claim>& claims;
+  const std::vector<EngineAgreement>& agreements;
+  const PaperValues& paper;
+  const Pictures& pictures;
+  MethodStyles styles = styles_of(summary);
+};
+
+/// A report has the same sections in every form. The same material gives the same document.
+Document report_document(const Material& material);
+
+/// The section on claims, which a terminal shows by itself.
+Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title);
+
+/// What the page's script shows of a row: its episodes, and the pictures of those that failed (docs/formats).
+Json page_data(const Material& material);
+
+}  // namespace lgabench::report

@@ -1,0 +1,35 @@
+// The sections of a report, and the cells that they share.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/report/report_document.hpp>
+
+namespace lgabench::report {
+
+// Cells.
+
+/// The method's name, with its mark.
+Cell named(const Material& material, const std::string& method, Emphasis emphasis = Emphasis::none);
+/// The JSON pointer to a member of a row, e.g. "/rows/12/shift/low".
+std::string place_of(const Row& row, const std::string& member);
+/// A count of the row, with its place.
+Cell count_cell(const Row& row, const std::string& member, int count);
+/// "+0.10", "-0.03"; never "-0.00".
+std::string signed_text(double value, int digits = 2);
+/// Letters, digits and dashes of an id, for a file's name.
+std::string slug(const std::string& text);
+
+// Sections; one without blocks is left out.
+
+Section what_was_run(const Material& material);
+std::vector<Section> success(const Material& material);  // one for each table of the summary
+Section phi(const Material& material);
+Section failures(const Material& material);
+Section attribution(const Material& material);
+Section engines(const Material& material);
+Section times(const Material& material);
+Section failed_cells(const Material& material);
+Section provenance(const Material& material);
+
+}  // namespace lgabench::report

@@ -1,0 +1,186 @@
+// The paper's claims, and the differences behind them. Numbers carry the JSON pointer to their place in claims.json.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/report/pairs.hpp>
+#include <lgabench/report/sections.hpp>
+
+namespace lgabench::report {
+namespace {
+
+Cell verdict_cell(Verdict verdict, const std::string& reason) {
+  Cell cell(Span(to_string(verdict), Emphasis::strong));
+  if (!reason.empty()) cell.spans.emplace_back(": " + reason);
+  return cell;
+}
+
+// A difference, with its JSON pointer.
+struct Placed {
+  const Claim& claim;
+  const ClaimedDifference& difference;
+  std::string place;
+};
+
+// The columns that say which difference a row is of.
+std::vector<Cell> place_cells(const MethodStyles& styles, const Placed& of) {
+  const ClaimedDifference& d = of.difference;
+  Cell rows(display_name(d.above) + " − " + display_name(d.below));
+  rows.style = styles(d.above);
+  return {
+      of.claim.id,
+      of.claim.layout,
+      of.claim.engine,
+      d.arm,
+      d.unit == "seconds" ? Cell() : Cell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")),
+      rows};
+}
+
+// "+0.17 [+0.10, +0.24], p = 0.003", or why there is none; the difference stands in the first of the two alone.
+Cell test_cell(const Placed& of, const Tested& t, const std::string& member, bool first) {
+  if (!t.change) return t.reason;
+  const Change& c = *t.change;
+  const bool seconds = of.difference.unit == "seconds";
+  const auto number = [&](double x, const std::string& where) {
+    return Span::number(signed_text(x, seconds ? 1 : 2), of.place + where);
+  };
+  Spans spans;
+  if (first) {
+    spans.push_back(number(c.difference, "/difference"));
+    spans.push_back(Span::number(seconds ? " s " : " "));
+  }
+  spans.push_back(Span::number("["));
+  spans.push_back(number(c.interval.low, member + "/low"));
+  spans.push_back(Span::number(", "));
+  spans.push_back(number(c.interval.high, member + "/high"));
+  if (t.p_holm < .001) {
+    spans.push_back(Span::number("], p < 0.001"));
+  } else {
+    spans.push_back(Span::number("], p = "));
+    spans.push_back(Span::number(fmt::format("{:.3f}", t.p_holm), of.place + member + "/p_holm"));
+  }
+  return spans;
+}
+
+// "6 policies, 2 scenarios, 40 scenes", and "for this training seed" where there is one.
+Cell sample_cell(const Placed& of) {
+  const ClaimedDifference& d = of.difference;
+  Cell cell;
+  const auto add = [&](const char* member, int n, const char* one) {
+    if (n == 0) return;
+    if (!cell.spans.empty()) cell.spans.emplace_back(", ");
+    cell.spans.push_back(Span::number(std::to_string(n), of.place + "/" + member));
+    cell.spans.emplace_back(std::string(" ") + (n == 1 ? one : member));
+  };
+  add("participants", d.participants, "participant");
+  add("policies", d.policies, "policy");
+  add("scenarios", d.scenarios, "scenario");
+  add("scenes", d.scenes, "scene");
+  if (d.seeds == 1) cell.spans.emplace_back(", for this training seed");
+  return cell;
+}
+
+Grid differences_grid(const std::string& name, const std::string& caption) {
+  Grid grid;
+  grid.name = name;
+  grid.caption = caption;
+  grid.heads = {"claim", "layout", "engine", "arm", "demonstrations", "difference"};
+  grid.align = "llllrl";
+  return grid;
+}
+
+// A column for each scenario.
+Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
+  std::vector<std::string> scenarios;
+  for (const Placed& of : all)
+    for (const auto& item : of.difference.by_scenario)
+      if (std::find(scenarios.begin(), scenarios.end(), item.first) == scenarios.end()) scenarios.push_back(item.first);
+  Grid grid = differences_grid("claims_scenarios", "The differences by scenario");
+  grid.heads.insert(grid.heads.end(), scenarios.begin(), scenarios.end());
+  grid.align += std::string(scenarios.size(), 'r');
+  for (const Placed& of : all) {
+    const auto& values = of.difference.by_scenario;
+    if (values.empty()) continue;
+    Grid::Row row{{}, place_cells(styles, of)};
+    for (const std::string& scenario : scenarios) {
+      const auto found =
+          std::find_if(values.begin(), values.end(), [&scenario](const auto& item) { return item.first == scenario; });
+      row.cells.push_back(found == values.end() ? Cell(Span::number("–"))
+                                                : Cell(Span::number(signed_text(found->second),
+                                                                    fmt::format("{}/by_scenario/{}/difference",
+                                                                                of.place, found - values.begin()))));
+    }
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
+  Grid grid = differences_grid("claims_differences", "The differences behind the claims");
+  for (const char* head : {"these scenarios", "", "scenarios like these", "", "based on"})
+    grid.heads.emplace_back(head);
+  grid.align += "lllll";
+  for (const Placed& of : all) {
+    const ClaimedDifference& d = of.difference;
+    Grid::Row row{{}, place_cells(styles, of)};
+    row.cells.push_back(test_cell(of, d.these, "/these_scenarios", true));
+    row.cells.emplace_back(to_string(d.these.verdict));
+    row.cells.push_back(test_cell(of, d.alike, "/scenarios_like_these", false));
+    row.cells.emplace_back(d.alike.change ? to_string(d.alike.verdict) : "");
+    row.cells.push_back(d.these.change ? sample_cell(of) : Cell());
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+std::string with_reason(Verdict verdict, const std::string& reason) { return verdict_cell(verdict, reason).text(); }
+
+}  // namespace
+
+Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title) {
+  Section section{"claims", title, reading};
+  if (claims.empty()) return section;
+  Grid verdicts;
+  verdicts.name = "claims";
+  verdicts.caption = title;
+  verdicts.heads = {"claim", "", "layout", "engine", "these scenarios", "scenarios like these"};
+  verdicts.align = "llllll";
+  List lines;
+  std::vector<Placed> all, tested;
+  for (std::size_t c = 0; c < claims.size(); ++c) {
+    const Claim& claim = claims[c];
+    verdicts.rows.push_back(
+        {{},
+         {claim.id, claim.statement, claim.layout, claim.engine, verdict_cell(claim.verdict, claim.reason),
+          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike)}});
+    lines.items.push_back(
+        {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
+    lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason)});
+    if (!claim.differences.empty())
+      lines.items.push_back({"      scenarios like these: " + with_reason(claim.alike, claim.reason_alike)});
+    for (std::size_t d = 0; d < claim.differences.size(); ++d) {
+      all.push_back({claim, claim.differences[d], fmt::format("/claims/{}/differences/{}", c, d)});
+      if (claim.differences[d].these.change) tested.push_back(all.back());
+    }
+  }
+  section.add(in_terminal, std::move(lines));
+  if (!all.empty()) section.add(in_terminal, details(styles, all));
+  section.add(reading, std::move(verdicts));
+  if (tested.empty()) return section;
+
+  section.add(
+      reading,
+      Paragraph{{"A claim's verdict is that on these scenarios: would other test scenes and training seeds of "
+                 "theirs say the same? Beside it stands the harder question, whether other scenarios like these "
+                 "would: Student's t over their differences. Each difference is on the mean over scenarios, "
+                 "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over "
+                 "the rows compared in one arm at one number of demonstrations, for each of the two by itself."}});
+  section.add(reading, details(styles, tested));
+  Grid scenarios = by_scenario(styles, tested);
+  if (scenarios.rows.empty()) return section;
+  section.add(in_markdown, Paragraph{{"The same by scenario:"}});
+  section.add(reading, std::move(scenarios), "The same by scenario");
+  return section;
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,122 @@
+// What was run, how long it took, what failed, and what it was built of.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : canonical(value); }
+
+// Members of run.json that are text or numbers, then the machine.
+Facts facts(const RunResults& run) {
+  Facts all;
+  for (const auto& [name, value] : run.json.items())
+    if (value.is_primitive() && !value.is_null() && value != "") all.items.emplace_back(name, text_of(value));
+  for (const auto& [name, value] : run.json.at("machine").items())
+    all.items.emplace_back("machine, " + name, text_of(value));
+  return all;
+}
+
+}  // namespace
+
+Section what_was_run(const Material& material) {
+  const RunResults& run = material.run;
+  Section section{"run", "What was run"};
+  const std::size_t failed = material.summary.failed.size();
+  std::size_t episodes = 0;
+  for (const CellResult& cell : run.cells)
+    for (const auto& item : cell.episodes) episodes += item.second.size();
+  const std::pair<std::string, std::string> cells{
+      "cells", fmt::format("{} finished, {} failed, {} not run", run.cells.size() - failed, failed, run.not_run)};
+  section.add(on_page, Facts{{cells, {"episodes", std::to_string(episodes)}}});
+  Facts known = facts(run);
+  known.items.insert(known.items.begin(), cells);
+  section.add(in_markdown, std::move(known));
+
+  Grid grid;
+  grid.name = "commands";
+  grid.caption = "Scenarios and their commands";
+  grid.heads = {"scenario", "command"};
+  grid.align = "ll";
+  const bool tell = has_unseen(run);
+  std::vector<std::string> known_rows;
+  for (const CellResult& cell : run.cells)
+    for (const CommandResult& command : cell.commands) {
+      const std::string words = command_text(command.utterance, command.seen, tell), row = cell.scenario + '\n' + words;
+      if (std::find(known_rows.begin(), known_rows.end(), row) != known_rows.end()) continue;
+      known_rows.push_back(row);
+      grid.rows.push_back({{}, {cell.scenario, words}});
+    }
+  const bool few = grid.rows.size() <= 4;
+  section.add(reading, std::move(grid), few ? "" : "The commands");
+  return section;
+}
+
+Section times(const Material& material) {
+  Section section{"times", "Time per cell"};
+  const std::vector<PhaseTimes> all = phase_times(material.run);
+  if (all.empty()) return section;
+  Grid grid;
+  grid.name = "times";
+  grid.caption = "Seconds of a cell, mean";
+  grid.heads = {"layout", "engine", "method", "cells"};
+  for (const char* phase : phases) grid.heads.emplace_back(std::string(phase).substr(0, std::string(phase).size() - 2));
+  grid.align = "lllr" + std::string(phases.size(), 'r');
+  for (const PhaseTimes& one : all) {
+    Grid::Row row{{}, {one.layout, one.engine, named(material, one.method), Span::number(std::to_string(one.cells))}};
+    for (const double s : one.mean_s) row.cells.emplace_back(Span::number(fmt::format("{:.2f}", s)));
+    grid.rows.push_back(std::move(row));
+  }
+  section.add(in_markdown, Paragraph{{"Mean seconds of each phase."}});
+  section.add(reading, std::move(grid));
+  return section;
+}
+
+Section failed_cells(const Material& material) {
+  Section section{"failed", "Cells that failed"};
+  const std::vector<CellResult>& failed = material.summary.failed;
+  if (failed.empty()) return section;
+  section.add(reading, Paragraph{{"They count for nothing above; ", Span("log.txt", Emphasis::code),
+                                  " in a cell's directory says more."}});
+  Grid grid;
+  grid.name = "failed_cells";
+  grid.caption = section.title;
+  grid.heads = {"cell", "method", "scenario", "layout", "engine", "demonstrations", "training seed", "fault", "reason"};
+  grid.align = std::string(grid.heads.size(), 'l');
+  List lines;
+  for (const CellResult& cell : failed) {
+    Cell reason(cell.reason);
+    reason.log = cell.log_tail;
+    grid.rows.push_back(
+        {{},
+         {cell.key, named(material, cell.method), cell.scenario, cell.layout, cell.engine,
+          std::to_string(cell.demonstrations), std::to_string(cell.training_seed), cell.fault, reason}});
+    lines.items.push_back(
+        {fmt::format("failed: {} {} {} {} n={} seed={} ({}): {}", cell.method, cell.scenario, cell.layout, cell.engine,
+                     cell.demonstrations, cell.training_seed, cell.fault, cell.reason)});
+  }
+  section.add(reading, std::move(grid));
+  section.add(in_terminal, std::move(lines));
+  return section;
+}
+
+Section provenance(const Material& material) {
+  const RunResults& run = material.run;
+  Section section{"provenance", "Provenance and machine", on_page};
+  Facts all = facts(run);
+  for (const Json& plugin : run.json.value("plugins", Json::array()))
+    all.items.emplace_back("plugin " + plugin.value("id", ""),
+                           fmt::format("{} {}, sha256 {:.16}", plugin.value("kind", ""), plugin.value("version", ""),
+                                       plugin.value("sha256", "")));
+  const Json builds = run.json.value("build", Json::object());
+  for (const auto& [name, value] : builds.items())
+    if (value.is_string()) all.items.emplace_back(name, "sha256 " + value.get<std::string>().substr(0, 16));
+  section.add(on_page, std::move(all));
+  return section;
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,285 @@
+// Success: of each method and reference row, its change between arms, what of it may have been learned by heart.
+#include <fmt/format.h>
+
+#include <array>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// Two decimals, as all rates have.
+std::string rate_text(double x) { return fmt::format("{:.2f}", x); }
+std::string shift_text(double x) { return signed_text(x); }
+
+// "0.85 [0.64, 0.95]", each number with its place: `members` of the row.
+Cell with_interval(const Row& row, double value, const Interval& interval, const std::array<const char*, 3>& members,
+                   std::string (*set)(double), Emphasis emphasis) {
+  const auto aside = [](const std::string& text, const std::string& place) {
+    return Span::number(text, place, Emphasis::detail);
+  };
+  return Spans{Span::number(set(value), place_of(row, members[0]), emphasis), aside(" [", ""),
+               aside(set(interval.low), place_of(row, members[1])),           aside(", ", ""),
+               aside(set(interval.high), place_of(row, members[2])),          aside("]", "")};
+}
+
+Cell success_cell(const Row* row) {
+  if (!row) return {};
+  const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
+  if (!row->success) return Span::number("–" + marks);
+  Cell cell = with_interval(*row, *row->success, row->interval, {"success", "low", "high"}, rate_text, Emphasis::none);
+  if (!marks.empty()) cell.spans.push_back(Span::number(marks));
+  cell.episodes = row->index;
+  cell.rate = *row->success;
+  return cell;
+}
+
+Cell shift_cell(const Row* row) {
+  if (!row || !row->shift) return {};
+  const Interval& interval = row->shift->interval;
+  const Emphasis emphasis = interval.high < 0 ? Emphasis::worse : interval.low > 0 ? Emphasis::better : Emphasis::none;
+  Cell cell = with_interval(*row, row->shift->difference, interval, {"shift/difference", "shift/low", "shift/high"},
+                            shift_text, emphasis);
+  if (acts_the_same(*row)) cell.spans.push_back(Span::number(" ="));
+  return cell;
+}
+
+Cell seen_cell(const Row* row) {
+  if (!row) return {};
+  const std::optional<double> share = row->seen_share();
+  if (!share) return Span::number("–");
+  return Span::number(fmt::format("{:.2f}", *share), place_of(*row, "inputs_seen"));
+}
+
+// "0.293 ± 0.078", with its error bar where the figure has one; empty where the paper has no value.
+Cell paper_cell(const PaperValues& paper, const std::string& scenario, const std::string& method, int n, int digits) {
+  const std::string name = display_name(method);
+  const auto rate = paper.find(scenario, name, n), error = paper.error(scenario, name, n);
+  if (!rate) return {};
+  return Span::number(fmt::format("{:.{}f}{}", *rate, digits, error ? fmt::format(" ± {:.{}f}", *error, digits) : ""),
+                      "", Emphasis::published);
+}
+
+// A table of `cell_of` every method of `scenarios`, without what the paper says.
+Grid own_grid(const Material& material, const Table& table, const std::vector<Column>& columns,
+              Cell (*cell_of)(const Row*), const std::vector<std::string>& scenarios, bool plain_names) {
+  Grid grid;
+  grid.group_head = "scenario";
+  grid.heads.emplace_back("method");
+  for (const Column& column : columns) grid.heads.emplace_back(column.head);
+  grid.align = "ll" + std::string(columns.size(), 'r');
+  for (const std::string& scenario : scenarios) {
+    const auto line = [&](const std::string& id, bool reference) {
+      Cell name = named(material, id, reference || plain_names ? Emphasis::none : Emphasis::strong);
+      if (reference && !plain_names) name.spans.insert(name.spans.begin(), "reference: ");
+      Grid::Row row{table.title(scenario), {name}, reference};
+      for (const Column& c : columns) row.cells.push_back(cell_of(table.find(c.arm, scenario, id, c.demonstrations)));
+      grid.rows.push_back(std::move(row));
+    };
+    for (const std::string& id : table.methods(scenario)) line(id, false);
+    for (const std::string& id : table.references(scenario)) line(id, true);
+  }
+  return grid;
+}
+
+// The same with the paper's values: beside several arms, pooled over its own, they have a column; else its curve a row.
+Grid success_grid(const Material& material, const Table& table, const std::vector<Column>& columns,
+                  const std::vector<std::string>& scenarios) {
+  const Grid own = own_grid(material, table, columns, success_cell, scenarios, false);
+  Grid grid = own;
+  grid.rows.clear();
+  const bool arms = table.arms.size() > 1;
+  bool pooled = false;
+  std::size_t at = 0;  // in own.rows
+  for (const std::string& scenario : scenarios) {
+    for (const std::string& id : table.methods(scenario)) {
+      Grid::Row& row = grid.rows.emplace_back(own.rows[at++]);
+      if (arms) {
+        row.cells.push_back(paper_cell(material.paper, scenario, id, columns.front().demonstrations, 2));
+        pooled = pooled || !row.cells.back().spans.empty();
+        continue;
+      }
+      if (scenario != mean_scenario) continue;
+      Grid::Row published{Span("the paper's scenarios", Emphasis::published),
+                          {Span(display_name(id) + ", the paper", Emphasis::published)}};
+      bool any = false;
+      for (const Column& c : columns) {
+        published.cells.push_back(paper_cell(material.paper, scenario, id, c.demonstrations, 3));
+        any = any || !published.cells.back().spans.empty();
+      }
+      if (any) grid.rows.push_back(std::move(published));
+    }
+    for (std::size_t i = table.references(scenario).size(); i > 0; --i) grid.rows.push_back(own.rows[at++]);
+  }
+  if (pooled) {
+    grid.heads.emplace_back(Span("the paper, its arms pooled", Emphasis::published));
+    grid.align += 'r';
+  }
+  for (Grid::Row& row : grid.rows) row.cells.resize(grid.heads.size());
+  return grid;
+}
+
+// Success of a mean or a scenario along the demonstrations or, with a single number of them, over the arms.
+Chart chart_of(const Material& material, const Table& table, const std::string& arm, const std::string& scenario) {
+  const std::vector<int> demonstrations = table.demonstrations();
+  const bool joined = demonstrations.size() > 1;
+  Chart chart;
+  struct Place {
+    double x;
+    std::string label, arm;
+    int n;
+  };
+  std::vector<Place> places;
+  if (joined)
+    for (const int n : demonstrations) places.push_back({static_cast<double>(n), std::to_string(n), arm, n});
+  else
+    for (std::size_t i = 0; i < table.arms.size(); ++i)
+      places.push_back({static_cast<double>(i), table.arm_title(table.arms[i]), table.arms[i], demonstrations.front()});
+  const double pad = joined ? .08 * (places.back().x - places.front().x) : .6;
+  chart.left = places.front().x - pad;
+  chart.right = places.back().x + pad;
+  for (const Place& place : places) chart.ticks.push_back({place.x, place.label});
+
+  const auto add = [&](const std::string& id, Series::Kind kind) {
+    Series series{kind, display_name(id), material.styles(id), joined};
+    for (const Place& place : places) {
+      if (kind == Series::published) {
+        const auto rate = material.paper.find(scenario, series.name, place.n);
+        const double error = material.paper.error(scenario, series.name, place.n).value_or(0);
+        if (rate && joined)
+          series.points.push_back({place.x, *rate, *rate - error, *rate + error,
+                                   fmt::format("{}, the paper’s, at {}: {:.3f}{}", series.name, place.label, *rate,
+                                               error > 0 ? fmt::format(" ± {:.3f}", error) : "")});
+        continue;
+      }
+      const Row* row = table.find(place.arm, scenario, id, place.n);
+      if (!row || !row->success) continue;
+      series.points.push_back({place.x, *row->success, row->interval.low, row->interval.high,
+                               fmt::format("{} at {}: {:.2f} [{:.2f}, {:.2f}]", series.name, place.label, *row->success,
+                                           row->interval.low, row->interval.high),
+                               row->index});
+    }
+    if (!series.points.empty()) chart.series.push_back(std::move(series));
+  };
+  for (const std::string& id : table.methods(scenario)) {
+    add(id, Series::measured);
+    add(id, Series::published);
+  }
+  for (const std::string& id : table.references(scenario)) add(id, Series::reference);
+
+  const bool one_of_arms = joined && table.arms.size() > 1;
+  chart.title = table.title(scenario);
+  chart.subtitle = fmt::format("{}, {}{}", material.run.suite, table.title(), one_of_arms ? ", arm " + arm : "");
+  chart.axis = joined ? "demonstrations" : "arm, " + table.demonstrations_text(demonstrations.front());
+  chart.alternative =
+      fmt::format("success against {}: {}, {}", joined ? "demonstrations" : "arms", chart.title, chart.subtitle);
+  return chart;
+}
+
+// The figures of a table: one of all arms, or one for each where they are curves.
+Charts figures(const Material& material, const Table& table) {
+  const std::string file = "success_" + slug(table.layout) + "_" + slug(table.engine);
+  const bool curves = table.demonstrations().size() > 1;
+  Charts all;
+  for (const std::string& arm : table.arms) {
+    Chart chart = chart_of(material, table, arm, mean_scenario);
+    if (chart.series.empty()) continue;
+    chart.file = curves && table.arms.size() > 1 ? file + "_" + slug(arm) : file;
+    all.charts.push_back(std::move(chart));
+    if (!curves) break;
+  }
+  return all;
+}
+
+// A small curve of each scenario, in the first arm.
+Charts scenario_charts(const Material& material, const Table& table, const std::vector<std::string>& scenarios) {
+  Charts all;
+  if (table.demonstrations().size() < 2) return all;
+  for (const std::string& scenario : scenarios) {
+    Chart chart = chart_of(material, table, table.arms.front(), scenario);
+    chart.subtitle = chart.axis = "";
+    chart.width = 300, chart.height = 200;
+    chart.legend = false;
+    all.charts.push_back(std::move(chart));
+  }
+  return all;
+}
+
+void add_view(const Material& material, const Table& table, const View& view, const std::string& name,
+              Section& section) {
+  const bool arms = table.arms.size() > 1;
+  const std::vector<std::string> all = table.scenarios(), each(all.begin(), all.end() - 1);
+  const std::string field = fmt::format("{}, {}", material.summary.suite, table.title()),
+                    columns = arms ? view.corner : "columns: number of demonstrations";
+  const auto add = [&](Media media, Grid grid, const char* file, const std::string& caption) {
+    if (media != in_terminal) grid.name = name + "_" + file;
+    grid.caption = caption;
+    if (media == in_terminal) grid.heads.front() = view.corner;
+    section.add(media, std::move(grid));
+  };
+  const auto own = [&](Cell (*cell_of)(const Row*), const std::vector<Column>& shown,
+                       const std::vector<std::string>& scenarios,
+                       bool plain_names) { return own_grid(material, table, shown, cell_of, scenarios, plain_names); };
+  if (arms) section.add(reading, Heading{view.corner});
+  section.add(
+      reading,
+      Paragraph{{fmt::format("Columns: {}. Brackets: 95 % interval over test scenes and training seeds of these "
+                             "scenarios.",
+                             arms ? "arms of the test" : "number of demonstrations")}});
+  add(reading, success_grid(material, table, view.columns, {mean_scenario}), "mean",
+      fmt::format("Success, {}, {}; {}", table.title(mean_scenario), table.title(), columns));
+  add(in_terminal, own(success_cell, view.columns, all, true), "",
+      field + ": success [95 % interval over test scenes and training seeds]");
+  section.add(in_markdown, Paragraph{{"Each scenario:"}});
+  if (Charts small = scenario_charts(material, table, each); !small.charts.empty())
+    section.add(on_page, std::move(small));
+  add(reading, success_grid(material, table, view.columns, each), "scenarios",
+      fmt::format("Success in each scenario, {}; {}", table.title(), columns));
+  if (!view.shifted.empty()) {
+    const std::string& first = table.arms.front();
+    section.add(in_markdown, Paragraph{{fmt::format("Change against {}, scene by scene:", first)}});
+    add(reading, own(shift_cell, view.shifted, all, false), "change",
+        fmt::format("Change against {}, scene by scene, {}; {}", first, table.title(), columns));
+    add(in_terminal, own(shift_cell, view.shifted, all, true), "",
+        fmt::format("{}: change against {} [95 % interval]", field, first));
+  }
+  if (any_seen(table)) {
+    section.add(in_markdown, Paragraph{{"Test inputs seen in training, share:"}});
+    add(reading, own(seen_cell, view.columns, all, false), "seen",
+        fmt::format("Test inputs seen in training, share, {}; {}", table.title(), columns));
+    add(in_terminal, own(seen_cell, view.columns, {mean_scenario}, true), "",
+        field + ": test inputs seen in training, share");
+  }
+}
+
+}  // namespace
+
+std::vector<Section> success(const Material& material) {
+  std::vector<Section> sections;
+  for (const Table& table : material.summary.tables) {
+    const std::string number = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
+    Section& section = sections.emplace_back(Section{"success" + number, "Success: " + table.title()});
+    if (Charts drawn = figures(material, table); !drawn.charts.empty())
+      section.add(reading, std::move(drawn));
+    else
+      section.add(reading, Paragraph{{"No figure: no cell has finished."}});
+    for (const View& view : views(table)) {
+      const int n = view.columns.front().demonstrations;
+      const std::string name = fmt::format("{}_{}{}", slug(table.layout), slug(table.engine),
+                                           table.arms.size() > 1 ? fmt::format("_{}", n) : "");
+      add_view(material, table, view, name, section);
+    }
+  }
+  const PaperValues& paper = material.paper;
+  if (!sections.empty() && !paper.rates.empty())
+    sections.back().add(
+        reading,
+        Paragraph{{fmt::format("The paper's values, in italics, are those of its figure {}, {}.", paper.figure,
+                               paper.rates.count(mean_scenario) != 0
+                                   ? "± its error bars, on the mean over its own scenarios, not only those of this run"
+                                   : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public")}});
+  return sections;
+}
+
+}  // namespace lgabench::report

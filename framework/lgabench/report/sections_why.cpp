@@ -1,0 +1,172 @@
+// Why methods fail: what they selected, how their episodes ended, and what failures are attributed to.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+std::string words(std::string word) {
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
+// A number of a φ̂, or "–" where there is none.
+Span phi_number(const Row& row, const std::string& member, const char* format) {
+  const Json& phi = row.phi;
+  const Json::json_pointer place(member);
+  if (!phi.contains(place) || !phi.at(place).is_number()) return Span::number("–");
+  return Span::number(fmt::format(fmt::runtime(format), phi.at(place).get<double>()), place_of(row, "phi" + member));
+}
+
+Cell bar(const std::vector<BarPart>& parts, int of) {
+  Cell cell;
+  cell.bar = parts;
+  cell.bar_of = of;
+  return cell;
+}
+
+}  // namespace
+
+Section phi(const Material& material) {
+  Section section{"phi", "The feature abstraction φ̂"};
+  const bool tell = has_unseen(material.run);
+  Grid grid;
+  grid.name = "phi";
+  grid.caption =
+      "What was selected, against the scenario's true distribution; selected: how many of how many true ones";
+  grid.heads = {"scenario",         "command",
+                "method",           "about",
+                "answered by",      "source",
+                "types: precision", "recall",
+                "selected",         "textures: precision",
+                "recall",           "selected",
+                "queries",          "a person's seconds"};
+  grid.align = "llllllrrrrrrrr";
+  std::set<std::string> known;
+  List wordings;
+  for (const PhiOfRow& of : distinct_phi(material.summary)) {
+    const Row& row = *of.row;
+    const Json& one = row.phi.at(of.command);
+    const std::string place = fmt::format("/{}/", of.command), utterance = one.at("utterance"),
+                      source = one.at("source"), asked_as = one.at("asked_as");
+    for (const auto& [about, groups] : one.at("quality").items()) {
+      if (groups.is_null()) continue;
+      std::vector<Cell> cells{row.scenario, command_text(utterance, one.at("seen"), tell), named(material, row.method),
+                              about,        provenance_words(one.at("provenance")),        source};
+      for (const char* group : {"object_types", "textures"}) {
+        const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
+        cells.emplace_back(phi_number(row, numbers + "precision", "{:.2f}"));
+        cells.emplace_back(phi_number(row, numbers + "recall", "{:.2f}"));
+        cells.emplace_back(Spans{phi_number(row, numbers + "size", "{:.4g}"), " of ",
+                                 phi_number(row, numbers + "true_size", "{:.4g}")});
+      }
+      cells.emplace_back(phi_number(row, place + "lm_queries", "{:.4g}"));
+      cells.emplace_back(phi_number(row, place + "human_seconds", "{:.4g}"));
+      grid.rows.push_back({{}, std::move(cells)});
+    }
+    const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, source, asked_as);
+    if (worded_otherwise(asked_as, utterance)) known.insert(wording);
+  }
+  if (grid.rows.empty()) return section;
+  section.add(reading,
+              Paragraph{{"Against the scenario's true distribution: precision and recall of what was selected, "
+                         "and how many were selected of how many that are true."}});
+  section.add(reading, std::move(grid));
+  if (known.empty()) return section;
+  for (const std::string& wording : known) wordings.items.push_back({wording});
+  section.add(reading, Paragraph{{"Where the question was worded otherwise than the command:"}});
+  section.add(reading, std::move(wordings));
+  return section;
+}
+
+Section failures(const Material& material) {
+  Section section{"failures", "Failures by type"};
+  std::set<std::string> used;
+  for (const Table& table : material.summary.tables)
+    for (const Row& row : table.rows)
+      for (const auto& item : row.failures) used.insert(item.first);
+  if (used.empty()) return section;
+  Grid grid;
+  grid.name = "failures";
+  grid.caption = "Episodes over all scenarios, by how they ended";
+  grid.heads = {"table", "arm", "method", "demonstrations", "failures of all episodes", "episodes", "success"};
+  grid.bars = 4;
+  const std::vector<std::string> all = failure_words();  // in the order of their colours
+  for (const std::string& word : used) {
+    grid.heads.emplace_back(words(word));
+    grid.heads.back().bar = {{fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin()), "", 1}};
+  }
+  grid.align = "lllr" + std::string(grid.heads.size() - 4, 'r');
+  for (const Table& table : material.summary.tables)
+    for (const Row& row : table.rows) {
+      if (!row.is_mean() || row.episodes == 0) continue;
+      std::vector<Cell> cells{table.title(),
+                              row.arm,
+                              named(material, row.method),
+                              count_cell(row, "demonstrations", row.demonstrations),
+                              {},
+                              count_cell(row, "episodes", row.episodes),
+                              count_cell(row, "successes", row.successes)};
+      std::vector<BarPart> parts;
+      for (const std::string& word : used) {
+        const auto found = row.failures.find(word);
+        const int n = found == row.failures.end() ? 0 : found->second;
+        parts.push_back({grid.heads[cells.size()].bar.front().kind, words(word), n});
+        cells.push_back(n == 0 ? Cell(Span::number("0")) : count_cell(row, "failures/" + word, n));
+      }
+      cells[*grid.bars] = bar(parts, row.episodes);
+      grid.rows.push_back({{}, std::move(cells)});
+    }
+  section.add(in_markdown, Paragraph{{"Episodes over all scenarios."}});
+  section.add(reading, std::move(grid));
+  return section;
+}
+
+Section attribution(const Material& material) {
+  Section section{"attribution", "What failures are attributed to"};
+  Grid mean;
+  mean.heads = {"table", "arm", "method", "demonstrations", "share of failures"};
+  mean.bars = 4;
+  for (const char* to : attributions) {
+    mean.heads.emplace_back(to);
+    mean.heads.back().bar = {{to, "", 1}};
+  }
+  mean.align = "lllrrrr";
+  Grid each = mean;
+  each.group_head = "scenario";
+  each.align = "l" + mean.align;
+  mean.name = "attribution";
+  mean.caption = "Failures attributed to abstraction or policy, over all scenarios";
+  each.name = "attribution_scenarios";
+  each.caption = "Each scenario's failures, attributed to abstraction or policy";
+  for (const Table& table : material.summary.tables)
+    for (const Row& row : table.rows) {
+      if (row.attributed() == 0) continue;
+      std::vector<BarPart> parts;
+      std::vector<Cell> cells{table.title(),
+                              row.arm,
+                              named(material, row.method),
+                              count_cell(row, "demonstrations", row.demonstrations),
+                              {}};
+      for (const char* to : attributions) {
+        parts.push_back({to, to, row.attribution.at(to)});
+        cells.push_back(count_cell(row, fmt::format("attribution/{}", to), row.attribution.at(to)));
+      }
+      cells[*mean.bars] = bar(parts, row.attributed());
+      Grid& grid = row.is_mean() ? mean : each;
+      grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
+    }
+  if (mean.rows.empty()) return section;
+  section.add(reading, Paragraph{{"The abstraction, where the same policy succeeds in the same scene with the true "
+                                  "mask; else the policy. Episodes over all scenarios, of methods that select."}});
+  section.add(reading, std::move(mean));
+  section.add(on_page, std::move(each), "Each scenario");
+  return section;
+}
+
+}  // namespace lgabench::report
