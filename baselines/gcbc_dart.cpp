@@ -20,12 +20,11 @@ class GcbcDart : public lgabench::CloningMethod {
     return {{lgabench::PolicyInputs::Picture::rgb}, lgabench::PolicyInputs::Text::utterance};
   }
 
-  lgabench::Samples training_rows(lgabench::Samples clean, const lgabench::NetworkShape& shape,
-                                  const lgabench::Services& services) const override {
+  lgabench::Samples training_rows(lgabench::Samples clean, const lgabench::Services& services) const override {
     if (services.options.at("dart") != "posthoc") return clean;
     constexpr int copies = 5;
     constexpr double scale = .05;
-    return lgabench::with_noisy_copies(clean, shape, copies, scale, services.seed);
+    return lgabench::with_noisy_copies(clean, copies, scale, services.seed);
   }
 };
 

@@ -22,7 +22,10 @@ function(lgabench_install_package)
   include(CMakePackageConfigHelpers)
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lgabench)
   install(TARGETS lgabench_core lgabench_learning lgabench_openai EXPORT lgabenchTargets)
-  install(TARGETS lgabench_tabletop lgabench_encoder)  # the programs need them, plugins do not
+  install(TARGETS lgabench_tabletop)  # the programs need it, plugins do not
+  if(LGABENCH_TORCH)
+    install(TARGETS lgabench_encoder)
+  endif()
   install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
           FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"

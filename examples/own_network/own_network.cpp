@@ -1,93 +1,87 @@
-// A method with a network of its own: two linear layers on a coarse goal mask, trained with LibTorch's autograd.
-// Shows options, the training log, the seed, and how LibTorch is kept reproducible.
+// A network of one's own, in LibTorch: two linear layers on the goal mask. lgabench makes the rows that it sees, trains
+// it, logs that and plays the episodes. Shows a Learner, an option, a size of picture, and how LibTorch is kept
+// reproducible.
 #include <torch/torch.h>
 
-#include <algorithm>
-#include <utility>
-
-#include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
 
 namespace {
 
 using namespace lgabench;
 
-constexpr int coarse = 4, features = (Observation::rows / coarse) * (Observation::columns / coarse);  // 32 x 64
-
-// The goal mask as 1 x 2048: 1 where any of 4 x 4 pixels is kept.
-torch::Tensor input_of(const Observation& observation, const Selection& selection) {
-  const std::vector<std::uint8_t> mask = goal_mask(observation, selection);
-  const torch::Tensor pixels = torch::tensor(at::ArrayRef<std::uint8_t>(mask), torch::kFloat);
-  return torch::max_pool2d(pixels.view({1, 1, Observation::rows, Observation::columns}), coarse).view({1, features});
-}
-
-// What it acts with holds no reference to the Method, which may be gone by then.
-class NetworkPolicy : public Policy {
+class TwoLayers : public Learner {
  public:
-  explicit NetworkPolicy(torch::nn::Sequential network) : network_(std::move(network)) {}
+  TwoLayers(const SampleShape& shape, int hidden, std::uint64_t seed) : numbers_(shape.pictures[0].numbers()) {
+    torch::set_num_threads(1);  // a sum that is split among threads has another last bit
+    torch::manual_seed(seed);   // of the initial weights
+    network_ =
+        torch::nn::Sequential(torch::nn::Linear(numbers_, hidden), torch::nn::ReLU(), torch::nn::Linear(hidden, 12));
+    optimizer_ = std::make_unique<torch::optim::Adam>(network_->parameters());
+  }
 
-  Action act(const Observation& observation, const Instruction& instruction) override {
+  const std::vector<float>& predict(const Samples& samples) override {
     const torch::NoGradGuard no_gradients;
-    const torch::Tensor output = network_->forward(input_of(observation, instruction.selection)).contiguous();
-    ActionVector action;
-    std::copy_n(output.data_ptr<float>(), action.size(), action.begin());
-    return from_vector(action);
+    const torch::Tensor actions = network_->forward(pictures(samples)).contiguous();
+    predicted_.assign(actions.data_ptr<float>(), actions.data_ptr<float>() + actions.numel());
+    return predicted_;
+  }
+
+  double backward(const Samples& samples, const std::vector<int>& batch) override {
+    const torch::Tensor rows = torch::tensor(at::ArrayRef<int>(batch));
+    const torch::Tensor labels = tensor(samples.labels, 12).index_select(0, rows);
+    optimizer_->zero_grad();
+    const torch::Tensor loss = (network_->forward(pictures(samples).index_select(0, rows)) - labels).norm(2, 1).mean();
+    loss.backward();
+    return loss.item<double>();
+  }
+
+  void update(double learning_rate) override {
+    for (auto& group : optimizer_->param_groups()) group.options().set_lr(learning_rate);
+    optimizer_->step();
+  }
+
+  std::vector<float> parameters() const override {
+    std::vector<float> all;
+    for (const torch::Tensor& p : network_->parameters())
+      all.insert(all.end(), p.data_ptr<float>(), p.data_ptr<float>() + p.numel());
+    return all;
   }
 
  private:
+  // A view of `values`, so many a row.
+  static torch::Tensor tensor(const std::vector<float>& values, std::int64_t a_row) {
+    return torch::from_blob(const_cast<float*>(values.data()), {-1, a_row});
+  }
+  torch::Tensor pictures(const Samples& samples) const { return tensor(samples.pictures[0], numbers_); }
+
+  std::int64_t numbers_;  // of a picture
   torch::nn::Sequential network_;
+  std::unique_ptr<torch::optim::Adam> optimizer_;
+  std::vector<float> predicted_;
 };
 
-class OwnNetwork : public Method {
+class OwnNetwork : public CloningMethod {
  public:
-  Needs needs(const Json&) const override { return {}; }
-
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override {
     return select_features(command, space, services.lm);
   }
 
-  std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    const int epochs = services.options.at("epochs"), hidden = services.options.at("hidden");
-    torch::set_num_threads(1);          // a sum that is split among threads has another last bit
-    torch::manual_seed(services.seed);  // initial weights and the order below: the same seed, the same policy
-
-    std::vector<torch::Tensor> inputs, labels;
-    for (const Demonstration& demonstration : demonstrations)
-      for (const Step& step : demonstration.steps) {
-        inputs.push_back(input_of(step.observation, demonstration.instruction.selection));
-        const ActionVector label = to_vector(step.label);
-        labels.push_back(torch::tensor(at::ArrayRef<float>(label.data(), label.size())).view({1, -1}));
-      }
-    if (inputs.empty()) throw MethodError("own_network needs a demonstration");
-    const torch::Tensor x = torch::cat(inputs), y = torch::cat(labels);
-
-    torch::nn::Sequential network(torch::nn::Linear(features, hidden), torch::nn::ReLU(),
-                                  torch::nn::Linear(hidden, static_cast<std::int64_t>(ActionVector().size())));
-    torch::optim::Adam optimizer(network->parameters(), 1e-3);
-    long long steps = 0;
-    for (int epoch = 1; epoch <= epochs; ++epoch) {
-      double sum = 0;
-      const std::vector<torch::Tensor> batches = torch::randperm(x.size(0)).split(10);
-      for (const torch::Tensor& batch : batches) {
-        optimizer.zero_grad();
-        const torch::Tensor error = network->forward(x.index_select(0, batch)) - y.index_select(0, batch);
-        const torch::Tensor loss = error.norm(2, 1).mean();
-        loss.backward();
-        optimizer.step();
-        sum += loss.item<double>();
-        ++steps;
-      }
-      if (epoch % 10 == 0 || epoch == epochs)
-        services.log.epoch(epoch, steps, sum / static_cast<double>(batches.size()));
-    }
-    return std::make_unique<NetworkPolicy>(network);
+ protected:
+  PolicyInputs inputs(const Json&) const override {
+    PolicyInputs inputs{{PolicyInputs::Picture::mask}};
+    inputs.mask_size = {32, 64};
+    return inputs;
+  }
+  std::unique_ptr<Learner> learner(const SampleShape& shape, const Services& services) const override {
+    return std::make_unique<TwoLayers>(shape, services.options.at("hidden"), services.seed);
   }
 };
 
 }  // namespace
 
 // An option's default fixes its type; `lgabench info own_network` prints this, --set own_network.hidden=64 sets one.
-LGABENCH_METHOD("own_network", "0.1", "Two linear layers on a coarse goal mask", OwnNetwork, R"({
-  "epochs": {"default": 300, "min": 1, "help": "passes over the demonstrations", "source": "this example"},
+LGABENCH_METHOD("own_network", "0.1", "Two linear layers on a coarse goal mask", OwnNetwork,
+                "{" LGABENCH_TRAINING_OPTIONS R"(,
   "hidden": {"default": 128, "min": 1, "help": "units of the hidden layer", "source": "this example"}})")

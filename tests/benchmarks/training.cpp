@@ -48,16 +48,16 @@ Samples samples_of(const NetworkShape& shape) {
   const Scenario scenario = load_scenario("heart");
   const ScenarioCommand& command = scenario.commands.front();
   tabletop::Renderer renderer;
-  Samples samples(shape, rows * batches);
+  Samples samples(shape.samples(), rows * batches);
   for (int i = 0; i < samples.rows; ++i) {
     const Scene scene = tabletop::sample_scene(scenario, {"cells", "train", "train", 0}, i);
     const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
     for (std::size_t t = 0; t < shape.channels.size(); ++t) {
-      float* const picture = samples.pictures[t].data() + i * input_pixels * shape.channels[t];
+      float* const picture = samples.picture(t, i);
       if (shape.channels[t] == 1)
-        shrink_mask(goal_mask(seen, command.truth), picture);
+        shrink_mask(goal_mask(seen, command.truth), input_size, picture);
       else
-        shrink_rgb(seen.rgb, picture);
+        shrink_rgb(seen.rgb, input_size, picture);
     }
     if (shape.text) {
       static SentenceEmbeddings embeddings;
@@ -67,7 +67,6 @@ Samples samples_of(const NetworkShape& shape) {
     const ActionVector label = to_vector({{scene.find(Role::target)->position_m, {}}, {{.5, .3}, {}}});
     std::copy(label.begin(), label.end(), samples.labels.begin() + i * action_size);
   }
-  if (shape.architecture != Architecture::plain) samples.find_usual();  // as CloningMethod
   return samples;
 }
 
@@ -78,13 +77,14 @@ void report(benchmark::State& state, const NetworkShape& shape) {
 }
 
 void ours(benchmark::State& state, const NetworkShape& shape, const Kernels& kernels) {
-  Network network(shape, 1, kernels);
+  Network network(shape, 1, Loss::norm, kernels);
   const Samples samples = samples_of(shape);
+  network.begin(samples);
   std::vector<int> batch(rows);
   int step = 0;
   for (auto _ : state) {
     std::iota(batch.begin(), batch.end(), rows * (step++ % batches));
-    benchmark::DoNotOptimize(network.backward(samples, batch, Loss::norm));
+    benchmark::DoNotOptimize(network.backward(samples, batch));
     network.update(1e-3);
   }
   report(state, shape);

@@ -43,11 +43,14 @@ class Pages(unittest.TestCase):
     page = (SOURCE / "docs/add-a-method.md").read_text()
 
     def test_shown_code_is_the_example(self):
-        example = SOURCE / "examples/select_only"
-        for language, file in ("cpp", "select_only.cpp"), ("cmake", "CMakeLists.txt"):
-            shown = re.search(rf"```{language}\n(.*?)```", self.page, re.S)[1]
-            self.assertEqual(shown, (example / file).read_text())
-        self.assertLessEqual(len((example / "select_only.cpp").read_text().splitlines()), 25)
+        for page, name, lines in ("method", "select_only", 25), ("network", "own_network", 90):
+            example = SOURCE / "examples" / name
+            for language, file in ("cpp", f"{name}.cpp"), ("cmake", "CMakeLists.txt"):
+                shown = re.search(rf"```{language}\n(.*?)```", (SOURCE / f"docs/add-a-{page}.md").read_text(), re.S)[1]
+                self.assertEqual(shown, (example / file).read_text())
+            self.assertLessEqual(len((example / f"{name}.cpp").read_text().splitlines()), lines)
+        masked = SOURCE / "examples/masked_rgb/masked_rgb.cpp"
+        self.assertLessEqual(len(masked.read_text().splitlines()), 40)
 
     @unittest.skipUnless(shutil.which("git"), "needs git")
     def test_the_patch_of_a_statistic_applies(self):

@@ -29,7 +29,7 @@ namespace {
 TEST(Allocations, ATrainingStepMakesNone) {
   for (const Architecture architecture : {Architecture::text, Architecture::released, Architecture::plain}) {
     const NetworkShape shape{{1, 3}, true, architecture};
-    Samples samples(shape, 20);
+    Samples samples(shape.samples(), 20);
     for (std::size_t t = 0; t < samples.pictures.size(); ++t)
       for (std::size_t i = 0; i < samples.pictures[t].size(); ++i)
         samples.pictures[t][i] = i % 7 == 0 && i % 50 > 25 ? 1.f : t == 0 ? 0.f : .5f;
@@ -37,11 +37,11 @@ TEST(Allocations, ATrainingStepMakesNone) {
     std::vector<int> batch(10);
     const auto step = [&](int first) {
       std::iota(batch.begin(), batch.end(), first);
-      network.backward(samples, batch, Loss::norm);
+      network.backward(samples, batch);
       network.update(1e-3);
     };
     step(0);
-    samples.find_usual();  // so that the first convolution is made both ways
+    network.begin(samples);  // so that the first convolution is made both ways
     step(0);
     const long long before = allocations;
     for (int i = 0; i < 20; ++i) step(i % 11);

@@ -99,7 +99,7 @@ struct Reference {
 // masks too before batch normalisation, which would enlarge the rounding of what is nearly the same everywhere.
 Samples random_samples(const NetworkShape& shape, int rows) {
   RandomStream random("samples");
-  Samples s(shape, rows);
+  Samples s(shape.samples(), rows);
   for (auto& picture : s.pictures)
     for (float& value : picture) value = static_cast<float>(random.uniform());
   for (std::size_t t = 0; t < shape.channels.size(); ++t)
@@ -116,12 +116,13 @@ Samples random_samples(const NetworkShape& shape, int rows) {
   return s;
 }
 
-// As those, with every picture but for a rectangle like the first; the network is told so.
+// As those, with every picture but for a rectangle like the first.
 Samples mostly_alike(const NetworkShape& shape, int rows) {
   RandomStream random("alike");
   Samples s = random_samples(shape, rows);
   for (std::size_t t = 0; t < shape.channels.size(); ++t) {
-    const std::size_t numbers = s.usual[t].size(), channels = numbers / input_pixels;
+    const std::size_t numbers = s.pictures[t].size() / static_cast<std::size_t>(rows),
+                      channels = numbers / input_pixels;
     for (int row = 1; row < rows; ++row) {
       const int top = static_cast<int>(random.below(20)), left = static_cast<int>(random.below(50));
       for (std::size_t i = 0; i < numbers; ++i) {
@@ -132,7 +133,6 @@ Samples mostly_alike(const NetworkShape& shape, int rows) {
       }
     }
   }
-  s.find_usual();
   return s;
 }
 
@@ -147,7 +147,7 @@ class Pair {
  public:
   Pair(const NetworkShape& wanted, const Kernels& kernels)
       : shape(wanted),
-        ours(wanted, 3, kernels),
+        ours(wanted, 3, Loss::norm, kernels),
         torchs(wanted),
         optimiser_(torchs.parameters(), learning_rate(wanted)) {
     std::vector<float> first = ours.parameters();
@@ -195,7 +195,8 @@ TEST_P(Networks, HaveTorchsOutputsLossAndGradients) {
     for (const bool alike : {false, true}) {
       if (alike && rows == 25) continue;  // so many rounded numbers that one opens a ReLU
       const Samples samples = (alike ? mostly_alike : random_samples)(tested.shape, rows);
-      EXPECT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples),
+      if (alike) pair.ours.begin(samples);
+      EXPECT_NEAR(pair.ours.backward(samples, all_rows(samples)), pair.torchs_backward(samples),
                   tested.shape.architecture == plain ? 1e-6 : 1e-5);
       const std::vector<float> gradients = pair.ours.gradients();
       const float* begin = gradients.data();
@@ -226,13 +227,13 @@ TEST_P(Networks, HaveTorchsOutputsLossAndGradients) {
 
 TEST_P(Networks, TakeTheRowsThatABatchNames) {
   const auto& [tested, kernels] = GetParam();
-  Network network(tested.shape, 3, *kernels);
+  Network network(tested.shape, 3, Loss::norm, *kernels);
   const Samples samples = random_samples(tested.shape, 6);
-  const double one = network.backward(samples, {4}, Loss::norm), other = network.backward(samples, {1}, Loss::norm);
+  const double one = network.backward(samples, {4}), other = network.backward(samples, {1});
   if (tested.shape.architecture == Architecture::plain) {
-    EXPECT_NEAR(network.backward(samples, {1, 4}, Loss::norm), (one + other) / 2, 1e-6);
-    const double empty = network.backward(samples, {3}, Loss::norm);  // where there are masks
-    EXPECT_NEAR(network.backward(samples, {1, 3}, Loss::norm), (other + empty) / 2, 1e-6);
+    EXPECT_NEAR(network.backward(samples, {1, 4}), (one + other) / 2, 1e-6);
+    const double empty = network.backward(samples, {3});  // where there are masks
+    EXPECT_NEAR(network.backward(samples, {1, 3}), (other + empty) / 2, 1e-6);
   }
   EXPECT_NE(one, other);
 }
@@ -242,7 +243,7 @@ TEST_P(Networks, FollowTorchsAdamOverTwentySteps) {
   Pair pair(tested.shape, *kernels);
   const Samples samples = random_samples(tested.shape, 10);
   for (int step = 0; step < 20; ++step) {
-    ASSERT_NEAR(pair.ours.backward(samples, all_rows(samples), Loss::norm), pair.torchs_backward(samples),
+    ASSERT_NEAR(pair.ours.backward(samples, all_rows(samples)), pair.torchs_backward(samples),
                 tested.shape.architecture == released ? 1e-3 : 1e-4)
         << step;
     pair.ours.update(learning_rate(tested.shape));
@@ -288,9 +289,10 @@ TEST(Kernels, WithFusedMultiplyAddGiveTheSameBits) {
       std::vector<std::vector<float>> trained;
       for (const Kernels* kernels : available_kernels()) {
         if (kernels->name == std::string("portable")) continue;
-        Network network(shape, 3, *kernels);
+        Network network(shape, 3, Loss::norm, *kernels);
+        if (alike) network.begin(samples);
         for (int step = 0; step < 5; ++step) {
-          network.backward(samples, all_rows(samples), Loss::norm);
+          network.backward(samples, all_rows(samples));
           network.update(1e-3);
         }
         trained.push_back(network.parameters());
@@ -348,24 +350,23 @@ TEST(Training, HasTheLossCurvesOfPyTorch) {
     shape.text = curve.at("text");
     const std::string network_name = curve.at("network");
     shape.architecture = network_name == "text" ? text : network_name == "plain" ? plain : released;
-    Network network(shape, 0);
+    Network network(shape, 0, curve.at("squared") ? Loss::squared : Loss::norm);
     network.set_parameters(first_parameters(shape, network.parameters().size()));
-    Samples samples(shape, 40);
+    Samples samples(shape.samples(), 40);
     for (std::size_t t = 0; t < shape.channels.size(); ++t)
       samples.pictures[t] = numbers(10 + t, samples.pictures[t].size());
     samples.text = numbers(20, samples.text.size());
     for (float& number : samples.text) number = (number - .5f) / 5;
     samples.labels = numbers(30, samples.labels.size());
 
-    const Loss loss = curve.at("squared") ? Loss::squared : Loss::norm;
     const auto expected = curve.at("losses").get<std::vector<double>>();
     ASSERT_EQ(expected.size(), 50u);
     double furthest = 0;
     for (int step = 0; step < 50; ++step) {
       std::vector<int> batch;
       for (int i = 0; i < 10; ++i) batch.push_back((step * 10 + i) % 40);
-      furthest = std::max(furthest,
-                          std::abs(network.backward(samples, batch, loss) - expected[static_cast<std::size_t>(step)]));
+      furthest =
+          std::max(furthest, std::abs(network.backward(samples, batch) - expected[static_cast<std::size_t>(step)]));
       network.update(learning_rate(shape));
     }
     EXPECT_LT(furthest, shape.architecture == released ? 1e-3 : 1e-4) << curve.at("input") << ", " << network_name;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -12,6 +13,7 @@
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/network.hpp>
 #include <lgabench/learning/training.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -40,7 +42,7 @@ TEST(Inputs, ASmallMaskPixelIsOneIfItTouchesAnyNativeOne) {
           if (128 * r < 36 * (y + 1) && 36 * y < 128 * (r + 1) && 256 * c < 72 * (x + 1) && 72 * x < 256 * (c + 1))
             expected[static_cast<std::size_t>(r * input_columns + c)] = 1;
     }
-    shrink_mask(mask, small.data());
+    shrink_mask(mask, input_size, small.data());
     ASSERT_EQ(small, expected) << "trial " << trial;
   }
 }
@@ -50,7 +52,7 @@ TEST(Inputs, RgbIsTheAreaMeanOver255) {
   std::vector<std::uint8_t> rgb(rows * columns * 3);
   for (auto& byte : rgb) byte = static_cast<std::uint8_t>(random.below(256));
   std::vector<float> small(3 * input_pixels);
-  shrink_rgb(rgb, small.data());
+  shrink_rgb(rgb, input_size, small.data());
   const double area = 128.0 / 36 * 256.0 / 72;
   for (int channel = 0; channel < 3; ++channel)
     for (const int r : {0, 1, 17, 35})
@@ -67,8 +69,8 @@ TEST(Inputs, RgbIsTheAreaMeanOver255) {
 
 TEST(Inputs, RefusePicturesOfAnotherSize) {
   std::vector<float> out(3 * input_pixels);
-  EXPECT_THROW(shrink_mask(std::vector<std::uint8_t>(rows * columns - 1), out.data()), InputError);
-  EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), out.data()), InputError);
+  EXPECT_THROW(shrink_mask(std::vector<std::uint8_t>(rows * columns - 1), input_size, out.data()), InputError);
+  EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), input_size, out.data()), InputError);
 }
 
 TEST(Losses, HaveTheGradientOfFiniteDifferences) {
@@ -161,10 +163,10 @@ TEST(Network, StaysFiniteWhereABatchHasNoVariance) {
     // All weights 0 leaves every convolution its bias, half of them below 0.
     for (std::size_t i = 0; i < 2048; ++i) parameters[i] = 0;
     network.set_parameters(parameters);
-    Samples samples(shape, 10);
+    Samples samples(shape.samples(), 10);
     for (float& label : samples.labels) label = .5f;
     for (int step = 0; step < 50; ++step) {
-      ASSERT_TRUE(std::isfinite(network.backward(samples, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, Loss::norm))) << step;
+      ASSERT_TRUE(std::isfinite(network.backward(samples, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}))) << step;
       network.update(1e-3);
     }
     for (const float number : network.predict(samples)) EXPECT_TRUE(std::isfinite(number));
@@ -172,10 +174,10 @@ TEST(Network, StaysFiniteWhereABatchHasNoVariance) {
 }
 
 TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
-  Samples samples({{1, 3}}, 7);
+  Samples samples(NetworkShape{{1, 3}}.samples(), 7);
   RandomStream random("usual");
   for (std::size_t t = 0; t < 2; ++t) {
-    std::vector<float> expected(samples.usual[t].size());
+    std::vector<float> expected(samples.pictures[t].size() / 7);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       expected[i] = static_cast<float>(random.uniform());
       const std::vector<int> order = random.permutation(7);
@@ -183,8 +185,7 @@ TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
         samples.pictures[t][row * expected.size() + i] =
             order[row] < 4 ? expected[i] : static_cast<float>(random.uniform());
     }
-    samples.find_usual();
-    EXPECT_EQ(samples.usual[t], expected);
+    EXPECT_EQ(usual_picture(samples, t), expected);
   }
 }
 
@@ -305,6 +306,77 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
 
 ActionVector act(const Trained& trained, const Observation& observation) {
   return to_vector(trained.policy->act(observation, instruction()));
+}
+
+// Counts its calls; its one parameter is the sum of the learning rates.
+struct Counting : Learner {
+  struct Calls {
+    int begun = 0, rows = 0;
+    std::vector<std::size_t> batches;
+    std::vector<double> rates;
+  };
+  Calls& calls;
+  bool falls;
+  std::vector<float> moved{0}, action = std::vector<float>(12, .25f);
+  Counting(Calls& of, bool cosine) : calls(of), falls(cosine) {}
+
+  TrainingOptions schedule(const TrainingOptions& asked, int samples) const override {
+    TrainingOptions own = asked;
+    own.cosine = falls;
+    EXPECT_EQ(samples, calls.rows);
+    return own;
+  }
+  void begin(const Samples& all) override { ++calls.begun, calls.rows = all.rows; }
+  const std::vector<float>& predict(const Samples& samples) override {
+    EXPECT_EQ(samples.rows, 1);
+    return action;
+  }
+  double backward(const Samples&, const std::vector<int>& batch) override {
+    EXPECT_EQ(calls.begun, 1);
+    calls.batches.push_back(batch.size());
+    return 1;
+  }
+  void update(double learning_rate) override { calls.rates.push_back(learning_rate), moved[0] += 1; }
+  std::vector<float> parameters() const override { return moved; }
+};
+
+// A method with a learner of its own, and without the options of the paper's network.
+struct WithCounting : CloningMethod {
+  Counting::Calls& calls;
+  bool cosine;
+  WithCounting(Counting::Calls& of, bool falls) : calls(of), cosine(falls) {}
+  Selection select(const Command&, const FeatureSpace&, Services&) override { return {}; }
+
+ protected:
+  std::unique_ptr<Learner> learner(const SampleShape& shape, const Services& services) const override {
+    EXPECT_EQ(shape.pictures.size(), 1u);
+    EXPECT_EQ(services.seed, 3u);
+    return std::make_unique<Counting>(calls, cosine);
+  }
+};
+
+TEST(Learners, OfAMethodsOwnAreShownTrainedLoggedAndPlayed) {
+  const Json options = {{"epochs", 4}, {"batch_size", 10}, {"learning_rate", .5}, {"batches", "drawn"}};
+  const Scenario scenario = load_scenario("red_heart");
+  RecordedLanguageModel lm(scenario, scenario.recorded);
+  TruthAsHuman human(scenario.commands);
+  for (const int count : {3, 25})
+    for (const bool cosine : {false, true}) {
+      Counting::Calls calls;
+      Lines log;
+      Services services{lm, human, options, 3, log};
+      const auto policy = WithCounting(calls, cosine).learn(demonstrations(count), services);
+      EXPECT_EQ(calls.rows, count);
+      EXPECT_EQ(calls.batches, std::vector<std::size_t>(count == 3 ? 4 : 8, count == 3 ? 3 : 10));
+      ASSERT_EQ(log.lines.size(), 1u);
+      EXPECT_EQ(log.lines[0].loss, 1);
+      for (std::size_t step = 0; step < calls.rates.size(); ++step) {
+        const double part = static_cast<double>(step) / static_cast<double>(calls.rates.size());
+        EXPECT_NEAR(calls.rates[step], cosine ? .25 * (1 + std::cos(pi * part)) : .5, 1e-12);
+      }
+      EXPECT_EQ(to_vector(policy->act(scene(10, 100, 80, 30), instruction()))[0], .25f);
+      EXPECT_EQ(policy->seen_in_training(), false);
+    }
 }
 
 TEST(Training, OverfitsTenDemonstrations) {
@@ -475,6 +547,77 @@ TEST(Policies, OfCentroidsTellTheTargetFromWhatIsToBeAvoided) {
   EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
 }
 
+// A heart to take and a star to avoid; what is both counts as the heart.
+TEST(Policies, SeeWhatIsToBeAvoidedApartWhereTheMaskIsSigned) {
+  Instruction around_stars = instruction();
+  around_stars.selection.avoid = FeatureSet{{"star", "heart"}, {"blue", "red"}};
+  PolicyInputs seen{{Picture::mask}};
+  for (const bool apart : {false, true}) {
+    seen.signed_mask = apart;
+    Featurizer featurizer(seen);
+    Samples row(featurizer.shape(), 1);
+    featurizer.write(scene(0, 100, 80, 30), around_stars, Phase::test, row, 0);
+    const auto at = [&](int y, int x) {
+      return row
+          .pictures[0][static_cast<std::size_t>(y * input_rows / rows * input_columns + x * input_columns / columns)];
+    };
+    EXPECT_EQ(at(20, 120), 1) << "the heart";
+    EXPECT_EQ(at(100, 50), apart ? -1 : 1) << "the star";
+    EXPECT_EQ(at(60, 200), 0);
+  }
+  auto data = demonstrations(10);
+  for (Demonstration& d : data) d.instruction = around_stars;
+  const Observation probe = scene(60, 100, 0, 30);
+  const auto taught = [&](const char* mask) {
+    return to_vector(learn({{Picture::mask}}, data, 5, 0, {{"mask", mask}}).policy->act(probe, around_stars));
+  };
+  EXPECT_NE(taught("signed"), taught("binary"));
+}
+
+// Of two roles in one small pixel the target's stays.
+TEST(Inputs, ASmallPixelOfASignedMaskIsTheTargetsIfItTouchesIt) {
+  std::vector<std::uint8_t> roles(rows * columns);
+  roles[0] = avoid_role;
+  roles[1] = target_role;
+  roles[8] = avoid_role;
+  std::vector<float> small(input_pixels), native(rows * columns);
+  shrink_mask(roles, input_size, small.data());
+  EXPECT_EQ(std::vector<float>(small.begin(), small.begin() + 4), (std::vector<float>{1, 0, -1, 0}));
+  shrink_mask(roles, native_size, native.data());
+  EXPECT_EQ(std::vector<float>(native.begin(), native.begin() + 3), (std::vector<float>{-1, 1, 0}));
+  EXPECT_EQ(native[8], -1);
+}
+
+// Colours that `prepare` makes, different in training: both differ from the camera's, and know the Selection.
+TEST(Policies, MayBeShownAPictureOfTheMethodsOwn) {
+  const auto data = demonstrations(10);
+  const Observation probe = scene(10, 100, 80, 30);
+  std::map<Phase, int> calls;
+  PolicyInputs own{{Picture::rgb}};
+  own.prepare = [&calls](const Observation& observation, const Selection& selection, Phase phase) {
+    ++calls[phase];
+    EXPECT_EQ(selection.target.object_types, std::vector<std::string>{"heart"});
+    Observation shown = observation;
+    for (std::uint8_t& byte : shown.rgb) byte = static_cast<std::uint8_t>(255 - byte);
+    return shown;
+  };
+  const Trained trained = learn(own, data, 5);
+  EXPECT_EQ(calls, (std::map<Phase, int>{{Phase::training, 10}}));
+  const ActionVector shown = act(trained, probe);
+  EXPECT_EQ(calls[Phase::test], 1);
+  Observation inverted = probe;
+  for (std::uint8_t& byte : inverted.rgb) byte = static_cast<std::uint8_t>(255 - byte);
+  auto inverted_data = data;
+  for (Demonstration& d : inverted_data)
+    for (std::uint8_t& byte : d.steps[0].observation.rgb) byte = static_cast<std::uint8_t>(255 - byte);
+  EXPECT_EQ(act(learn({{Picture::rgb}}, inverted_data, 5), inverted), shown);
+  EXPECT_NE(act(learn({{Picture::rgb}}, data, 5), probe), shown);
+}
+
+TEST(Policies, OfAnUnknownNameAreRefused) {
+  EXPECT_THROW(learn({{Picture::mask}}, demonstrations(1), 1, 0, {{"policy", "oracle"}}), InputError);
+}
+
 TEST(Policies, OfAnyObjectDoNotSeeTheTypeThatIsLeftOut) {
   const auto data = demonstrations(10);
   PolicyInputs seen{{Picture::segmentation}};
@@ -531,6 +674,11 @@ TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
   for (const char* id : {"lga_l", "gcbc_dart", "gcbc_seg"})
     EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
   EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
+  for (const char* id : {"lga", "lga_s", "factorial"}) {
+    EXPECT_EQ(refusal(id, {{"mask", "signed"}}), "") << id;
+    EXPECT_NE(refusal(id, {{"mask", "signed"}, {"policy", "centroid"}}).find("mask=signed needs"), std::string::npos);
+  }
+  EXPECT_NE(refusal("factorial", {{"mask", "signed"}, {"input", "rgb"}}).find("mask=signed needs"), std::string::npos);
   EXPECT_NE(refusal("factorial", {{"policy", "centroid"}, {"input", "rgb"}})
                 .find(R"(one of ["mask","true_mask","object_mask"], which policy=centroid needs, got "rgb")"),
             std::string::npos);

@@ -14,7 +14,7 @@ constexpr int copies = 5;
 constexpr double scale = .05;
 
 // Rows whose pictures and labels differ in mean and in deviation, within and between rows.
-Samples clean_rows(const NetworkShape& shape, int rows) {
+Samples clean_rows(const SampleShape& shape, int rows) {
   Samples samples(shape, rows);
   for (int row = 0; row < rows; ++row) {
     const auto fill = [&](std::vector<float>& values, double mean, double spread) {
@@ -45,12 +45,12 @@ double noise(const std::vector<float>& clean, const std::vector<float>& noisy, i
 }
 
 TEST(NoisyCopies, HaveTheDeviationOfTheirOwnPictureAndLabel) {
-  const NetworkShape shape{{3}, true};
+  const SampleShape shape{{{input_size, 3}}, true};
   constexpr int rows = 3, trials = 60;
   const Samples clean = clean_rows(shape, rows);
   double pictures[rows] = {}, labels[rows] = {};
   for (int seed = 0; seed < trials; ++seed) {
-    const Samples all = with_noisy_copies(clean, shape, copies, scale, static_cast<std::uint64_t>(seed));
+    const Samples all = with_noisy_copies(clean, copies, scale, static_cast<std::uint64_t>(seed));
     for (int row = 0; row < rows; ++row) {
       pictures[row] += noise(clean.pictures[0], all.pictures[0], rows, row) / trials;
       labels[row] += std::pow(noise(clean.labels, all.labels, rows, row), 2) / trials;
@@ -65,9 +65,9 @@ TEST(NoisyCopies, HaveTheDeviationOfTheirOwnPictureAndLabel) {
 }
 
 TEST(NoisyCopies, StandBesideTheOriginalsWhichKeepTheirNumbers) {
-  const NetworkShape shape{{3}, true};
+  const SampleShape shape{{{input_size, 3}}, true};
   constexpr int rows = 4;
-  const Samples clean = clean_rows(shape, rows), all = with_noisy_copies(clean, shape, copies, scale, 7);
+  const Samples clean = clean_rows(shape, rows), all = with_noisy_copies(clean, copies, scale, 7);
   ASSERT_EQ(all.rows, rows * (1 + copies));
   const auto row_of = [](const std::vector<float>& values, int of, int row) {
     const std::size_t n = values.size() / static_cast<std::size_t>(of);
@@ -86,22 +86,22 @@ TEST(NoisyCopies, StandBesideTheOriginalsWhichKeepTheirNumbers) {
 }
 
 TEST(NoisyCopies, AreNotClipped) {
-  const NetworkShape shape{{3}, true};
+  const SampleShape shape{{{input_size, 3}}, true};
   Samples clean = clean_rows(shape, 1);
   for (float& value : clean.pictures[0]) value = value > .9F ? 1.0F : 0.0F;
-  const Samples all = with_noisy_copies(clean, shape, copies, scale, 0);
+  const Samples all = with_noisy_copies(clean, copies, scale, 0);
   const auto [low, high] = std::minmax_element(all.pictures[0].begin(), all.pictures[0].end());
   EXPECT_LT(*low, -.02);
   EXPECT_GT(*high, 1.02);
 }
 
 TEST(NoisyCopies, AreAFunctionOfTheSeedAndFurtherRowsChangeNothing) {
-  const NetworkShape shape{{3}, true};
-  const Samples few = with_noisy_copies(clean_rows(shape, 2), shape, copies, scale, 3);
-  const Samples more = with_noisy_copies(clean_rows(shape, 5), shape, copies, scale, 3);
+  const SampleShape shape{{{input_size, 3}}, true};
+  const Samples few = with_noisy_copies(clean_rows(shape, 2), copies, scale, 3);
+  const Samples more = with_noisy_copies(clean_rows(shape, 5), copies, scale, 3);
   EXPECT_TRUE(std::equal(few.labels.begin(), few.labels.end(), more.labels.begin()));
   EXPECT_TRUE(std::equal(few.pictures[0].begin(), few.pictures[0].end(), more.pictures[0].begin()));
-  EXPECT_NE(with_noisy_copies(clean_rows(shape, 2), shape, copies, scale, 4).labels, few.labels);
+  EXPECT_NE(with_noisy_copies(clean_rows(shape, 2), copies, scale, 4).labels, few.labels);
 }
 
 }  // namespace

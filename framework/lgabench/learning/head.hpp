@@ -4,11 +4,12 @@
 #include <vector>
 
 #include <lgabench/learning/linear.hpp>
-#include <lgabench/learning/samples.hpp>
+#include <lgabench/learning/loss.hpp>
+#include <lgabench/learning/network_shape.hpp>
 
 namespace lgabench {
 
-/// What Samples.hpp says of it for each architecture. One thread at a time; a call allocates nothing where make_room()
+/// What network_shape.hpp says of it for each architecture. One thread at a time; a call allocates nothing where make_room()
 /// was for as many rows.
 class Head {
  public:

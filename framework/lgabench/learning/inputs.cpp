@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/core/error.hpp>
 
 namespace lgabench {
@@ -19,27 +20,29 @@ void expect_size(const char* what, std::size_t size, std::size_t expected) {
 
 }  // namespace
 
-void shrink_rgb(const std::vector<std::uint8_t>& rgb, float* out) {
+void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize size, float* out) {
   expect_size("rgb", rgb.size(), std::size_t{rows} * columns * 3);
   // In floating point: OpenCV would round the means of bytes to bytes.
-  cv::Mat native, small(input_rows, input_columns, CV_32FC3, out);
+  cv::Mat native, small(size.rows, size.columns, CV_32FC3, out);
   cv::Mat(rows, columns, CV_8UC3, const_cast<std::uint8_t*>(rgb.data())).convertTo(native, CV_32FC3, 1 / 255.0);
-  cv::resize(native, small, cv::Size(input_columns, input_rows), 0, 0, cv::INTER_AREA);
+  cv::resize(native, small, cv::Size(size.columns, size.rows), 0, 0, cv::INTER_AREA);
 }
 
-void shrink_mask(const std::vector<std::uint8_t>& mask, float* out) {
+void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize size, float* out) {
   expect_size("mask", mask.size(), std::size_t{rows} * columns);
   const auto first = [](int small, int native, int count) { return native * small / count; };
   const auto last = [](int small, int native, int count) { return (native * (small + 1) + count - 1) / count; };
-  for (int r = 0; r < input_rows; ++r)
-    for (int c = 0; c < input_columns; ++c) {
-      const int left = first(c, columns, input_columns), right = last(c, columns, input_columns);
-      bool any = false;
-      for (int y = first(r, rows, input_rows); y < last(r, rows, input_rows); ++y) {
-        const auto row = mask.begin() + y * columns;
-        any = any || std::any_of(row + left, row + right, [](std::uint8_t value) { return value != 0; });
-      }
-      *out++ = any ? 1.0f : 0.0f;
+  for (int r = 0; r < size.rows; ++r)
+    for (int c = 0; c < size.columns; ++c) {
+      const int left = first(c, columns, size.columns), right = last(c, columns, size.columns);
+      bool target = false, avoid = false;
+      for (int y = first(r, rows, size.rows); y < last(r, rows, size.rows); ++y)
+        for (int x = left; x < right; ++x) {
+          const std::uint8_t role = mask[static_cast<std::size_t>(y * columns + x)];
+          target = target || role == target_role;
+          avoid = avoid || role == avoid_role;
+        }
+      *out++ = target ? 1.f : avoid ? -1.f : 0.f;
     }
 }
 

@@ -10,12 +10,22 @@
 
 namespace lgabench {
 
+SampleShape NetworkShape::samples() const {
+  SampleShape shape{{}, text};
+  for (const int of_picture : channels) shape.pictures.push_back({input_size, of_picture});
+  return shape;
+}
+
 struct Network::Impl {
+  const Loss loss;
   const Kernels& kernels;
+  const bool finds_usual;
   const bool has_text;
   Parameters parameters;
   std::vector<Tower> towers;
   std::optional<Head> head;
+  // Of each tower, what most pictures share in training, 0 before begin(); and, acting, 0.
+  std::vector<std::vector<float>> usual, nothing;
   // Of one batch:
   int capacity = 0;
   Numbers text, output_gradients;
@@ -25,9 +35,18 @@ struct Network::Impl {
   std::vector<int> every_row;                       // of predict()
   std::vector<float> predicted;
 
-  Impl(const NetworkShape& shape, std::uint64_t seed, const Kernels& used)
-      : kernels(used), has_text(shape.text), parameters(seed), pictures(shape.channels.size()) {
-    for (const int channels : shape.channels) towers.emplace_back(channels, shape.architecture, parameters, kernels);
+  Impl(const NetworkShape& shape, std::uint64_t seed, Loss minimised, const Kernels& used)
+      : loss(minimised),
+        kernels(used),
+        finds_usual(shape.architecture != Architecture::plain),
+        has_text(shape.text),
+        parameters(seed),
+        pictures(shape.channels.size()) {
+    for (const int channels : shape.channels) {
+      towers.emplace_back(channels, shape.architecture, parameters, kernels);
+      usual.emplace_back(size(channels * input_pixels));
+    }
+    nothing = usual;
     head.emplace(shape, parameters, kernels);
     parameters.finish();
     features.resize(towers.size() + (has_text ? 1 : 0));
@@ -50,9 +69,8 @@ struct Network::Impl {
     make_room(rows);
     for (std::size_t t = 0; t < towers.size(); ++t) {
       pictures[t].clear();
-      for (const int row : batch)
-        pictures[t].push_back(samples.pictures[t].data() + size(row) * samples.usual[t].size());
-      features[t] = towers[t].forward(pictures[t], samples.usual[t].data(), training);
+      for (const int row : batch) pictures[t].push_back(samples.picture(t, row));
+      features[t] = towers[t].forward(pictures[t], (training ? usual : nothing)[t].data(), training);
     }
     if (has_text) {
       for (int row = 0; row < rows; ++row)
@@ -69,9 +87,9 @@ struct Network::Impl {
   }
 };
 
-Network::Network(const NetworkShape& shape, std::uint64_t seed, const Kernels& kernels) {
+Network::Network(const NetworkShape& shape, std::uint64_t seed, Loss loss, const Kernels& kernels) {
   flush_denormals();
-  impl_ = std::make_unique<Impl>(shape, seed, kernels);
+  impl_ = std::make_unique<Impl>(shape, seed, loss, kernels);
 }
 
 Network::~Network() = default;
@@ -79,6 +97,11 @@ Network::~Network() = default;
 std::vector<float> Network::parameters() const { return impl_->parameters.values(); }
 std::vector<float> Network::gradients() const { return impl_->parameters.gradients(); }
 void Network::set_parameters(const std::vector<float>& parameters) { impl_->parameters.set(parameters); }
+
+void Network::begin(const Samples& samples) {
+  if (!impl_->finds_usual) return;
+  for (std::size_t t = 0; t < impl_->usual.size(); ++t) impl_->usual[t] = usual_picture(samples, t);
+}
 
 const std::vector<float>& Network::predict(const Samples& samples) {
   impl_->every_row.resize(size(samples.rows));
@@ -90,12 +113,12 @@ const std::vector<float>& Network::predict(const Samples& samples) {
   return impl_->predicted;
 }
 
-double Network::backward(const Samples& samples, const std::vector<int>& batch, Loss loss) {
+double Network::backward(const Samples& samples, const std::vector<int>& batch) {
   const float* const outputs = impl_->forward(samples, batch, true);
   const int rows = static_cast<int>(batch.size());
   double total = 0;
   for (int row = 0; row < rows; ++row)
-    total += loss_and_gradient(loss, outputs + row * padded_action,
+    total += loss_and_gradient(impl_->loss, outputs + row * padded_action,
                                samples.labels.data() + size(batch[size(row)]) * action_size, 1. / rows,
                                impl_->output_gradients + row * padded_action);
   impl_->backward();

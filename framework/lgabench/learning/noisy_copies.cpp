@@ -27,9 +27,8 @@ void add_noise(float* values, std::size_t n, double scale, RandomStream& random)
 
 }  // namespace
 
-Samples with_noisy_copies(const Samples& clean, const NetworkShape& shape, int copies, double scale,
-                          std::uint64_t seed) {
-  Samples all(shape, clean.rows * (1 + copies));
+Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::uint64_t seed) {
+  Samples all(clean.shape, clean.rows * (1 + copies));
   for (int row = 0; row < clean.rows; ++row)
     for (int copy = 0; copy <= copies; ++copy) {  // the first is the original
       RandomStream random(fmt::format("dart/posthoc/{}/{}/{}", seed, row, copy));
@@ -41,7 +40,7 @@ Samples with_noisy_copies(const Samples& clean, const NetworkShape& shape, int c
       };
       put(clean.labels, all.labels, true);
       for (std::size_t i = 0; i < clean.pictures.size(); ++i) put(clean.pictures[i], all.pictures[i], true);
-      if (shape.text) put(clean.text, all.text, false);
+      if (clean.shape.text) put(clean.text, all.text, false);
     }
   return all;
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include <lgabench/learning/network.hpp>
+#include <lgabench/learning/samples.hpp>
 
 namespace lgabench {
 
@@ -12,7 +12,6 @@ namespace lgabench {
 /// random stream per row and copy, so that further rows leave those before them as they are. Source: released code
 /// (gen_trajs.py, whose defaults are 5 copies and .05, and which adds the noise to the picture of 36 x 72 that its
 /// network sees).
-Samples with_noisy_copies(const Samples& clean, const NetworkShape& shape, int copies, double scale,
-                          std::uint64_t seed);
+Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::uint64_t seed);
 
 }  // namespace lgabench

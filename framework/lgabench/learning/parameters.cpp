@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -66,6 +67,8 @@ void Parameters::set(const std::vector<float>& values) {
     throw InputError(fmt::format("network: expected {} parameters, got {}", places_.size(), values.size()));
   for (std::size_t i = 0; i < places_.size(); ++i) values_[places_[i]] = values[i];
 }
+
+void Parameters::clear_gradients() { std::fill_n(static_cast<float*>(gradients_), count_, 0.f); }
 
 std::vector<float> Parameters::in_pytorchs_order(const float* values) const {
   std::vector<float> ordered;

@@ -27,6 +27,8 @@ class Parameters {
   void finish();
 
   const float* operator[](std::size_t place) const { return values_ + static_cast<std::ptrdiff_t>(place); }
+  /// For layers that add to them.
+  void clear_gradients();
   float* gradient(std::size_t place) { return gradients_ + static_cast<std::ptrdiff_t>(place); }
 
   std::vector<float> values() const { return in_pytorchs_order(values_); }

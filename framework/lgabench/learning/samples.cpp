@@ -1,29 +1,30 @@
 #include <lgabench/learning/samples.hpp>
 
+#include <utility>
+
+#include <lgabench/core/action.hpp>
+
 namespace lgabench {
 
-Samples::Samples(const NetworkShape& shape, int count) : rows(count) {
+Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), rows(count) {
   const auto n = static_cast<std::size_t>(count);
-  for (const int channels : shape.channels) {
-    usual.emplace_back(static_cast<std::size_t>(channels) * input_pixels);
-    pictures.emplace_back(n * usual.back().size());
-  }
+  for (const SampleShape::Picture& picture : shape.pictures)
+    pictures.emplace_back(n * static_cast<std::size_t>(picture.numbers()));
   if (shape.text) text.resize(n * text_size);
-  labels.resize(n * action_size);
+  labels.resize(n * ActionVector().size());
 }
 
 // A majority vote in one pass (Boyer and Moore 1991).
-void Samples::find_usual() {
-  for (std::size_t t = 0; t < pictures.size(); ++t) {
-    std::vector<float>& candidates = usual[t];
-    std::vector<int> lead(candidates.size());
-    auto value = pictures[t].begin();
-    for (int row = 0; row < rows; ++row)
-      for (std::size_t i = 0; i < candidates.size(); ++i, ++value) {
-        if (lead[i] == 0) candidates[i] = *value;
-        lead[i] += *value == candidates[i] ? 1 : -1;
-      }
-  }
+std::vector<float> usual_picture(const Samples& samples, std::size_t which) {
+  std::vector<float> candidates(static_cast<std::size_t>(samples.shape.pictures[which].numbers()));
+  std::vector<int> lead(candidates.size());
+  auto value = samples.pictures[which].begin();
+  for (int row = 0; row < samples.rows; ++row)
+    for (std::size_t i = 0; i < candidates.size(); ++i, ++value) {
+      if (lead[i] == 0) candidates[i] = *value;
+      lead[i] += *value == candidates[i] ? 1 : -1;
+    }
+  return candidates;
 }
 
 }  // namespace lgabench

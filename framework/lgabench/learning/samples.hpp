@@ -1,44 +1,46 @@
-// What a network learns from.
+// What a learner learns from and acts on.
 #pragma once
 #include <vector>
 
 #include <lgabench/learning/inputs.hpp>
-#include <lgabench/learning/loss.hpp>
 
 namespace lgabench {
-
-/// What follows each convolution, and how text joins the pictures.
-enum class Architecture {
-  text,      // the paper's appendix: batch normalisation, ReLU; the text through a linear layer to 100
-  released,  // the released code: ReLU (leaky after the last), batch normalisation; all joined in a hidden layer
-  plain      // ReLU alone; text as in the first
-};
-
-/// One tower for each picture: Conv 8x8/4 to 32, 4x4/2 to 64, 3x3/1 to 32 channels, flattened to 160. A last linear
-/// layer maps all of it to the action: text, plain: with a text's 384 numbers through a linear layer to 100. released,
-/// with text: each tower through a linear layer to 100, joined with the 384, to 100, ReLU.
-struct NetworkShape {
-  std::vector<int> channels;  // of each tower's picture: 1 or 3
-  bool text = false;
-  Architecture architecture = Architecture::text;
-};
 
 /// Numbers of a sentence embedding.
 constexpr int text_size = 384;
 
-/// Rows of input and label, each array row-major.
+/// Of one row: its pictures, channels last, and whether there is a text.
+struct SampleShape {
+  struct Picture {
+    PictureSize size;
+    int channels;
+    int numbers() const { return size.rows * size.columns * channels; }
+  };
+  std::vector<Picture> pictures;
+  bool text = false;
+};
+
+/// Rows of input and label, each array row-major. Copying copies all numbers.
 struct Samples {
   /// All zeros.
-  explicit Samples(const NetworkShape& shape, int count);
+  Samples(SampleShape of_a_row, int count);
 
-  /// Sets `usual` to the value that more than half of the rows have, number by number; any where there is none.
-  void find_usual();
+  /// The numbers of one row's picture; owned by this.
+  const float* picture(std::size_t which, int row) const {
+    return pictures[which].data() + std::ptrdiff_t{row} * shape.pictures[which].numbers();
+  }
+  float* picture(std::size_t which, int row) {
+    return pictures[which].data() + std::ptrdiff_t{row} * shape.pictures[which].numbers();
+  }
 
+  SampleShape shape;
   int rows;
-  std::vector<std::vector<float>> pictures;  // for each tower rows x 36 x 72 x channels
-  std::vector<std::vector<float>> usual;     // for each tower 36 x 72 x channels: makes a step faster, changes rounding
+  std::vector<std::vector<float>> pictures;  // of each picture rows x its rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
-  std::vector<float> labels;                 // rows x 12
+  std::vector<float> labels;                 // rows x 12: to_vector() of the oracle's action
 };
+
+/// The value that more than half of the rows have in picture number `which`, number by number; any where there is none.
+std::vector<float> usual_picture(const Samples& samples, std::size_t which);
 
 }  // namespace lgabench

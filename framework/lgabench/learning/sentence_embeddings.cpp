@@ -7,17 +7,21 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
-#include <lgabench/learning/network.hpp>
+#include <lgabench/learning/samples.hpp>
 #include <lgabench/learning/sentence_encoder.hpp>
 
 namespace lgabench {
 namespace {
 
 decltype(&make_sentence_encoder) load_encoder() {
+#if defined(LGABENCH_ENCODER_LIBRARY)
   // Never unloaded, since LibTorch in a process cannot be; found by this library's run path.
   static const auto& library = *new boost::dll::shared_library(
       LGABENCH_ENCODER_LIBRARY, boost::dll::load_mode::search_system_folders | boost::dll::load_mode::rtld_local);
   return library.get_alias<decltype(make_sentence_encoder)>("sentence_encoder");
+#else
+  throw InputError("the sentence encoder needs LibTorch, which this lgabench was built without (LGABENCH_TORCH=OFF)");
+#endif
 }
 
 }  // namespace

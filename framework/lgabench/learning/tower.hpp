@@ -6,7 +6,7 @@
 #include <lgabench/learning/batch_norm.hpp>
 #include <lgabench/learning/first_convolution.hpp>
 #include <lgabench/learning/parameters.hpp>
-#include <lgabench/learning/samples.hpp>
+#include <lgabench/learning/network_shape.hpp>
 #include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
@@ -25,7 +25,7 @@ class Tower {
   void make_room(int rows);
 
   /// Features of the pictures, rows x 160, channels last: valid until the next call. What the pictures share with
-  /// `usual` (Samples) costs less.
+  /// `usual` (usual_picture()) costs less.
   const float* forward(const std::vector<const float*>& pictures, const float* usual, bool training);
   /// Where to write the gradient of the features before backward().
   float* feature_gradients() { return convolutions_.back().gradients; }

@@ -18,19 +18,23 @@ std::vector<int> batch_order(Batches batches, std::uint64_t seed, int epoch, int
   return drawn;
 }
 
-void train(Network& network, const Samples& samples, const TrainingOptions& options, std::uint64_t seed,
+void train(Learner& learner, const Samples& samples, const TrainingOptions& asked, std::uint64_t seed,
            TrainingLog& log) {
   if (samples.rows == 0) throw MethodError("training: expected at least one sample, got none");
+  learner.begin(samples);
+  const TrainingOptions options = learner.schedule(asked, samples.rows);
   const int batch_rows = std::min(options.batch_size, samples.rows), batches = samples.rows / batch_rows;
   std::vector<int> batch(static_cast<std::size_t>(batch_rows));
   long long steps = 0;
+  const double all_steps = 1. * options.epochs * batches;
   for (int epoch = 1; epoch <= options.epochs; ++epoch) {
     const std::vector<int> order = batch_order(options.batches, seed, epoch, samples.rows);
     double total = 0;
     for (int b = 0; b < batches; ++b) {
       std::copy_n(order.begin() + b * batch_rows, batch_rows, batch.begin());
-      total += network.backward(samples, batch, options.loss);
-      network.update(options.learning_rate);
+      total += learner.backward(samples, batch);
+      const double part = options.cosine ? (1 + std::cos(pi * static_cast<double>(steps) / all_steps)) / 2 : 1;
+      learner.update(part * options.learning_rate);
       ++steps;
     }
     const double mean = total / batches;

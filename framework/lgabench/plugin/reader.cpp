@@ -83,7 +83,8 @@ std::map<std::string, std::string> components(const std::string& fingerprint) {
 
 void check_fingerprint(const std::string& fingerprint) {
   auto theirs = components(fingerprint), ours = components(LGABENCH_FINGERPRINT);
-  if (theirs["LibTorch"] == "none") theirs["LibTorch"] = ours["LibTorch"];  // a plugin may do without
+  if (theirs["LibTorch"] == "none" || ours["LibTorch"] == "none")  // either may do without
+    theirs["LibTorch"] = ours["LibTorch"];
   std::vector<std::string> differences;
   for (const auto& [key, our] : ours)
     if (key != "compiler" && theirs[key] != our)

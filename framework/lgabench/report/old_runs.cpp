@@ -10,7 +10,8 @@ Json meaning_of(const Json& options) {
     meaning["network"] = options["batch_norm"] == true ? "text" : "plain";
   }
   // Since 0.2, with what held before.
-  const Json before{{"batches", "shuffled"}, {"picture", "none"}, {"instances", "all"}, {"policy", "regression"}};
+  const Json before{
+      {"batches", "shuffled"}, {"picture", "none"}, {"instances", "all"}, {"mask", "binary"}, {"policy", "regression"}};
   for (const auto& [option, value] : before.items())
     if (meaning.value(option, Json()) == value) meaning.erase(option);
   return meaning;

@@ -1,0 +1,78 @@
+#include <lgabench/learning/featurizer.hpp>
+
+#include <algorithm>
+
+#include <lgabench/abstraction/selection_text.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
+
+namespace lgabench {
+
+using Picture = PolicyInputs::Picture;
+
+Featurizer::Featurizer(PolicyInputs inputs) : inputs_(std::move(inputs)) {
+  if (inputs_.text != PolicyInputs::Text::none) embeddings_ = std::make_shared<SentenceEmbeddings>();
+}
+
+SampleShape Featurizer::shape() const {
+  SampleShape shape{{}, inputs_.text != PolicyInputs::Text::none};
+  for (const Picture picture : inputs_.pictures)
+    shape.pictures.push_back(picture == Picture::rgb ? SampleShape::Picture{inputs_.rgb_size, 3}
+                                                     : SampleShape::Picture{inputs_.mask_size, 1});
+  return shape;
+}
+
+Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations) {
+  std::size_t steps = 0;
+  for (const Demonstration& demonstration : demonstrations) steps += demonstration.steps.size();
+  Samples samples(shape(), static_cast<int>(steps));
+  auto label = samples.labels.begin();
+  int row = 0;
+  for (const Demonstration& demonstration : demonstrations)
+    for (const Step& step : demonstration.steps) {
+      write(step.observation, demonstration.instruction, Phase::training, samples, row++);
+      const ActionVector action = to_vector(step.label);
+      label = std::copy(action.begin(), action.end(), label);
+    }
+  return samples;
+}
+
+void Featurizer::write(const Observation& observation, const Instruction& instruction, Phase phase, Samples& samples,
+                       int row) {
+  const Selection& selection = mask_selection(instruction);
+  if (inputs_.prepare)
+    write_pictures(inputs_.prepare(observation, selection, phase), selection, samples, row);
+  else
+    write_pictures(observation, selection, samples, row);
+  if (!embeddings_) return;
+  const std::vector<float>& embedding = embeddings_->of(inputs_.text == PolicyInputs::Text::utterance
+                                                            ? instruction.utterance
+                                                            : selection_text(instruction.selection, inputs_.space));
+  std::copy(embedding.begin(), embedding.end(), samples.text.begin() + std::ptrdiff_t{row} * text_size);
+}
+
+void Featurizer::write_pictures(const Observation& observation, const Selection& selection, Samples& samples, int row) {
+  for (std::size_t i = 0; i < inputs_.pictures.size(); ++i) {
+    const Picture picture = inputs_.pictures[i];
+    float* const out = samples.picture(i, row);
+    if (picture == Picture::rgb) {
+      shrink_rgb(observation.rgb, inputs_.rgb_size, out);
+      continue;
+    }
+    if (picture == Picture::segmentation)
+      object_mask(observation, mask_, inputs_.left_out);
+    else if (inputs_.signed_mask)
+      role_mask(observation, selection, mask_, inputs_.instances);
+    else
+      goal_mask(observation, selection, mask_, inputs_.instances);
+    shrink_mask(mask_, inputs_.mask_size, out);
+  }
+}
+
+const Selection& Featurizer::mask_selection(const Instruction& instruction) const {
+  if (inputs_.masks.empty()) return instruction.selection;
+  const auto found = inputs_.masks.find(instruction.utterance);
+  if (found == inputs_.masks.end()) throw MethodError("no mask was selected for: " + instruction.utterance);
+  return found->second;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,72 @@
+// From observations and instructions to the rows that a learner sees.
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/core/method.hpp>
+#include <lgabench/learning/samples.hpp>
+
+namespace lgabench {
+
+class SentenceEmbeddings;
+
+/// Whether an observation was demonstrated, or is acted on.
+enum class Phase { training, test };
+
+/// The pictures and the text that a learner is given.
+struct PolicyInputs {
+  enum class Picture {
+    mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
+    rgb,          // 3 channels
+    segmentation  // 1 channel: 1 on any object but those of the type `left_out`
+  };
+  std::vector<Picture> pictures;
+  /// One sentence embedding of 384 numbers.
+  enum class Text {
+    none,
+    utterance,  // the sentence embedding of the instruction's utterance
+    selection   // that of its Selection in words (selection_text) in `space`
+  } text = Text::none;
+  FeatureSpace space{};  // for Text::selection alone
+  /// Utterance -> the Selection that its mask is made of in place of the instruction's. Empty, or with every utterance
+  /// that will be given. Held by value: the policy keeps it when the method is gone.
+  std::map<std::string, Selection> masks{};
+  std::string left_out{};  // "": nothing
+
+  Instances instances = Instances::all;
+  /// The goal mask is -1 where an object is to be avoided and not the target, 1 on the target alone; else 1 on both.
+  bool signed_mask = false;
+  PictureSize mask_size = input_size, rgb_size = input_size;
+  /// The method's own picture: what all of the above is made of in place of the observation, given the Selection that
+  /// the mask is made of. A function of its arguments that refers to no method, which may be gone. Null: none.
+  std::function<Observation(const Observation&, const Selection&, Phase)> prepare{};
+};
+
+/// One thread. Copies share the sentence embeddings.
+class Featurizer {
+ public:
+  /// @throws InputError for a text without a sentence embedding, where the encoder's weights are not there; write()
+  /// too.
+  explicit Featurizer(PolicyInputs inputs);
+
+  SampleShape shape() const;
+  /// A row for each step of each demonstration, in their order, with its label.
+  Samples samples(const std::vector<Demonstration>& demonstrations);
+  /// The inputs of one row; its label stays. Allocates nothing after the first, unless `prepare` does.
+  /// @throws MethodError for an utterance that `masks` lacks. InputError for a picture of another size.
+  void write(const Observation& observation, const Instruction& instruction, Phase phase, Samples& samples, int row);
+
+ private:
+  const Selection& mask_selection(const Instruction& instruction) const;
+  void write_pictures(const Observation& observation, const Selection& selection, Samples& samples, int row);
+
+  PolicyInputs inputs_;
+  std::shared_ptr<SentenceEmbeddings> embeddings_;  // null without a text
+  std::vector<std::uint8_t> mask_;
+};
+
+}  // namespace lgabench

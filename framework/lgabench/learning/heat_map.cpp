@@ -1,0 +1,286 @@
+#include <lgabench/learning/heat_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/flush_denormals.hpp>
+#include <lgabench/learning/heat_map_network.hpp>
+#include <lgabench/learning/loss.hpp>
+#include <lgabench/learning/motion.hpp>
+#include <lgabench/learning/places.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr PictureSize grid = HeatMapNetwork::grid, padded = HeatMapNetwork::padded;
+constexpr int cells = HeatMapNetwork::cells;
+constexpr int steps = 300, batch_size = 16;
+constexpr double learning_rate = 3e-3;
+constexpr double label_m = .015;   // standard deviation of the map that is taught
+constexpr double near_m = .05;     // of the peak: what the taken point is the mean of
+constexpr double one_way_m = .05;  // more spread of pose1 is another way to move
+constexpr float least_prior = 1e-4f;
+
+Vec2 middle_of_cell(int cell) { return middle_of(grid, cell / grid.columns, cell % grid.columns); }
+
+bool is_mask(const SampleShape::Picture& picture) { return picture.channels == 1; }
+
+// What the network sees of one row.
+struct View {
+  Numbers planes;               // padded x planes
+  std::vector<float> prior;     // of each cell; empty without a mask
+  const float* mask = nullptr;  // of the row that is viewed, like the text; null without one
+  const float* text = nullptr;
+
+  const float* prior_or_null() const { return prior.empty() ? nullptr : prior.data(); }
+  bool shows_target() const {
+    return !mask || std::any_of(mask, mask + native_size.rows * native_size.columns, [](float v) { return v > 0; });
+  }
+};
+
+// What a row teaches.
+struct Lesson {
+  View view;
+  std::vector<float> wanted{};  // of each cell; empty where it teaches nothing
+  Vec2 taken_m{};
+  std::size_t group = 0;
+};
+
+}  // namespace
+
+struct HeatMap::Impl {
+  const SampleShape shape;
+  const std::uint64_t seed;
+  int planes = 0;
+  std::optional<std::size_t> mask;        // the first, of the pictures
+  std::vector<std::vector<float>> usual;  // of each picture; empty for a mask
+  std::vector<Lesson> lessons;            // of each row that begin() was given
+  std::optional<HeatMapNetwork> network;
+  std::optional<Action> mean;
+  std::optional<Motion> motion;  // none where no target was seen
+  bool takes = true;             // pose0 is the taken point
+  View seen;                     // by predict()
+  std::vector<float> outputs;
+
+  Impl(const SampleShape& of_a_row, std::uint64_t from) : shape(of_a_row), seed(from), usual(shape.pictures.size()) {
+    for (std::size_t i = 0; i < shape.pictures.size(); ++i) {
+      const SampleShape::Picture& picture = shape.pictures[i];
+      if (!(picture.size == (is_mask(picture) ? native_size : grid)))
+        throw InputError("inputs: expected masks of 128 x 256 and colours of 32 x 64 for policy=heat_map");
+      if (is_mask(picture) && !mask) mask = i;
+      planes += is_mask(picture) ? 2 : picture.channels;
+    }
+    if (planes == 0) throw InputError("inputs: expected a picture for policy=heat_map");
+    seen = new_view();
+  }
+
+  View new_view() const {
+    View view;
+    view.planes = Numbers(size(padded.rows * padded.columns * planes));
+    if (mask) view.prior.resize(cells);
+    return view;
+  }
+
+  float* plane(View& view, int cell, int number) const {
+    const int row = cell / grid.columns + HeatMapNetwork::border, column = cell % grid.columns + HeatMapNetwork::border;
+    return view.planes + (row * padded.columns + column) * planes + number;
+  }
+
+  void look(const Samples& samples, int row, View& view) const {
+    int number = 0;
+    for (std::size_t i = 0; i < shape.pictures.size(); ++i) {
+      const float* const picture = samples.picture(i, row);
+      if (is_mask(shape.pictures[i])) {
+        look_at_mask(picture, number, view);
+        number += 2;
+      } else {
+        const int channels = shape.pictures[i].channels;
+        for (int at = 0; at < cells * channels; ++at)
+          *plane(view, at / channels, number + at % channels) = picture[at] - usual[i][size(at)];
+        number += channels;
+      }
+    }
+    if (mask) {
+      view.mask = samples.picture(*mask, row);
+      int of_mask = 0;
+      for (std::size_t i = 0; i < *mask; ++i) of_mask += shape.pictures[i].channels;
+      for (int cell = 0; cell < cells; ++cell)
+        view.prior[size(cell)] = std::log(std::max(*plane(view, cell, of_mask), least_prior));
+    }
+    if (shape.text) view.text = samples.text.data() + std::ptrdiff_t{row} * text_size;
+  }
+
+  // The share of each cell that is the target's, and that is to be avoided.
+  void look_at_mask(const float* picture, int number, View& view) const {
+    constexpr int side = native_size.rows / grid.rows;
+    for (int cell = 0; cell < cells; ++cell) {
+      const float* const corner =
+          picture + cell / grid.columns * side * native_size.columns + cell % grid.columns * side;
+      int target = 0, avoid = 0;
+      for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+          target += corner[y * native_size.columns + x] > 0;
+          avoid += corner[y * native_size.columns + x] < 0;
+        }
+      *plane(view, cell, number) = static_cast<float>(target) / (side * side);
+      *plane(view, cell, number + 1) = static_cast<float>(avoid) / (side * side);
+    }
+  }
+
+  // A Gaussian about the taken point, within the mask.
+  std::vector<float> wanted(const View& view, Vec2 taken_m) const {
+    std::vector<float> map(cells);
+    double sum = 0;
+    for (int cell = 0; cell < cells; ++cell) {
+      const double away = norm(middle_of_cell(cell) - taken_m) / label_m;
+      const bool within = view.prior.empty() || view.prior[size(cell)] > std::log(least_prior);
+      map[size(cell)] = within ? static_cast<float>(std::exp(-away * away / 2)) : 0;
+      sum += map[size(cell)];
+    }
+    if (sum < 1e-6) return {};
+    for (float& value : map) value = static_cast<float>(value / sum);
+    return map;
+  }
+
+  void begin(const Samples& samples);
+  Vec2 taken_point(const std::vector<float>& map) const;
+  Action act();
+};
+
+void HeatMap::Impl::begin(const Samples& samples) {
+  for (std::size_t i = 0; i < usual.size(); ++i)
+    if (!is_mask(shape.pictures[i])) usual[i] = usual_picture(samples, i);
+
+  std::vector<Action> labels;
+  std::vector<Demonstrated> shown;
+  std::vector<std::size_t> rows;  // of those
+  for (int row = 0; row < samples.rows; ++row) {
+    ActionVector values;
+    std::copy_n(samples.labels.data() + std::ptrdiff_t{row} * action_size, action_size, values.begin());
+    const Action done = executable(from_vector(values));
+    labels.push_back(done);
+    look(samples, row, lessons.emplace_back(Lesson{new_view()}).view);
+    const View& view = lessons.back().view;
+    if (!view.shows_target()) continue;
+    const Vec2 p = done.pose0.position_m, q = done.pose1.position_m;
+    Demonstrated demonstrated{done, {p}, {true, false}};
+    if (view.mask) {
+      demonstrated.places.second_m = avoided_in(view.mask);
+      demonstrated.on_target = {on_target(view.mask, p), on_target(view.mask, q)};
+    }
+    shown.push_back(demonstrated);
+    rows.push_back(size(row));
+  }
+  mean = mean_action(labels);
+
+  takes = !mask || mostly_on_target(shown, 0);
+  Eye eye;
+  for (std::size_t i = 0; i < shown.size() && !takes; ++i) {
+    Demonstrated& one = shown[i];
+    one.places.taken_m = *eye.taken(lessons[rows[i]].view.mask, &one.label.pose0.position_m);
+  }
+  Groups groups = one_group(shown);
+  if (!shown.empty()) {
+    motion.emplace(shown, groups, takes, true);
+    if (motion->spread_m() > one_way_m) {
+      groups = by_push(shown);
+      motion.emplace(shown, groups, takes, true);
+    }
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (const std::size_t member : groups[g]) {
+      Lesson& lesson = lessons[rows[member]];
+      lesson.taken_m = shown[member].places.taken_m;
+      lesson.wanted = wanted(lesson.view, lesson.taken_m);
+      lesson.group = g;
+    }
+  network.emplace(planes, shape.text, groups.size(), seed, *available_kernels().front());
+}
+
+// The mean of what is near the highest sum of 3 x 3 cells.
+Vec2 HeatMap::Impl::taken_point(const std::vector<float>& map) const {
+  int peak = 0;
+  double highest = -1;
+  for (int cell = 0; cell < cells; ++cell) {
+    const int row = cell / grid.columns, column = cell % grid.columns;
+    double sum = 0;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, grid.rows - 1); ++r)
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, grid.columns - 1); ++c)
+        sum += map[size(r * grid.columns + c)];
+    if (sum > highest) {
+      highest = sum;
+      peak = cell;
+    }
+  }
+  Vec2 moment;
+  double mass = 0;
+  for (int cell = 0; cell < cells; ++cell) {
+    const Vec2 middle = middle_of_cell(cell);
+    if (norm(middle - middle_of_cell(peak)) > near_m) continue;
+    moment = moment + double{map[size(cell)]} * middle;
+    mass += map[size(cell)];
+  }
+  return 1 / mass * moment;
+}
+
+Action HeatMap::Impl::act() {
+  if (!motion || !seen.shows_target()) return *mean;
+  Places places{taken_point(network->map(seen.planes, seen.prior_or_null(), seen.text))};
+  if (seen.mask) {
+    places.taken_m = onto_target(seen.mask, places.taken_m);
+    places.second_m = avoided_in(seen.mask);
+  }
+  const std::vector<float>& groups = network->groups(places.taken_m);
+  const auto likeliest = std::max_element(groups.begin(), groups.end()) - groups.begin();
+  return motion->act(places, static_cast<std::size_t>(likeliest));
+}
+
+HeatMap::HeatMap(const SampleShape& shape, std::uint64_t seed) {
+  flush_denormals();
+  impl_ = std::make_unique<Impl>(shape, seed);
+}
+HeatMap::~HeatMap() = default;
+
+TrainingOptions HeatMap::schedule(const TrainingOptions&, int samples) const {
+  const int batches = samples / std::min(batch_size, samples);
+  return {(steps + batches - 1) / batches, batch_size, learning_rate, Batches::shuffled, true};
+}
+
+void HeatMap::begin(const Samples& samples) { impl_->begin(samples); }
+
+const std::vector<float>& HeatMap::predict(const Samples& samples) {
+  impl_->outputs.clear();
+  for (int row = 0; row < samples.rows; ++row) {
+    impl_->look(samples, row, impl_->seen);
+    const ActionVector action = to_vector(impl_->act());
+    impl_->outputs.insert(impl_->outputs.end(), action.begin(), action.end());
+  }
+  return impl_->outputs;
+}
+
+double HeatMap::backward(const Samples&, const std::vector<int>& batch) {
+  HeatMapNetwork& network = *impl_->network;
+  network.clear_gradients();
+  double loss = 0;
+  const double weight = 1. / static_cast<double>(batch.size());
+  for (const int row : batch) {
+    const auto& [view, wanted, taken_m, group] = impl_->lessons[size(row)];
+    if (wanted.empty()) continue;
+    network.map(view.planes, view.prior_or_null(), view.text);
+    loss += weight * network.teach(wanted, taken_m, group, weight);
+  }
+  return loss;
+}
+
+void HeatMap::update(double rate) { impl_->network->update(rate); }
+
+std::vector<float> HeatMap::parameters() const {
+  return impl_->network ? impl_->network->parameters().values() : std::vector<float>{};
+}
+void HeatMap::set_parameters(const std::vector<float>& parameters) { impl_->network->parameters().set(parameters); }
+std::vector<float> HeatMap::gradients() const { return impl_->network->parameters().gradients(); }
+
+}  // namespace lgabench

@@ -1,0 +1,51 @@
+// A policy that keeps places and is trained: where to take hold is a heat map over the table, the rest is done as it
+// was shown. Beyond the paper: with a goal mask and with pixels alone, it tells what an abstraction is worth to a
+// policy that need not learn where pixels are.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include <lgabench/learning/learner.hpp>
+
+namespace lgabench {
+
+/// Sees signed masks of 128 x 256 (shrink_mask()), as two planes of 32 x 64, what is to be taken and what is to be
+/// avoided apart; colours of 32 x 64, without what most pictures share; a text. At least one picture.
+///
+/// The taken point is, with a mask (the first), the demonstrated pose0 where most begin on the target, else (a sweep)
+/// the CentroidRule's; without a mask pose0. The map (HeatMapNetwork) is trained towards a Gaussian of .015 m about it,
+/// within the mask, with the logarithm of the target's share of a cell as prior. Acting: the peak of the map smoothed
+/// over 3x3 cells, the expectation within .05 m of it, and onto_target(). The rest is Motion's: in one group where the
+/// demonstrations' pose1 varies by at most .05 m in its frames, else in groups by direction of push, the likeliest of
+/// which the network names.
+///
+/// 300 steps of 16 samples however many there are, learning rate .003 falling as a cosine. Adam.
+class HeatMap : public Learner {
+ public:
+  static constexpr PictureSize rgb_size{32, 64};
+
+  /// @throws InputError for a shape without a picture, or with pictures of another size.
+  HeatMap(const SampleShape& shape, std::uint64_t seed);
+  ~HeatMap() override;
+  HeatMap(const HeatMap&) = delete;
+  HeatMap& operator=(const HeatMap&) = delete;
+
+  TrainingOptions schedule(const TrainingOptions& asked, int samples) const override;
+  void begin(const Samples& samples) override;
+  /// The mean demonstrated action where a mask shows no target, or never showed one.
+  const std::vector<float>& predict(const Samples& samples) override;
+  /// Samples whose mask shows nothing near the taken point teach nothing.
+  double backward(const Samples& samples, const std::vector<int>& batch) override;
+  void update(double learning_rate) override;
+  std::vector<float> parameters() const override;
+
+  /// For tests. @pre begin(). set_parameters() @throws InputError for another number of them.
+  void set_parameters(const std::vector<float>& parameters);
+  std::vector<float> gradients() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lgabench

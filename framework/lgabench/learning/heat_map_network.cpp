@@ -1,0 +1,187 @@
+#include <lgabench/learning/heat_map_network.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <lgabench/learning/places.hpp>
+#include <lgabench/learning/samples.hpp>
+#include <lgabench/learning/zeros.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr double unit_m = .1;  // of a centroid's coordinates, so that a score needs no large weights
+
+std::vector<std::size_t> places_from(std::size_t first, int count) {
+  std::vector<std::size_t> places(size(count));
+  std::iota(places.begin(), places.end(), first);
+  return places;
+}
+
+// In place. Sums are of double precision.
+void softmax(std::vector<float>& values) {
+  const double highest = *std::max_element(values.begin(), values.end());
+  double sum = 0;
+  for (float& value : values) {
+    value = static_cast<float>(std::exp(value - highest));
+    sum += value;
+  }
+  for (float& value : values) value = static_cast<float>(value / sum);
+}
+
+double log_of(float probability) { return std::log(std::max(double{probability}, 1e-30)); }
+
+}  // namespace
+
+HeatMapNetwork::HeatMapNetwork(int planes, bool text, std::size_t groups, std::uint64_t seed, const Kernels& kernels)
+    : kernels_(kernels), parameters_(seed), map_(cells), groups_(groups), centroids_(features) {
+  add_convolution(padded, planes, 5);
+  for (const int layers_before : {1, 2}) {
+    const Layer& before = convolutions_[size(layers_before - 1)].layer;
+    add_convolution({before.out_rows(), before.out_columns()}, features, 3);
+  }
+  const auto zeros = [&](int count) {
+    const std::size_t first = parameters_.take(count);
+    parameters_.uniform(places_from(first, count), 0, 0);
+    return first;
+  };
+  if (text) text_ = zeros(text_size * features);
+  heat_ = zeros(features);
+  scores_ = zeros(static_cast<int>(groups) * 2 * features);
+  score_biases_ = zeros(static_cast<int>(groups));
+  parameters_.finish();
+  first_bias_ = Numbers(features);
+  scratch_ = Numbers(size(std::max(convolutions_[0].layer.weights(), convolutions_[1].layer.weights())));
+}
+
+void HeatMapNetwork::add_convolution(PictureSize of_input, int channels, int kernel) {
+  const Layer layer{of_input.rows, of_input.columns, channels, kernel, 1, features};
+  const double bound = std::sqrt(6. / (kernel * layer.segment()));
+  Convolution& c = convolutions_.emplace_back(
+      Convolution{layer, parameters_.take(layer.weights()), parameters_.take(features), Numbers(size(layer.outputs())),
+                  Numbers(size(layer.outputs())), Numbers(size(layer.weights()))});
+  parameters_.uniform(places_from(c.weights, layer.weights()), -bound, bound);
+  parameters_.uniform(places_from(c.bias, features), 0, 0);
+}
+
+const std::vector<float>& HeatMapNetwork::map(const float* planes, const float* prior, const float* text) {
+  planes_ = planes;
+  embedding_ = text;
+  std::copy_n(parameters_[convolutions_[0].bias], features, static_cast<float*>(first_bias_));
+  for (int i = 0; text && i < text_size; ++i)
+    for (int k = 0; k < features; ++k) first_bias_[k] += text[i] * parameters_[text_][i * features + k];
+  for (std::size_t i = 0; i < convolutions_.size(); ++i) {
+    Convolution& c = convolutions_[i];
+    kernels_.forward(c.layer, input(i), parameters_[c.weights], i == 0 ? first_bias_ : parameters_[c.bias], c.outputs,
+                     true);
+  }
+  const float* feature = convolutions_.back().outputs;
+  for (int cell = 0; cell < cells; ++cell, feature += features)
+    map_[size(cell)] = std::inner_product(feature, feature + features, parameters_[heat_], prior ? prior[cell] : 0.f);
+  softmax(map_);
+  return map_;
+}
+
+const std::vector<float>& HeatMapNetwork::groups(Vec2 taken_m) {
+  std::fill(centroids_.begin(), centroids_.end(), Centroid{0, 0, 1e-6});
+  const float* feature = convolutions_.back().outputs;
+  for (int cell = 0; cell < cells; ++cell) {
+    const Vec2 away = 1 / unit_m * (middle_of(grid, cell / grid.columns, cell % grid.columns) - taken_m);
+    for (Centroid& c : centroids_) {
+      c.x += *feature * away.x;
+      c.y += *feature * away.y;
+      c.mass += *feature++;
+    }
+  }
+  for (Centroid& c : centroids_) c.x /= c.mass, c.y /= c.mass;
+  const float* weight = parameters_[scores_];
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    double score = parameters_[score_biases_][g];
+    for (const Centroid& c : centroids_) {
+      score += *weight++ * c.x;
+      score += *weight++ * c.y;
+    }
+    groups_[g] = static_cast<float>(score);
+  }
+  softmax(groups_);
+  return groups_;
+}
+
+void HeatMapNetwork::clear_gradients() {
+  parameters_.clear_gradients();
+  for (std::size_t i = 1; i < convolutions_.size(); ++i) {
+    Convolution& c = convolutions_[i];
+    transpose_weights(c.layer, parameters_[c.weights], all_channels(c.layer.channels), all_channels(features),
+                      c.transposed);
+  }
+}
+
+double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight) {
+  double loss = 0;
+  Convolution& last = convolutions_.back();
+  const float* feature = last.outputs;
+  float* gradient = last.gradients;
+  for (std::size_t cell = 0; cell < map_.size(); ++cell, feature += features, gradient += features) {
+    if (wanted[cell] > 0) loss -= wanted[cell] * log_of(map_[cell]);
+    const auto of_heat = static_cast<float>(weight * (map_[cell] - wanted[cell]));
+    for (int k = 0; k < features; ++k) {
+      parameters_.gradient(heat_)[k] += of_heat * feature[k];
+      gradient[k] = of_heat * parameters_[heat_][k];
+    }
+  }
+  if (groups_.size() > 1) loss += teach_groups(taken_m, group, weight);
+  backward();
+  return loss;
+}
+
+// Adds to the gradients of the features.
+double HeatMapNetwork::teach_groups(Vec2 taken_m, std::size_t group, double weight) {
+  groups(taken_m);
+  std::vector<Centroid> gradients(features, Centroid{0, 0, 0});
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const double of_score = weight * (groups_[g] - (g == group ? 1 : 0));
+    parameters_.gradient(score_biases_)[g] += static_cast<float>(of_score);
+    for (std::size_t k = 0; k < features; ++k) {
+      const std::size_t at = 2 * (g * features + k);
+      parameters_.gradient(scores_)[at] += static_cast<float>(of_score * centroids_[k].x);
+      parameters_.gradient(scores_)[at + 1] += static_cast<float>(of_score * centroids_[k].y);
+      gradients[k].x += of_score * parameters_[scores_][at];
+      gradients[k].y += of_score * parameters_[scores_][at + 1];
+    }
+  }
+  float* gradient = convolutions_.back().gradients;
+  for (int cell = 0; cell < cells; ++cell) {
+    const Vec2 away = 1 / unit_m * (middle_of(grid, cell / grid.columns, cell % grid.columns) - taken_m);
+    for (std::size_t k = 0; k < features; ++k)
+      *gradient++ += static_cast<float>(
+          (gradients[k].x * (away.x - centroids_[k].x) + gradients[k].y * (away.y - centroids_[k].y)) /
+          centroids_[k].mass);
+  }
+  return -log_of(groups_[group]);
+}
+
+void HeatMapNetwork::backward() {
+  for (std::size_t i = convolutions_.size(); i-- > 0;) {
+    Convolution& c = convolutions_[i];
+    kernels_.relu_gradient(c.outputs, c.gradients, size(c.layer.outputs()));
+    const float* const in = input(i);
+    kernels_.weight_gradient(c.layer, &in, c.gradients, scratch_, 1);
+    float* const weights = parameters_.gradient(c.weights);
+    for (int k = 0; k < c.layer.weights(); ++k) weights[k] += scratch_[k];
+    kernels_.sum_rows(c.gradients, scratch_, c.layer.out_rows() * c.layer.out_columns(), features);
+    float* const bias = parameters_.gradient(c.bias);
+    for (int k = 0; k < features; ++k) bias[k] += scratch_[k];
+    if (i > 0) {
+      Convolution& before = convolutions_[i - 1];
+      std::fill_n(static_cast<float*>(before.gradients), before.layer.outputs(), 0.f);
+      kernels_.input_gradient(c.layer, c.gradients, c.transposed, before.gradients);
+    } else if (embedding_) {
+      float* const text = parameters_.gradient(text_);
+      for (int e = 0; e < text_size; ++e)
+        for (int k = 0; k < features; ++k) text[e * features + k] += embedding_[e] * scratch_[k];
+    }
+  }
+}
+
+}  // namespace lgabench

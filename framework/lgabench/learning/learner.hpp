@@ -1,0 +1,43 @@
+// The interface of what is trained: a policy's network. docs/add-a-network.md walks through one.
+#pragma once
+#include <vector>
+
+#include <lgabench/learning/samples.hpp>
+
+namespace lgabench {
+
+/// shuffled: a pass visits each sample once. drawn: each batch is drawn from all samples, with replacement, as the
+/// released code does.
+enum class Batches { shuffled, drawn };
+
+/// How long and how fast to train; the defaults are those of the comparison (docs/protocol.md, section 5).
+struct TrainingOptions {
+  int epochs = 750;  ///< passes; 0: begin() is all there is
+  int batch_size = 10;
+  double learning_rate = 1e-3;
+  Batches batches = Batches::shuffled;
+  bool cosine = false;  ///< the learning rate falls to 0 as half a cosine (Loshchilov and Hutter 2017)
+};
+
+/// From rows of input to rows of action, with parameters that training moves. One thread at a time. What it does is a
+/// function of the seed that it was made with and of the calls: the same calls give the same bytes.
+class Learner {
+ public:
+  virtual ~Learner() = default;
+
+  /// What it makes of the options that a run gives, for so many samples: a learner with a schedule of its own says so.
+  virtual TrainingOptions schedule(const TrainingOptions& asked, int /*samples*/) const { return asked; }
+  /// Called once, before the first backward(), with all samples (at least one): means and frames are found here.
+  /// @throws MethodError for samples that it cannot learn from.
+  virtual void begin(const Samples&) {}
+  /// Actions as to_vector() has them, rows x 12, valid until the next call. Labels are not read.
+  virtual const std::vector<float>& predict(const Samples& samples) = 0;
+  /// Mean loss over `batch`, which names rows of `samples`; keeps the loss's gradients for update().
+  virtual double backward(const Samples& samples, const std::vector<int>& batch) = 0;
+  /// One step of an optimiser along the gradients of the last backward().
+  virtual void update(double learning_rate) = 0;
+  /// All trainable numbers, in an order that does not change: what tests compare.
+  virtual std::vector<float> parameters() const = 0;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,28 @@
+// Which of the paper's networks: what it sees and how its layers follow each other.
+#pragma once
+#include <vector>
+
+#include <lgabench/learning/samples.hpp>
+
+namespace lgabench {
+
+/// What follows each convolution, and how text joins the pictures.
+enum class Architecture {
+  text,      // the paper's appendix: batch normalisation, ReLU; the text through a linear layer to 100
+  released,  // the released code: ReLU (leaky after the last), batch normalisation; all joined in a hidden layer
+  plain      // ReLU alone; text as in the first
+};
+
+/// One tower for each picture of 36 x 72: Conv 8x8/4 to 32, 4x4/2 to 64, 3x3/1 to 32 channels, flattened to 160. A last
+/// linear layer maps all of it to the action: text, plain: with a text's 384 numbers through a linear layer to 100.
+/// released, with text: each tower through a linear layer to 100, joined with the 384, to 100, ReLU.
+struct NetworkShape {
+  std::vector<int> channels;  // of each tower's picture: 1 or 3
+  bool text = false;
+  Architecture architecture = Architecture::text;
+
+  /// What its samples hold.
+  SampleShape samples() const;
+};
+
+}  // namespace lgabench

@@ -1,0 +1,86 @@
+#include <lgabench/learning/policies.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <lgabench/learning/centroid_policy.hpp>
+#include <lgabench/learning/heat_map.hpp>
+#include <lgabench/learning/network.hpp>
+
+namespace lgabench {
+namespace {
+
+using Picture = PolicyInputs::Picture;
+
+Architecture architecture_of(const std::string& network) {
+  if (network == "plain") return Architecture::plain;
+  return network == "released" ? Architecture::released : Architecture::text;
+}
+
+std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& options, std::uint64_t seed) {
+  NetworkShape shape{{}, rows.text, architecture_of(options.at("network").string())};
+  for (const SampleShape::Picture& picture : rows.pictures) {
+    if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
+    shape.channels.push_back(picture.channels);
+  }
+  return std::make_unique<Network>(shape, seed, options.at("loss").string() == "squared" ? Loss::squared : Loss::norm);
+}
+
+std::unique_ptr<Learner> centroid(const SampleShape& rows, const JsonReader&, std::uint64_t) {
+  return std::make_unique<CentroidRule>(rows);
+}
+
+PolicyInputs as_they_are(PolicyInputs inputs) { return inputs; }
+
+// The first mask alone, as it is seen.
+PolicyInputs one_mask(PolicyInputs inputs) {
+  const auto mask = std::find_if(inputs.pictures.begin(), inputs.pictures.end(),
+                                 [](Picture picture) { return picture != Picture::rgb; });
+  if (mask == inputs.pictures.end()) throw InputError("options: /policy: centroid needs a mask among the inputs");
+  inputs.pictures = {*mask};
+  inputs.text = PolicyInputs::Text::none;
+  inputs.signed_mask = true;
+  inputs.mask_size = native_size;
+  return inputs;
+}
+
+std::unique_ptr<Learner> heat_map(const SampleShape& rows, const JsonReader&, std::uint64_t seed) {
+  return std::make_unique<HeatMap>(rows, seed);
+}
+
+// All of them, at the sizes that it sees.
+PolicyInputs places(PolicyInputs inputs) {
+  if (inputs.pictures.empty()) throw InputError("options: /policy: heat_map needs a picture among the inputs");
+  inputs.signed_mask = true;
+  inputs.mask_size = native_size;
+  inputs.rgb_size = HeatMap::rgb_size;
+  return inputs;
+}
+
+struct Choice {
+  const char* name;
+  PolicyInputs (*inputs)(PolicyInputs);
+  std::unique_ptr<Learner> (*make)(const SampleShape&, const JsonReader& options, std::uint64_t seed);
+};
+
+const Choice& choice(const std::string& policy) {
+  static const std::array choices{Choice{"regression", as_they_are, regression}, Choice{"centroid", one_mask, centroid},
+                                  Choice{"heat_map", places, heat_map}};
+  const auto found =
+      std::find_if(choices.begin(), choices.end(), [&](const Choice& one) { return policy == one.name; });
+  if (found == choices.end()) throw InputError("options: /policy: unknown: " + policy);
+  return *found;
+}
+
+}  // namespace
+
+PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs) {
+  return choice(policy).inputs(std::move(inputs));
+}
+
+std::unique_ptr<Learner> make_learner(const std::string& policy, const SampleShape& shape, const JsonReader& options,
+                                      std::uint64_t seed) {
+  return choice(policy).make(shape, options, seed);
+}
+
+}  // namespace lgabench
