@@ -17,7 +17,16 @@ using Media = unsigned;
 constexpr Media in_terminal = 1, in_markdown = 2, on_page = 4, reading = in_markdown | on_page,
                 everywhere = reading | in_terminal;
 
-enum class Emphasis { none, strong, published, code, detail, better, worse };  // published: a value of the paper's
+enum class Emphasis {
+  none,
+  strong,
+  published,
+  code,
+  detail,
+  better,
+  worse,
+  missed
+};  // published: a value of the paper's
 
 /// A piece of text.
 struct Span {
@@ -127,6 +136,7 @@ struct Note {
 
 struct Document {
   std::string suite, title;
+  Spans headline{};  // the result, in a sentence
   std::vector<Note> notes;
   std::vector<Section> sections;
 

@@ -1,6 +1,7 @@
 // report.html. Every number of a table that stands in summary.json or claims.json carries the JSON pointer to it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <map>
@@ -11,13 +12,14 @@ namespace lgabench::report {
 namespace {
 
 std::string span_html(const Span& span) {
-  constexpr std::array<std::array<const char*, 2>, 7> around{{{"", ""},
+  constexpr std::array<std::array<const char*, 2>, 8> around{{{"", ""},
                                                               {"<b>", "</b>"},
                                                               {"<i class=paper>", "</i>"},
                                                               {"<code>", "</code>"},
                                                               {"<small>", "</small>"},
                                                               {"<span class=better>", "</span>"},
-                                                              {"<span class=worse>", "</span>"}}};
+                                                              {"<span class=worse>", "</span>"},
+                                                              {"<span class=missed>", "</span>"}}};
   const auto& [open, close] = around[static_cast<std::size_t>(span.emphasis)];
   std::string text = escaped(span.text);
   if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
@@ -124,7 +126,13 @@ std::string notes_html(const Document& document) {
   for (const Note& note : document.notes)
     text += fmt::format("<li{}>{}{}</li>\n", note.kind == Note::error ? " class=bad" : "", escaped(note.text),
                         note.log.empty() ? "" : fmt::format(" ({})", escaped(note.log)));
-  return text.empty() ? "" : "<ul class=notes>\n" + text + "</ul>\n";
+  if (text.empty()) return "";
+  const std::size_t errors = static_cast<std::size_t>(
+      std::count_if(document.notes.begin(), document.notes.end(), [](const Note& n) { return n.kind == Note::error; }));
+  return fmt::format(
+      "<details class=notes{}><summary>{} notes on how this came about{}</summary>\n<ul "
+      "class=notes>\n{}</ul></details>\n",
+      errors ? " open" : "", document.notes.size(), errors ? fmt::format(", {} of them errors", errors) : "", text);
 }
 
 // Every {{name}} of the template. Values are not searched again.
@@ -161,7 +169,9 @@ std::string escaped(const std::string& text) {
 }
 
 std::string html(const Document& document, const Json& data) {
-  std::string body = notes_html(document);
+  std::string body;
+  if (!document.headline.empty()) body += "<p class=headline>" + spans_html(document.headline) + "</p>\n";
+  body += notes_html(document);
   for (const Section& section : document.sections) {
     if ((section.in & on_page) == 0) continue;
     std::string blocks;

@@ -71,6 +71,7 @@ std::string block_text(const Block& block) {
 
 std::string markdown(const Document& document) {
   std::string text = fmt::format("# {}\n\n", plain(document.title));
+  if (!document.headline.empty()) text += text_of(document.headline) + "\n\n";
   for (const Note& note : document.notes)
     if (note.kind != Note::source)
       text +=

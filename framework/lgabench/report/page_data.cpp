@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <lgabench/core/geometry.hpp>
+#include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
@@ -47,12 +48,18 @@ Json page_data(const Material& material) {
 
   const std::vector<std::string> words = failure_words();
   std::map<std::vector<std::string>, std::size_t> scenes;  // of an arm, shared by the cells that play it
+  std::map<Json, std::size_t> phis;                        // what was selected, shared likewise
   Json cells = Json::array();
   for (const CellResult& cell : material.run.cells) {
     if (cell.failed) continue;
-    Json commands = Json::array(), masks = Json::array();
+    Json commands = Json::array(), masks = Json::array(), selected = Json::array();
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
+      Json words = Json::array();  // [what, whether right, missed or wrong, the names]
+      for (const PhiWords& of : phi_words(cell, command))
+        for (const auto& [kind, names] : {std::pair{"better", &of.right}, {"missed", &of.missed}, {"worse", &of.wrong}})
+          if (!names->empty()) words.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
+      selected.push_back(phis.emplace(words, phis.size()).first->second);
       // What follows the scene's hash in the names of pictures.masks.
       masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", cell, command.selection)));
     }
@@ -90,12 +97,15 @@ Json page_data(const Material& material) {
                      {"participant", cell.participant},
                      {"commands", commands},
                      {"masks", masks},
+                     {"phi", selected},
                      {"arms", played}});
   }
   std::vector<Json> lists(scenes.size());
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
-  return {{"failures", words},           {"titles", titles},       {"cells", cells}, {"scenes", lists},
-          {"pictures", pictures.scenes}, {"masks", pictures.masks}};
+  std::vector<Json> selections(phis.size());
+  for (const auto& [chips, number] : phis) selections[number] = chips;
+  return {{"failures", words}, {"phi", selections},           {"titles", titles},       {"cells", cells},
+          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}};
 }
 
 }  // namespace lgabench::report

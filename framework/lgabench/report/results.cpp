@@ -122,9 +122,12 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   const JsonReader reader(json, file.string());
   const JsonReader scenario = reader.at("scenario"), method = reader.at("method");
   cell.scenario = shown(scenario.at("id"));
-  for (const JsonReader& command : scenario.at("commands").elements())
-    cell.commands.push_back(
-        {shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(), Json(), Json()});
+  cell.space = shown(scenario.at("feature_space"));
+  for (const JsonReader& command : scenario.at("commands").elements()) {
+    cell.commands.push_back({shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(),
+                             command.at("truth").json(), Json(), Json()});
+    if (!cell.commands.back().truth.is_object()) command.at("truth").fail("an object");
+  }
   cell.demonstrated_commands = static_cast<int>(
       std::count_if(cell.commands.begin(), cell.commands.end(), [](const CommandResult& c) { return c.seen; }));
   for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(shown(arm.at("arm")));

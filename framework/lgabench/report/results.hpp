@@ -19,6 +19,7 @@ constexpr std::array<const char*, 6> phases{"select_s", "sample_s",   "demonstra
 struct CommandResult {
   std::string utterance;
   bool seen = true;         // trained on; the others are tested only
+  Json truth;               // as the scenario says: an object
   Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
 };
 
@@ -35,6 +36,7 @@ struct PlayedEpisode {
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string space;                                        // the scenario's feature space
   std::string id;                                           // of the plugin, or of the reference row
   Json options = Json::object();                            // of the method, all of them
   int demonstrations = 0, episodes_per_arm = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -21,6 +22,38 @@ Span phi_number(const Row& row, const std::string& member, const char* format) {
   const Json::json_pointer place(member);
   if (!phi.contains(place) || !phi.at(place).is_number()) return Span::number("–");
   return Span::number(fmt::format(fmt::runtime(format), phi.at(place).get<double>()), place_of(row, "phi" + member));
+}
+
+// A chip for each name; too many are counted.
+Cell chips(const std::vector<std::string>& names, std::size_t known, Emphasis emphasis) {
+  return names.empty() ? Cell("–") : Cell(Span(listed(names, known), emphasis));
+}
+
+// The words of each distinct φ̂: what it has of the truth, what it lacks, what it has beside it.
+Grid words_grid(const Material& material, bool tell) {
+  Grid grid;
+  grid.name = "phi_words";
+  grid.caption = "What was selected, in words, beside what the scenario means";
+  grid.heads = {"scenario", "command", "method", "about", "feature", "selected, true", "missed", "selected, not true"};
+  grid.align = std::string(grid.heads.size(), 'l');
+  std::set<std::vector<std::string>> shown;
+  for (const CellResult& cell : material.run.cells)
+    for (const CommandResult& command : cell.commands)
+      for (const PhiWords& words : phi_words(cell, command)) {
+        const std::string of_all[] = {listed(words.right, words.known), listed(words.missed, words.known),
+                                      listed(words.wrong, words.known)};
+        if (!shown
+                 .insert({cell.scenario, command.utterance, cell.method, words.about, words.feature, of_all[0],
+                          of_all[1], of_all[2]})
+                 .second)
+          continue;
+        grid.rows.push_back(
+            {{},
+             {cell.scenario, command_text(command.utterance, command.seen, tell), named(material, cell.method),
+              words.about, words.feature, chips(words.right, words.known, Emphasis::better),
+              chips(words.missed, words.known, Emphasis::missed), chips(words.wrong, words.known, Emphasis::worse)}});
+      }
+  return grid;
 }
 
 Cell bar(const std::vector<BarPart>& parts, int of) {
@@ -73,6 +106,7 @@ Section phi(const Material& material) {
     if (worded_otherwise(asked_as, utterance)) known.insert(wording);
   }
   if (grid.rows.empty()) return section;
+  if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add(on_page, std::move(in_words));
   section.add(reading,
               Paragraph{{"Against the scenario's true distribution: precision and recall of what was selected, "
                          "and how many were selected of how many that are true."}});

@@ -66,6 +66,7 @@ function episodesOf(row) {
             attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : "",
             action: played.actions[index], picture: data.pictures[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
+            phi: data.phi[cell.phi[command]],
           });
         });
   return all;
@@ -86,6 +87,10 @@ function arrow(action) {
     `<circle cx="${x0}" cy="${y0}" r="3.5" fill="#fff" stroke="#000" stroke-width="1.5"/></g>`;
 }
 
+const meaning = { better: "selected and true", missed: "missed", worse: "selected, not true" };
+const chips = (e) => !e.phi.length ? "" : `<div class="chips">` + e.phi.map(([what, kind, names]) =>
+  `<span class="${kind}" title="${escaped(what)}: ${meaning[kind]}">${escaped(names)}</span>`).join("") + `</div>`;
+
 const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`;
 
 function card(e) {
@@ -94,7 +99,9 @@ function card(e) {
   const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
     (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
-    `</div><figcaption>${told}<br>${escaped(e.command)}<br><small>${escaped(where)}</small></figcaption></figure>`;
+    `</div><figcaption>${told}<br>${escaped(e.command)}${chips(e)}` +
+    `<small>${escaped(where)}</small><br><code>lgabench replay RUN ${e.cell.cell}/${escaped(e.arm)}/${e.index} --out episode.gif</code>` +
+    `</figcaption></figure>`;
 }
 
 // The first `most` of a list, and a button for more of it.
@@ -113,13 +120,12 @@ function growing(list, most, render) {
   return box;
 }
 
-function show(row) {
-  const all = episodesOf(row), failed = all.filter((e) => e.failure), seen = failed.filter((e) => e.picture);
-  $("panel-title").textContent = data.titles[row];
-  const body = $("panel-body");
-  body.innerHTML = `<p>${all.length} episodes, ${failed.length} failed` +
-    (failed.length > seen.length ? `; ${seen.length} of these with a picture on this page` : "") +
-    ". The arrow is the action, from where it takes hold to where it lets go.</p>";
+// The episodes of a row that ended in one way, or in any.
+function fill(body, row, outcome) {
+  const all = episodesOf(row).filter((e) => !outcome || (e.failure || "success") === outcome);
+  const failed = all.filter((e) => e.failure), seen = all.filter((e) => e.picture);
+  body.innerHTML = `<p>${all.length} episodes, ${failed.length} failed; ${seen.length} with a picture on this page. ` +
+    "The arrow is the action, from where it takes hold to where it lets go.</p>";
   if (seen.length) body.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
   const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
@@ -128,10 +134,35 @@ function show(row) {
     ["scenario", "arm", "training seed", "scene", "command", "outcome", "attributed to"]
       .map((head) => `<th scope="col">${head}</th>`).join("") +
     `</tr></thead><tbody>${some.map(line).join("")}</tbody></table></div>`));
+}
+
+function show(row, outcome = "") {
+  $("panel-title").textContent = data.titles[row];
+  const counts = new Map();
+  for (const e of episodesOf(row)) counts.set(e.failure || "success", (counts.get(e.failure || "success") || 0) + 1);
+  const choice = document.createElement("select"), body = document.createElement("div");
+  choice.ariaLabel = "Which episodes";
+  choice.innerHTML = `<option value="">all outcomes</option>` + [...counts].map(([word, n]) =>
+    `<option${word === outcome ? " selected" : ""} value="${escaped(word)}">${escaped(word)} (${n})</option>`).join("");
+  choice.onchange = () => {
+    fill(body, row, choice.value);
+    history.replaceState(null, "", `#row=${row}${choice.value ? `&outcome=${encodeURIComponent(choice.value)}` : ""}`);
+  };
+  $("panel-body").replaceChildren(choice, body);
+  choice.onchange();
   tip.hidden = true;
-  $("panel").showModal();
+  if (!$("panel").open) $("panel").showModal();
   $("panel").scrollTop = 0;
 }
+
+// The row before or after, with the arrow keys.
+$("panel").onkeydown = (event) => {
+  const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key], row = Number(/row=(\d+)/.exec(location.hash)?.[1]);
+  if (step && event.target.tagName !== "SELECT" && data.titles[row + step]) show(row + step);
+};
+$("panel").onclose = () => history.replaceState(null, "", location.pathname + location.search);
+const linked = /^#row=(\d+)(?:&outcome=(.*))?$/.exec(location.hash);
+if (linked && data.titles[linked[1]]) show(Number(linked[1]), decodeURIComponent(linked[2] || ""));
 
 for (const number of document.querySelectorAll("[data-row]")) {
   number.addEventListener("click", () => show(Number(number.dataset.row)));

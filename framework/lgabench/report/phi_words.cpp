@@ -1,0 +1,57 @@
+#include <lgabench/report/phi_words.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include <lgabench/core/feature_space.hpp>
+
+namespace lgabench::report {
+namespace {
+
+// Whether a set, as JSON writes it, holds the name; what is no such set holds none.
+bool holds(const Json& set, const char* group, const std::string& name) {
+  if (!set.is_object() || !set.contains(group)) return false;
+  const Json& names = set.at(group);
+  return names == "ALL" || (names.is_array() && std::find(names.begin(), names.end(), Json(name)) != names.end());
+}
+
+}  // namespace
+
+std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& command) {
+  if (command.quality.is_null()) return {};
+  FeatureSpace space;
+  try {
+    space = load_feature_space(cell.space);
+  } catch (const InputError&) {
+    return {};
+  }
+  std::vector<PhiWords> all;
+  for (const auto& [about, quality] : command.quality.items()) {
+    if (quality.is_null() || !command.selection.contains(about) || !command.truth.contains(about)) continue;
+    for (const auto& [group, feature, known] :
+         {std::tuple{"object_types", "object types", &space.object_types}, {"textures", "textures", &space.textures}}) {
+      PhiWords words{about, feature, {}, {}, {}, known->size()};
+      for (const std::string& name : *known) {
+        const bool selected = holds(command.selection.at(about), group, name),
+                   meant = holds(command.truth.at(about), group, name);
+        if (selected) (meant ? words.right : words.wrong).push_back(name);
+        if (!selected && meant) words.missed.push_back(name);
+      }
+      all.push_back(std::move(words));
+    }
+  }
+  return all;
+}
+
+std::string listed(const std::vector<std::string>& names, std::size_t known) {
+  constexpr std::size_t most = 8;
+  if (names.empty()) return "–";
+  if (names.size() == known) return fmt::format("any of {}", known);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) text += (i ? ", " : "") + names[i];
+  return names.size() > most ? fmt::format("{} and {} more", text, names.size() - most) : text;
+}
+
+}  // namespace lgabench::report
