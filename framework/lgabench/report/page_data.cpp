@@ -55,11 +55,11 @@ Json page_data(const Material& material) {
     Json commands = Json::array(), masks = Json::array(), selected = Json::array();
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
-      Json words = Json::array();  // [what, whether right, missed or wrong, the names]
+      Json chips = Json::array();  // [what, whether right, missed or wrong, the names]
       for (const PhiWords& of : phi_words(cell, command))
         for (const auto& [kind, names] : {std::pair{"better", &of.right}, {"missed", &of.missed}, {"worse", &of.wrong}})
-          if (!names->empty()) words.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
-      selected.push_back(phis.emplace(words, phis.size()).first->second);
+          if (!names->empty()) chips.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
+      selected.push_back(phis.emplace(chips, phis.size()).first->second);
       // What follows the scene's hash in the names of pictures.masks.
       masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", cell, command.selection)));
     }
@@ -103,7 +103,7 @@ Json page_data(const Material& material) {
   std::vector<Json> lists(scenes.size());
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
-  for (const auto& [chips, number] : phis) selections[number] = chips;
+  for (const auto& [words_of, number] : phis) selections[number] = words_of;
   return {{"failures", words}, {"phi", selections},           {"titles", titles},       {"cells", cells},
           {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}};
 }
