@@ -67,7 +67,7 @@ class Eye {
     Centroid avoided;
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column) {
-        if (roles[index_of(row, column)] == avoid_role) avoided.add(centre_of(row, column));
+        if (roles[index_of(row, column)] == second_role) avoided.add(centre_of(row, column));
         if (!is_target(roles, row, column) || piece_of_[index_of(row, column)] != 0) continue;
         const Piece piece = fill(roles, row, column, ++pieces, pose0);
         if (piece.rank < best.rank) best = piece;

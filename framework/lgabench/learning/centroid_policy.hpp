@@ -9,7 +9,7 @@
 
 namespace lgabench {
 
-/// Sees a picture of roles, 128 x 256 of 0, target_role and avoid_role (goal_mask.hpp): target and avoid set apart,
+/// Sees a picture of roles, 128 x 256 of 0, target_role and second_role (goal_mask.hpp): target and avoid set apart,
 /// which the mask that LGA's network sees does not tell. Deterministic. One thread.
 ///
 /// The taken point is the centroid of the target's pixels (of several pieces the largest one's; in a demonstration the

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/geometry.hpp>
 #include <lgabench/report/html_parts.hpp>
 #include <lgabench/report/names.hpp>

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/report/html_parts.hpp>
 #include <lgabench/report/names.hpp>
 

@@ -65,9 +65,6 @@ struct RunResults {
   int foreign = 0;     // there, not asked for by run.json: ignored
 };
 
-/// Every word that `failure` may be on an episode that was not won, in a fixed order.
-std::vector<std::string> failure_words();
-
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
 

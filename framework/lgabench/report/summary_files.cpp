@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/summary.hpp>
 
