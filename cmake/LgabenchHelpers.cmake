@@ -17,14 +17,24 @@ function(lgabench_library target)
   lgabench_target(${target})
 endfunction()
 
+# An environment: lgabench_NAME, the library lgabench_env_NAME beside the framework's own, where find_environment() finds it.
+function(lgabench_environment name)
+  lgabench_library(lgabench_${name} ${ARGN})
+  set_target_properties(lgabench_${name} PROPERTIES OUTPUT_NAME lgabench_env_${name})
+  target_link_libraries(lgabench_${name} PUBLIC lgabench_core)
+  install(TARGETS lgabench_${name})
+  foreach(program lgabench lgabench-worker lgabench_pages)
+    add_dependencies(${program} lgabench_${name})
+  endforeach()
+endfunction()
+
 # What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().
 function(lgabench_install_package)
   include(CMakePackageConfigHelpers)
   set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lgabench)
   install(TARGETS lgabench_core lgabench_learning lgabench_openai EXPORT lgabenchTargets)
-  install(TARGETS lgabench_tabletop)  # the programs need it, plugins do not
   if(LGABENCH_TORCH)
-    install(TARGETS lgabench_encoder)
+    install(TARGETS lgabench_encoder)  # the programs need it, plugins do not
   endif()
   install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

@@ -56,7 +56,7 @@ inline Bench& bench(const std::string& space = "tabletop") {
 }
 inline Environment& environment() { return *bench().environment; }
 
-inline SceneObject object(const std::string& type, const std::string& texture, Role role, Vec2 position,
+inline SceneObject object(const std::string& type, const std::string& texture, const Role& role, Vec2 position,
                           std::uint8_t id) {
   SceneObject o;
   o.object_type = type;

@@ -105,8 +105,6 @@ const Table& table(Ground ground) {
 
 }  // namespace
 
-Ground ground_of(const Scene& scene) { return scene.task == Task::sweep ? Ground::goal_zones : Ground::plain; }
-
 std::vector<VisibleObject> visible_objects(const Scene& scene) {
   std::vector<VisibleObject> objects;
   for (const SceneObject& o : scene.objects)

@@ -21,8 +21,6 @@ std::vector<VisibleObject> visible_objects(const Scene& scene);
 
 /// What is painted on the table: no instance, in the colours only.
 enum class Ground { plain, goal_zones };
-/// Goal zones where the task is sweep.
-Ground ground_of(const Scene& scene);
 
 /// One thread at a time. The picture depends on the objects and the ground alone: same bytes for the same poses,
 /// whatever was drawn before.

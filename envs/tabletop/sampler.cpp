@@ -6,7 +6,7 @@
 
 #include <lgabench/core/random.hpp>
 #include <tabletop/objects.hpp>
-#include <tabletop/placement.hpp>
+#include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -72,8 +72,9 @@ std::vector<std::pair<std::size_t, std::size_t>> outside(const FeatureSpace& spa
 // What a scene holds, and what is meant by the command that it is for.
 struct Request {
   const Scenario& scenario;
+  const Task& task;
   const Layout& layout;
-  const SceneContent& content;
+  const Content& content;
   bool training;
   Selection meant;  // distractors stay out of it
 };
@@ -81,16 +82,16 @@ struct Request {
 // docs/protocol.md, section 3: objects that don't satisfy the command.
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
   const FeatureSpace& space = request.scenario.space;
-  const SceneContent& content = request.content;
+  const Content& content = request.content;
   std::vector<const FeatureSet*> excluded;
   const auto exclude = [&excluded](const Selection& meant) {
     excluded.push_back(&meant.target);
-    if (meant.avoid) excluded.push_back(&*meant.avoid);
+    if (meant.second) excluded.push_back(&*meant.second);
   };
   exclude(request.meant);
   if (content.outside_all_commands)
     for (const ScenarioCommand& command : request.scenario.commands) exclude(command.truth);
-  if (!request.training && request.scenario.never_distractor) excluded.push_back(&*request.scenario.never_distractor);
+  if (!request.training && content.never_distractor) excluded.push_back(&*content.never_distractor);
 
   // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
   const bool earliest = content.later_letters && is_letter(target.type);
@@ -133,8 +134,9 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
 
 // docs/protocol.md, section 4 (q3): all types of the choice, in random order, but a target first.
 std::vector<SceneObject> sample_choice(const Request& request, RandomStream random) {
-  const bool sweep = request.layout.task == Task::sweep;
-  const FeatureSet& right = sweep ? *request.meant.avoid : request.meant.target;
+  const auto second = request.task.second();
+  const FeatureSet& right = second ? *request.meant.second : request.meant.target;
+  const Role if_right = second ? second->in_scenes : role::target;
   std::vector<SceneObject> objects;
   for (const int i : random.permutation(static_cast<int>(request.content.choice.size()))) {
     const std::string& type = request.content.choice[static_cast<std::size_t>(i)];
@@ -142,35 +144,35 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
       throw InputError(fmt::format("scenario \"{}\", layout {}: expected a choice that can be shown, got \"{}\"",
                                    request.scenario.id, request.layout.id, type));
     const std::string& texture = any_of(request.scenario.space.textures, random);
-    const Role if_right = sweep ? Role::obstacle : Role::target;
-    objects.push_back({type, texture, right.contains(type, texture) ? if_right : Role::distractor, {}, 0, 0});
+    objects.push_back({type, texture, right.contains(type, texture) ? if_right : role::distractor, {}, 0, 0});
   }
-  std::stable_partition(objects.begin(), objects.end(), [](const auto& o) { return o.role == Role::target; });
+  std::stable_partition(objects.begin(), objects.end(), [](const auto& o) { return o.role == role::target; });
   return objects;
 }
 
 std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream) {
-  const auto& [scenario, layout, content, training, meant] = request;
-  const bool sweep = layout.task == Task::sweep;
+  const auto& [scenario, task, layout, content, training, meant] = request;
+  const auto second = task.second();
   const bool by_choice = !content.choice.empty();
-  if (by_choice && !sweep) return sample_choice(request, stream("choice"));
+  if (by_choice && !second) return sample_choice(request, stream("choice"));
 
   const Features target =
       sample_features(scenario, layout, content.target.value_or(meant.target),
                       std::min(layout.widest_m, layout.widest_target_m), "a target", stream("target"));
-  std::vector<SceneObject> objects{{target.type, target.texture, Role::target, {}, 0, 0}};
+  std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
   if (by_choice) {
     const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
     objects.insert(objects.end(), chosen.begin(), chosen.end());
     return objects;
   }
   for (const Features& d : sample_distractors(request, target, stream("distractors")))
-    objects.push_back({d.type, d.texture, Role::distractor, {}, 0, 0});
-  if (sweep) {
-    const Features obstacle =
-        sample_features(scenario, layout, content.avoid ? *content.avoid : meant.avoid.value_or(FeatureSet{}),
-                        layout.widest_m, "an obstacle", stream("obstacle"));
-    objects.push_back({obstacle.type, obstacle.texture, Role::obstacle, {}, 0, 0});
+    objects.push_back({d.type, d.texture, role::distractor, {}, 0, 0});
+  if (second) {
+    FeatureSet from;
+    if (meant.second) from = *meant.second;
+    const Features features = sample_features(scenario, layout, content.second.value_or(from), layout.widest_m,
+                                              "the second set", stream(second->in_scenes));
+    objects.push_back({features.type, features.texture, second->in_scenes, {}, 0, 0});
   }
   return objects;
 }
@@ -197,10 +199,12 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const std::vector<int> commands = scenario.commands_of(request.arm);
   const auto command = static_cast<std::size_t>(commands[static_cast<std::size_t>(index) % commands.size()]);
   const bool training = request.arm == "train";
-  const SceneContent& content = training ? scenario.train : scenario.arm(request.arm).scenes;
-  const bool asked = content.as_method_asks && !request.selections.empty();
-  const Request what{scenario, find_layout(scenario.task, request.layout), content, training,
-                     asked ? request.selections.at(command) : scenario.commands[command].truth};
+  const Content& content = content_of(scenario, request.arm);
+  const bool asked = training && scenario.as_method_asks && !request.selections.empty();
+  const Task& task = find_task(scenario.task);
+  const Layout layout = find_layout(task, request.layout);
+  const Request what{scenario, task,     layout,
+                     content,  training, asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
   const std::string own = request.training_seed ? fmt::format("/training seed {}", *request.training_seed) : "";
   const Streams stream = [&](const std::string& purpose) {
@@ -209,11 +213,11 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   };
 
   Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, 0, request.seed, index, 0, {}};
-  scene.angle_rad = scenario.angle_deg * pi / 180;
+  scene.angle_rad = task.angle_rad(content);
   scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
-  place(what.layout, content, scene.objects, stream);
-  if (what.layout.pallet) scene.objects.push_back({goal_type, goal_texture, Role::goal, *what.layout.pallet, 0, 0});
+  task.place(layout, content, scene.objects, stream);
+  if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;
 }

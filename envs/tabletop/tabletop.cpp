@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <map>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
+#include <tabletop/content.hpp>
+#include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
-#include <tabletop/oracle.hpp>
-#include <tabletop/predicates.hpp>
-#include <tabletop/primitives.hpp>
 #include <tabletop/renderer.hpp>
+#include <tabletop/sampler.hpp>
+#include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -33,69 +35,54 @@ class Tabletop final : public Environment {
     std::vector<BodyPlacement> placements;
     std::vector<bool> fixed;
     for (std::size_t i = 0; i < objects.size(); ++i) {
-      fixed.push_back(scene.objects[i].role == Role::goal);
+      fixed.push_back(scene.objects[i].role == role::goal);
       const auto model = models_.find({objects[i].object_type, fixed[i]});
       if (model == models_.end())
         throw InputError(fmt::format("scene {} {}: object type \"{}\" with role {} is not in the environment's space",
-                                     scene.scenario, scene.index, objects[i].object_type,
-                                     to_string(scene.objects[i].role)));
+                                     scene.scenario, scene.index, objects[i].object_type, scene.objects[i].role));
       placements.push_back({model->second, objects[i].pose});
     }
     world_->reset(placements);
+    task_ = &find_task(scene.task);
     scene_ = scene;
     objects_ = std::move(objects);
     fixed_ = std::move(fixed);
-    touched_obstacle_ = false;
-    return renderer_.render(objects_, ground_of(scene_));
+    went_wrong_ = failure::none;
+    return observe();
   }
 
   StepResult step(const Action& action) override {
-    const Motion motion = carry_out(executable(action));
+    Motion motion = task_->carry_out(scene_, {*world_, fixed_}, executable(action));
+    if (went_wrong_ == failure::none) went_wrong_ = motion.failure;
+    motion.failure = went_wrong_;
     const std::vector<Pose> reached = poses();
-    for (std::size_t i = 0; i < reached.size(); ++i) objects_[i].pose = reached[i];
     StepResult result;
-    result.observation = renderer_.render(objects_, ground_of(scene_));
+    result.observation = observe();
     result.terminated = true;
     result.truncated = !motion.came_to_rest;
     result.failure = judge(scene_, reached, motion);
-    result.is_success = result.failure == Failure::none;
+    result.is_success = result.failure == failure::none;
+    result.recoverable = !result.truncated && result.failure != failure::left_workspace && went_wrong_ == failure::none;
     return result;
   }
 
-  Action expert_action() const override {
-    const SceneObject* target = scene_.find(Role::target);
-    if (!target) throw InputError("scene: expected a target");
-    return expert_action_for(target->instance_id);
+  Observation observe() override {
+    const std::vector<Pose> now = poses();
+    for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
+    return renderer_.render(objects_, task_->ground());
   }
+
+  Action expert_action() const override { return expert_action_for(expect(scene_, role::target).instance_id); }
 
   Action expert_action_for(std::uint8_t instance_id) const override {
     const auto& objects = scene_.objects;
     const auto found = std::find_if(objects.begin(), objects.end(),
                                     [instance_id](const SceneObject& o) { return o.instance_id == instance_id; });
     if (found == objects.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
-    return tabletop::expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin()));
+    return task_->expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin()));
   }
 
  private:
-  Motion carry_out(const Action& action) {
-    switch (scene_.task) {
-      case Task::pick_and_place:
-      case Task::rotate:
-        return pick_and_place({*world_, fixed_}, action);
-      case Task::sweep:
-        return sweep(action);
-    }
-    throw Error("a Task outside its enumeration");
-  }
-
-  Motion sweep(const Action& action) {
-    Motion motion = tabletop::sweep({*world_, fixed_}, action, [this](const std::vector<Polygon>& spatula) {
-      touched_obstacle_ = touched_obstacle_ || touches_obstacle(scene_, poses(), world_->contacts(), spatula);
-    });
-    motion.touched_obstacle = touched_obstacle_;
-    return motion;
-  }
-
   std::vector<Pose> poses() const {
     std::vector<Pose> all;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) all.push_back(world_->pose(static_cast<int>(i)));
@@ -105,10 +92,57 @@ class Tabletop final : public Environment {
   std::unique_ptr<PhysicsWorld> world_;
   Renderer renderer_;
   std::map<std::pair<std::string, bool>, int> models_;  // by type and whether it is fixed
+  const Task* task_ = nullptr;                          // the scene's
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;
-  bool touched_obstacle_ = false;  // since the scene's beginning
+  Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
+};
+
+class TabletopType final : public EnvironmentType {
+ public:
+  TabletopType() {
+    failures_ = {failure::missed_object, failure::wrong_object};
+    for (const Task* task : tabletop::tasks()) {
+      TaskInfo info{task->id(), {}, std::nullopt, task->failures(), task->example()};
+      for (const Layout& layout : task->layouts()) info.layouts.push_back(layout.id);
+      if (const auto second = task->second()) info.second = *second;
+      for (const std::string& word : info.failures)
+        if (std::find(failures_.begin(), failures_.end(), word) == failures_.end()) failures_.push_back(word);
+      tasks_.push_back(std::move(info));
+    }
+    failures_.emplace_back(failure::left_workspace);
+  }
+
+  const std::string& id() const override { return id_; }
+  const std::vector<TaskInfo>& tasks() const override { return tasks_; }
+  const std::vector<std::string>& failures() const override { return failures_; }
+  const ActionSpace& action_space() const override { return two_poses(); }
+  std::vector<std::string> scenario_members(const TaskInfo& task) const override {
+    return tabletop::scenario_members(find_task(task.id));
+  }
+  std::vector<std::string> scene_members(const TaskInfo& task) const override {
+    return tabletop::scene_members(find_task(task.id));
+  }
+  std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
+                                                   const JsonReader* scenes, bool training) const override {
+    return std::make_shared<Content>(tabletop::read_content(scenario, file, scenes, training));
+  }
+  Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
+    return sample_scene(scenario, request, index);
+  }
+  Observation draw(const Scene& scene) const override {
+    static Renderer& renderer = *new Renderer();
+    return renderer.render(visible_objects(scene), find_task(scene.task).ground());
+  }
+  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace& space) const override {
+    return make_environment(std::move(engine), space);
+  }
+
+ private:
+  std::string id_ = "tabletop";
+  std::vector<TaskInfo> tasks_;
+  std::vector<std::string> failures_;
 };
 
 }  // namespace
@@ -118,3 +152,8 @@ std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> worl
 }
 
 }  // namespace lgabench::tabletop
+
+const lgabench::EnvironmentType* lgabench_environment() {
+  static const lgabench::tabletop::TabletopType type;
+  return &type;
+}

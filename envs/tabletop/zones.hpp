@@ -8,7 +8,6 @@ namespace lgabench::tabletop {
 
 struct GoalZones {
   static constexpr double near_m = 0.34, far_m = 0.48;
-  static constexpr double aim_m = 0.41;  // |y| that the oracle brings the target's centre to
   static bool contains(Vec2 p) { return std::abs(p.y) >= near_m && std::abs(p.y) <= far_m; }
 };
 

@@ -29,7 +29,7 @@ class Forest:
 def moments(observation, instruction):
     """Area, centre and (co)variances in pixels, of the target's mask and of the obstacle's: 12 numbers."""
     numbers = []
-    for features in (instruction.selection.target, instruction.selection.avoid or FeatureSet()):
+    for features in (instruction.selection.target, instruction.selection.second or FeatureSet()):
         rows, columns = numpy.nonzero(goal_mask(observation, Selection(target=features)))
         if len(rows) == 0:
             numbers += [0.0] * 6

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 import numpy
 
 __all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "Instance", "Instruction", "Needs", "Observation",
-           "Refused", "Selection", "Services", "Step", "goal_mask", "select_features"]
+           "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Step", "goal_mask", "select_features"]
 
 
 class Refused(RuntimeError):
@@ -26,10 +26,18 @@ class Refused(RuntimeError):
 
 
 @dataclass(frozen=True)
+class SecondRole:
+    """A task's second set of objects: `avoid` for sweep, and "the object to be avoided" in prompts."""
+    id: str
+    phrase: str
+
+
+@dataclass(frozen=True)
 class Command:
-    """What a method is told of the task: the words, and `pick_and_place`, `rotate` or `sweep`."""
+    """What a method is told of the task: the words, the task's id, and what they speak of beside the target, if anything."""
     utterance: str
     task: str
+    second: SecondRole = None
 
 
 @dataclass(frozen=True)
@@ -51,13 +59,19 @@ class FeatureSet:
 
 
 @dataclass
+class SecondSet(FeatureSet):
+    """The features of the second set; `role` is SecondRole.id."""
+    role: str = ""
+
+
+@dataclass
 class Selection:
-    """Which features matter (paper, section 3.1). For sweep, `avoid` describes the obstacle; else it is None.
+    """Which features matter (paper, section 3.1). `second` describes the task's second set; None where it has none.
 
     `provenance`, `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
     """
     target: FeatureSet = field(default_factory=FeatureSet)
-    avoid: FeatureSet = None
+    second: SecondSet = None
     provenance: str = "none"
     source: str = ""
     asked_as: str = ""
@@ -65,7 +79,7 @@ class Selection:
     def keeps(self, object_type, texture):
         """The object is kept in the goal mask."""
         return (self.target.contains(object_type, texture)
-                or (self.avoid is not None and self.avoid.contains(object_type, texture)))
+                or (self.second is not None and self.second.contains(object_type, texture)))
 
 
 @dataclass(frozen=True)
@@ -130,14 +144,14 @@ class Services:
 
 
 def select_features(command, space, lm):
-    """Asks of every object type and texture whether the target, and for sweep the obstacle, could have it."""
-    abouts = ["target", "avoid"] if command.task == "sweep" else ["target"]
+    """Asks of every object type and texture whether the target, and the task's second set, could have it."""
+    abouts = ["target"] + ([command.second.id] if command.second else [])
     questions = [(about, group, name) for about in abouts
                  for group, names in (("object_type", space.object_types), ("texture", space.textures)) for name in names]
-    selection = Selection(avoid=FeatureSet() if "avoid" in abouts else None)
+    selection = Selection(second=SecondSet(role=command.second.id) if command.second else None)
     for (about, group, name), yes in zip(questions, lm.answer(command, space, questions)):
         if yes:
-            chosen = selection.target if about == "target" else selection.avoid
+            chosen = selection.target if about == "target" else selection.second
             (chosen.object_types if group == "object_type" else chosen.textures).append(name)
     return selection
 

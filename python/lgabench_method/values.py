@@ -5,15 +5,19 @@ import os
 import numpy
 
 from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Needs, Observation,
-                             Selection, Step)
+                             SecondRole, SecondSet, Selection, Step)
 
 
 def command(json):
-    return Command(json["utterance"], json["task"])
+    second = json.get("second")
+    return Command(json["utterance"], json["task"], SecondRole(second["id"], second["phrase"]) if second else None)
 
 
 def command_json(value):
-    return {"utterance": value.utterance, "task": value.task}
+    json = {"utterance": value.utterance, "task": value.task}
+    if value.second is not None:
+        json["second"] = {"id": value.second.id, "phrase": value.second.phrase}
+    return json
 
 
 def space(json):
@@ -33,7 +37,10 @@ def _set_json(value):
 
 
 def selection(json):
-    return Selection(_set(json["target"]), _set(json["avoid"]) if "avoid" in json else None,
+    roles = [name for name in json if name not in ("target", "provenance", "source", "asked_as")]
+    second = json[roles[0]] if roles else None
+    return Selection(_set(json["target"]),
+                     SecondSet(list(second["object_types"]), list(second["textures"]), roles[0]) if roles else None,
                      json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
 
 
@@ -41,8 +48,8 @@ def selection_json(value):
     if not isinstance(value, Selection):
         raise TypeError(f"select() returned {type(value).__name__}, expected a lgabench_method.Selection")
     json = {"target": _set_json(value.target)}
-    if value.avoid is not None:
-        json["avoid"] = _set_json(value.avoid)
+    if value.second is not None:
+        json[value.second.role] = _set_json(value.second)
     return json
 
 

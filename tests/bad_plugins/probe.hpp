@@ -118,7 +118,7 @@ class Probe : public fixture::FixtureMethod<fixture::StayPolicy> {
     throw std::runtime_error(how + ": " + found);
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    const Command heart{"Bring me the heart.", Task::pick_and_place};
+    const Command heart{"Bring me the heart.", "pick_and_place"};
     if (services.options.at("how") == "ask_in_learn")
       services.lm.answer(heart, {"tabletop", {"heart", "star"}, {"red"}}, {{{}, {}, "heart"}, {{}, {}, "star"}});
     return FixtureMethod::learn(demonstrations, services);

@@ -10,6 +10,7 @@
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>
+#include <tabletop/task.hpp>
 
 #include "../forwarding_world.hpp"
 #include "bare_mujoco.hpp"
@@ -127,7 +128,8 @@ void bare_reset(benchmark::State& state) {
 void picture(benchmark::State& state) {
   tabletop::Renderer renderer;
   over_episodes(state, "heart", [&renderer](Played&, const Played::Episode& e) {
-    benchmark::DoNotOptimize(renderer.render(tabletop::visible_objects(e.scene), tabletop::ground_of(e.scene)));
+    benchmark::DoNotOptimize(
+        renderer.render(tabletop::visible_objects(e.scene), tabletop::find_task(e.scene.task).ground()));
   });
 }
 

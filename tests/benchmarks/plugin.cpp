@@ -25,9 +25,7 @@ PluginInfo lga_plugin() { return scan_plugins(plugin_directories()).find("method
 
 Json one_epoch() { return resolve_options(lga_plugin(), {{"epochs", 1}}); }
 
-Observation seen(const Scene& scene) {
-  return tabletop::Renderer().render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
-}
+Observation seen(const Scene& scene) { return tabletop::Renderer().render(tabletop::visible_objects(scene)); }
 
 Scene training_scene(const Scenario& scenario, int index) {
   return tabletop::sample_scene(scenario, {"cells", "train", "train", 0}, index);

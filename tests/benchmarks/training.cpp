@@ -51,7 +51,7 @@ Samples samples_of(const NetworkShape& shape) {
   Samples samples(shape.samples(), rows * batches);
   for (int i = 0; i < samples.rows; ++i) {
     const Scene scene = tabletop::sample_scene(scenario, {"cells", "train", "train", 0}, i);
-    const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+    const Observation seen = renderer.render(tabletop::visible_objects(scene));
     for (std::size_t t = 0; t < shape.channels.size(); ++t) {
       float* const picture = samples.picture(t, i);
       if (shape.channels[t] == 1)
@@ -64,7 +64,7 @@ Samples samples_of(const NetworkShape& shape) {
       const std::vector<float>& text = embeddings.of(command.utterance);
       std::copy(text.begin(), text.end(), samples.text.begin() + i * text_size);
     }
-    const ActionVector label = to_vector({{scene.find(Role::target)->position_m, {}}, {{.5, .3}, {}}});
+    const ActionVector label = to_vector({{scene.find(role::target)->position_m, {}}, {{.5, .3}, {}}});
     std::copy(label.begin(), label.end(), samples.labels.begin() + i * action_size);
   }
   return samples;

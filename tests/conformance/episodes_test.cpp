@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include <lgabench/core/random.hpp>
+#include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
-#include <tabletop/predicates.hpp>
 #include <tabletop/sampler.hpp>
+#include <tabletop/task.hpp>
 
 #include "../tabletop_bench.hpp"
 #include "amount.hpp"
@@ -16,14 +17,18 @@
 namespace lgabench::tabletop {
 namespace {
 
-const char* const three_tasks[] = {"something_to_drink_water_out_of", "rotate_block",
-                                   "sweep_block_without_touching_pan"};
+// A scenario of each.
+std::vector<std::string> examples() {
+  std::vector<std::string> all;
+  for (const Task* task : tasks()) all.push_back(task->example());
+  return all;
+}
 
 Scene scene_of(const std::string& scenario, std::uint64_t seed, int index) {
   return sample_scene(load_scenario(scenario), {"continuous", "test", "test", seed}, index);
 }
 
-class AnyTask : public testing::TestWithParam<const char*> {};
+class AnyTask : public testing::TestWithParam<std::string> {};
 
 TEST_P(AnyTask, BeginsAlikeOnEveryEngine) {
   for (const PluginInfo& plugin : scan_plugins(plugin_directories()).plugins) {
@@ -74,7 +79,7 @@ TEST_P(AnyTask, RandomActionsLeaveSoundScenes) {
     environment().reset(scene);
     for (int k = 0; k < actions_a_scene; ++k) {
       const StepResult result = environment().step(random_action(random, scene));
-      moved += result.failure != Failure::missed_object;
+      moved += result.failure != "missed_object";
       truncated += result.truncated;
       for (std::size_t o = 0; o < scene.objects.size(); ++o) {
         const Pose p = bench().world->pose(static_cast<int>(o));
@@ -93,25 +98,26 @@ TEST_P(AnyTask, RandomActionsLeaveSoundScenes) {
   EXPECT_LE(truncated, scenes * actions_a_scene / 100) << "of " << scenes * actions_a_scene;
 }
 
-INSTANTIATE_TEST_SUITE_P(Tasks, AnyTask, testing::ValuesIn(three_tasks));
+INSTANTIATE_TEST_SUITE_P(Tasks, AnyTask, testing::ValuesIn(examples()));
 
 TEST(Episode, TheLimitInStepsTruncates) {
   bench();
-  environment().reset(scene_of(three_tasks[0], 3, 0));
+  environment().reset(scene_of(examples().front(), 3, 0));
   bench().world->creeps = true;
   const StepResult result = environment().step(environment().expert_action());
   bench().world->creeps = false;
   EXPECT_TRUE(result.truncated);
   EXPECT_FALSE(result.is_success);
-  EXPECT_EQ(result.failure, Failure::truncated);
+  EXPECT_EQ(result.failure, failure::truncated);
   EXPECT_EQ(bench().world->steps, static_cast<int>(10 / bench().world->time_step_s()));
 }
 
 TEST(Episode, WhatLeansOnThePalletComesToRest) {
   Environment& env = environment();
   Scene scene;
-  scene.objects = {object("pallet", "wooden", Role::goal, {.5, .3}, 1),
-                   object("heart", "red", Role::target, {.6, -.05}, 2)};
+  scene.task = "pick_and_place";
+  scene.objects = {object("pallet", "wooden", role::goal, {.5, .3}, 1),
+                   object("heart", "red", role::target, {.6, -.05}, 2)};
   env.reset(scene);
   Action action = env.expert_action();
   for (int i = 0; i < 48; ++i) {  // around the pallet, half on it, turned
@@ -125,10 +131,10 @@ TEST(Episode, WhatLeansOnThePalletComesToRest) {
 TEST(Episode, TheSpatulaComesDownOnAnyObjectWithoutHarm) {
   for (const std::string& type : load_feature_space("tabletop").object_types) {
     Scene scene;
-    scene.task = Task::sweep;
-    scene.objects = {object(type, "blue", Role::distractor, {.6, .25}, 1),
-                     object("pan", "green", Role::obstacle, {.375, -.16}, 2),
-                     object("block", "red", Role::target, {.375, .05}, 3)};
+    scene.task = "sweep";
+    scene.objects = {object(type, "blue", role::distractor, {.6, .25}, 1),
+                     object("pan", "green", "obstacle", {.375, -.16}, 2),
+                     object("block", "red", role::target, {.375, .05}, 3)};
     for (const Vec2 to : {Vec2{.6, -.2}, Vec2{.65, .45}, Vec2{.6, .25}}) {
       environment().reset(scene);
       StepResult result;

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <tabletop/predicates.hpp>
+#include <tabletop/content.hpp>
+#include <tabletop/judge.hpp>
+#include <tabletop/oracle.hpp>
 #include <tabletop/sampler.hpp>
 
 #include "../tabletop_bench.hpp"
@@ -19,7 +21,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const std::string& id : scenario_ids())
-    for (const std::string& layout : layouts(load_scenario(id).task))
+    for (const std::string& layout : find_task(find_environment("tabletop"), load_scenario(id).task).layouts)
       if (id != "q3_food" || layout != "released") cases.push_back({id, layout});  // whose pan is refused there
   return cases;
 }
@@ -36,29 +38,29 @@ TEST_P(Oracle, Succeeds) {
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   for (const std::string& arm : arms) {
     // A distractor that the scenario puts in a sweep's way may be pushed along.
-    const bool undisturbed = scenario.task == Task::sweep && scenario.tests.front().scenes.choice.empty();
+    const bool undisturbed = scenario.task == "sweep" && content_of(*scenario.tests.front().scenes).choice.empty();
     int missed = 0;
     for (int i = 0; i < scenes; ++i) {
       const std::string split = arm == "train" ? "train" : "test";
       const Scene scene = sample_scene(scenario, {GetParam().layout, split, arm, 200}, i);
       const StepResult result = play(*world.environment, scene).result;
-      const std::string& type = scene.find(Role::target)->object_type;
+      const std::string& type = scene.find(role::target)->object_type;
       const std::string which = fmt::format("scene {}, {}", i, arm);
       EXPECT_TRUE(result.terminated);
       bool brushed = false;
       for (std::size_t k = 0; k < scene.objects.size(); ++k) {
         const SceneObject& other = scene.objects[k];
-        if (!undisturbed || other.role == Role::target) continue;
+        if (!undisturbed || other.role == role::target) continue;
         const double moved_m = norm(centre_of(other, world.world->pose(static_cast<int>(k))) - other.position_m);
         EXPECT_LT(moved_m, 2e-3) << which << ": " << other.object_type << " was moved";
         brushed = brushed || moved_m > 1e-4;
       }
-      const bool turned = scene.task == Task::sweep && type == "L-shaped block";
-      const bool on_a_utensil = scene.task == Task::sweep && !undisturbed;
-      if (brushed || (turned && result.failure == Failure::missed_zone) || (on_a_utensil && result.truncated))
+      const bool turned = scene.task == "sweep" && type == "L-shaped block";
+      const bool on_a_utensil = scene.task == "sweep" && !undisturbed;
+      if (brushed || (turned && result.failure == "missed_zone") || (on_a_utensil && result.truncated))
         ++missed;
       else
-        EXPECT_EQ(result.failure, Failure::none) << which << ", " << type << ": " << to_string(result.failure);
+        EXPECT_EQ(result.failure, failure::none) << which << ", " << type << ": " << result.failure;
     }
     EXPECT_LE(missed, scenes / 250) << arm;
   }

@@ -9,7 +9,7 @@ namespace {
 
 using namespace lgabench;
 
-const Command command{"Bring me the heart.", Task::pick_and_place};
+const Command command{"Bring me the heart.", "pick_and_place"};
 const FeatureSpace space{"tabletop", {"heart", "star"}, {"red"}};
 const std::vector<Question> questions{{{}, {}, "heart"}};
 

@@ -60,8 +60,8 @@ class IncludeGraph(unittest.TestCase):
         self.forbid("envs/mujoco", r"bullet/|btBullet")
         self.forbid("examples", r"mujoco/|bullet/|btBullet|tabletop/")
 
-    def test_harness_reaches_the_tabletop_in_one_place(self):
-        self.forbid("framework/lgabench/harness", r"tabletop/", but=("environments.cpp",))
+    def test_the_framework_names_no_environment(self):
+        self.forbid("framework", r"tabletop/")
 
 
 class Needed(unittest.TestCase):
@@ -70,7 +70,7 @@ class Needed(unittest.TestCase):
 
     def test_programs_do_not_link_torch(self):
         for program in ("bin/lgabench", "bin/lgabench-worker", "bin/lgabench-method"):
-            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning")
+            self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning|liblgabench_env")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
         self.forbid("bin/lgabench", r"tabletop|embree|opencv|hdf5")

@@ -22,9 +22,9 @@ struct Asked {
   FeatureSpace space;
 };
 
-Asked scenario(const std::string& id, const std::string& utterance, Task task = Task::pick_and_place,
+Asked scenario(const std::string& id, const std::string& utterance, const std::string& task = "pick_and_place",
                const std::string& space = "tabletop") {
-  return {id, {utterance, task}, load_feature_space(space)};
+  return {id, command_of(task, utterance), load_feature_space(space)};
 }
 
 Selection ask(const Asked& asked, const std::string& source) {
@@ -61,7 +61,7 @@ TEST(GoalMask, KeepsAnInstanceWhoseTypeAndTextureAreBothSelected) {
 TEST(GoalMask, AddsWhatIsToBeAvoidedButNeverCrossesItWithTheTarget) {
   Selection selection;
   selection.target = {{"heart"}, {"red"}};
-  selection.avoid = FeatureSet{{"pan", "line"}, {"blue"}};
+  selection.second = SecondSet{{{"pan", "line"}, {"blue"}}, "avoid"};
   const auto mask = goal_mask(four_objects(), selection);
   EXPECT_EQ(mask[0], 1);                              // the red heart
   EXPECT_EQ(mask[1000], 1);                           // the blue line
@@ -78,7 +78,7 @@ TEST(GoalMask, AnythingIsAnObjectWithoutLanguage) {
 TEST(GoalMask, MayKeepTheFirstInstanceOfEachRoleAlone) {
   Selection selection;  // 5, red, comes first of the hearts; the pan matches both sets
   selection.target = {{"heart", "pan"}, {"red", "blue"}};
-  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  selection.second = SecondSet{{{"line", "pan"}, {"red", "blue"}}, "avoid"};
   const auto first = goal_mask(four_objects(), selection, Instances::first);
   EXPECT_EQ(first[0], 1);
   EXPECT_EQ(first[pixels - 1], 1) << "all of an instance, wherever it is";
@@ -95,11 +95,11 @@ TEST(GoalMask, MayKeepTheFirstInstanceOfEachRoleAlone) {
 TEST(GoalMask, TellsRolesApart) {
   Selection selection;
   selection.target = {{"heart", "pan"}, {"red"}};
-  selection.avoid = FeatureSet{{"line", "pan"}, {"red", "blue"}};
+  selection.second = SecondSet{{{"line", "pan"}, {"red", "blue"}}, "avoid"};
   std::vector<std::uint8_t> roles;
   role_mask(four_objects(), selection, roles);
   EXPECT_EQ(roles[0], target_role);
-  EXPECT_EQ(roles[1000], avoid_role);
+  EXPECT_EQ(roles[1000], second_role);
   EXPECT_EQ(roles[pixels - Observation::columns], target_role) << "both";
   EXPECT_EQ(roles[Observation::columns - 1], 0);
 }
@@ -160,7 +160,7 @@ TEST(RecordedAnswers, OfTheStudyAreGpt4sForItsNineScenarios) {
     if (s.no_texture) {
       EXPECT_FALSE(has(selection.target.textures, s.no_texture));
     }
-    EXPECT_FALSE(selection.avoid);
+    EXPECT_FALSE(selection.second);
     EXPECT_EQ(selection.provenance, Provenance::recorded);
     EXPECT_EQ(selection.source, "GPT-4, version not stated there");
     EXPECT_EQ(selection.cost.lm_queries, 112);  // 29 object types and 83 textures
@@ -189,13 +189,13 @@ TEST(RecordedAnswers, ReleasedWithTheCodeAreOnesToTheAppendixsWording) {
     EXPECT_SAYS(selection.source, "GPT-4 (released with the code");
   }
   const Selection sweep =
-      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep),
+      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", "sweep"),
           "gpt4_released");
   EXPECT_EQ(sweep.target.object_types, std::vector<std::string>{"block"});
   EXPECT_EQ(sweep.target.textures.size(), 83u);
-  ASSERT_TRUE(sweep.avoid);
-  EXPECT_EQ(sweep.avoid->object_types, std::vector<std::string>{"pan"});
-  EXPECT_EQ(sweep.avoid->textures.size(), 76u);
+  ASSERT_TRUE(sweep.second);
+  EXPECT_EQ(sweep.second->object_types, std::vector<std::string>{"pan"});
+  EXPECT_EQ(sweep.second->textures.size(), 76u);
   EXPECT_EQ(sweep.asked_as, "Sweep the block into the square without touching the pan");
 }
 
@@ -225,6 +225,7 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
   for (const std::string& id : scenario_ids()) {
     SCOPED_TRACE(id);
     const Scenario s = load_scenario(id);
+    if (!s.json.contains("answers")) continue;  // an example: nobody was asked about it
     const auto other = others.find(id);
     const std::pair<std::string, std::string> expected =
         other == others.end() ? std::pair<std::string, std::string>{"gpt4_released", "gpt4_study"} : other->second;
@@ -240,11 +241,11 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
 }
 
 TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
-  const Selection sweep = ask(
-      scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", Task::sweep), "claude");
-  ASSERT_TRUE(sweep.avoid);
-  EXPECT_EQ(sweep.avoid->object_types, std::vector<std::string>{"pan"});
-  EXPECT_EQ(sweep.avoid->textures.size(), 83u);
+  const Selection sweep =
+      ask(scenario("sweep_block_without_touching_pan", "Sweep the block without touching the pan.", "sweep"), "claude");
+  ASSERT_TRUE(sweep.second);
+  EXPECT_EQ(sweep.second->object_types, std::vector<std::string>{"pan"});
+  EXPECT_EQ(sweep.second->textures.size(), 83u);
   EXPECT_EQ(sweep.target.object_types.size(), 4u);
   EXPECT_EQ(sweep.cost.lm_queries, 224);
 }
@@ -258,7 +259,7 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
               "expected recorded or one of claude, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
-  EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", Task::sweep), "gpt4_released"), MethodError);
+  EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 
   const Asked heart = scenario("heart", "Bring me the heart.");
   RecordedLanguageModel model(heart.space, heart.id, "gpt4_released");
@@ -290,7 +291,7 @@ Selection selection_of(FeatureSet target, Provenance provenance = Provenance::tr
 }
 
 TEST(Human, AnswersAsTheMethodDeclares) {
-  const Command command{"words", Task::pick_and_place};
+  const Command command{"words", "pick_and_place"};
   const std::vector<ScenarioCommand> commands{{"words", selection_of({{"heart"}, {"red"}})}};
   const auto who = [&](const char* asks) { return DeclaredHuman(std::make_unique<TruthAsHuman>(commands), asks); };
   EXPECT_EQ(who("specify").specify(command).target.textures, std::vector<std::string>{"red"});
@@ -306,14 +307,14 @@ TEST(Human, AnswersAsTheMethodDeclares) {
 TEST(Human, SpecifiesTheTruthAndEditsObjectTypesOnly) {
   TruthAsHuman human({{"other words", selection_of({{"pan"}, {"red"}})},
                       {"words", selection_of({{"letter G", "letter V"}, {"brick"}})}});
-  EXPECT_THROW(human.specify({"no such words"}), MethodError);
-  const Selection specified = human.specify({"words"});
+  EXPECT_THROW(human.specify({"no such words", "pick_and_place"}), MethodError);
+  const Selection specified = human.specify({"words", "pick_and_place"});
   EXPECT_EQ(specified.provenance, Provenance::truth);
   EXPECT_EQ(specified.target, (FeatureSet{{"letter G", "letter V"}, {"brick"}}));
 
   Selection proposal = selection_of({{"letter G", "pan"}, {"red", "tiger"}}, Provenance::recorded);
   proposal.cost.lm_queries = 112;
-  const Selection edited = human.edit({"words"}, proposal);
+  const Selection edited = human.edit({"words", "pick_and_place"}, proposal);
   EXPECT_EQ(edited.provenance, Provenance::simulated_edit);
   EXPECT_EQ(edited.target, (FeatureSet{{"letter G", "letter V"}, {"red", "tiger"}}));
   EXPECT_EQ(edited.cost.lm_queries, 112);
@@ -324,7 +325,7 @@ TEST(SelectionText, NamesWhatIsSelected) {
   const FeatureSpace space{"s", {"heart", "pan", "block"}, {"red", "blue"}};
   Selection s = selection_of({{"heart", "block"}, {"red", "blue"}});
   EXPECT_EQ(selection_text(s, space), "target: heart, block; any");
-  s.avoid = FeatureSet{{"pan"}, {"red"}};
+  s.second = SecondSet{{{"pan"}, {"red"}}, "avoid"};
   EXPECT_EQ(selection_text(s, space), "target: heart, block; any. avoid: pan; red");
   EXPECT_EQ(selection_text(selection_of({{}, {"blue"}}), space), "target: none; blue");
   EXPECT_EQ(selection_text(selection_of({space.object_types, {"blue"}}), space), "target: any; blue");
@@ -345,7 +346,7 @@ TEST(Quality, IsPrecisionAndRecallOfEachGroup) {
 
 TEST(Quality, OfAnObstacleNobodySelectedIsRecallZero) {
   Selection truth = selection_of({{"a"}, {"x"}});
-  truth.avoid = FeatureSet{{"pan"}, {"x"}};
+  truth.second = SecondSet{{{"pan"}, {"x"}}, "avoid"};
   const Json q = quality(selection_of({{"a"}, {"x"}}), truth);
   EXPECT_EQ(q["target"]["object_types"]["precision"], 1);
   EXPECT_EQ(q["avoid"]["object_types"]["recall"], 0);

@@ -118,7 +118,7 @@ TEST(CentroidRule, WithoutAnythingToTakeDoesTheMeanDemonstratedAction) {
   rule.add(target_at(there), bring(there));
   rule.fit();
   Roles only_avoided = nothing();
-  paint(only_avoided, elsewhere, avoid_role);
+  paint(only_avoided, elsewhere, second_role);
   for (const Roles& roles : {nothing(), only_avoided}) {
     expect_at(rule.act(roles).pose0.position_m, .5 * (here + there));
     expect_at(rule.act(roles).pose1.position_m, goal);
@@ -171,7 +171,7 @@ struct Sweep {
 };
 Sweep sweep(Vec2 at, int side, double tilt = 0, double beside = 0) {
   Roles roles = target_at(at);
-  paint(roles, at + Vec2{beside, side * .2}, avoid_role);
+  paint(roles, at + Vec2{beside, side * .2}, second_role);
   return {roles, {{{at.x, at.y + side * .1}, {}}, {{at.x + tilt, -side * .4}, {}}}};
 }
 

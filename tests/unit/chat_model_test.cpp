@@ -21,7 +21,7 @@ namespace {
 constexpr const char* key = "sk-secret-1234567890";
 
 const FeatureSpace space{"small", {"heart", "star", "pan"}, {"red", "blue"}};
-const Command command{"Bring me the red heart.", Task::pick_and_place};
+const Command command{"Bring me the red heart.", "pick_and_place"};
 
 std::string completion(const std::string& text, const std::string& reason = "stop") {
   return Json{{"choices", {{{"message", {{"role", "assistant"}, {"content", text}}}, {"finish_reason", reason}}}},
@@ -458,8 +458,8 @@ TEST(FinalAnswer, IsOnTheLastLine) {
 
 TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {
   const PromptTemplate prompt;
-  const Command braces{"Bring me {candidate}.", Task::sweep};
-  const Prompt p = prompt.fill(braces, space, {Question::About::avoid, Question::Group::texture, "red"});
+  const Command braces = command_of("sweep", "Bring me {candidate}.");
+  const Prompt p = prompt.fill(braces, space, {Question::About::second, Question::Group::texture, "red"});
   EXPECT_SAYS(p.user, "\"Bring me {candidate}.\"");
   EXPECT_SAYS(p.user, "Could the object to be avoided have the object color \"red\"?");
   EXPECT_SAYS(prompt.fill(command, space, {Question::About::target, Question::Group::object_type, "pan"}).user,

@@ -14,6 +14,7 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <tabletop/content.hpp>
 
 #include "testing.hpp"
 
@@ -164,6 +165,10 @@ TEST(Printable, LeavesNoControlSequence) {
   EXPECT_EQ(one_line("a\nb\tc"), "a\\nb\\x09c");
 }
 
+tabletop::Content content(const std::string& id, Truth truth) {
+  return tabletop::content_of(*load_scenario(id, truth).train);
+}
+
 Json heart() { return load_scenario("heart").json; }
 
 std::string refusal(const Json& json) {
@@ -172,7 +177,7 @@ std::string refusal(const Json& json) {
 
 TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
-  for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == Task::pick_and_place;
+  for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
   EXPECT_EQ(pick_and_place, 12);  // q1 has 9, q2 two, q3 one
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.object_types, std::vector<std::string>{"heart"});
@@ -206,19 +211,21 @@ TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
     EXPECT_FALSE(load_scenario(t.id).json.contains("truth"));
   }
   EXPECT_EQ(load_scenario("heart", Truth::printed).json, load_scenario("heart").json) << "nothing differs";
-  EXPECT_FALSE(load_scenario("consonant_with_a_warm_color").never_distractor) << "the list holds plain warm colours";
+  EXPECT_FALSE(content("consonant_with_a_warm_color", Truth::released).never_distractor)
+      << "the list holds plain warm colours";
   EXPECT_EQ(read_truth("printed"), Truth::printed);
   EXPECT_SAYS(message_of<InputError>([] { read_truth("true"); }), "expected released or printed, got \"true\"");
 }
 
 TEST(Scenario, WarmColoursAreNeverDistractorsOfThePrintedTruth) {
   const Scenario s = load_scenario("consonant_with_a_warm_color", Truth::printed);
-  ASSERT_TRUE(s.never_distractor);
-  EXPECT_EQ(s.never_distractor->object_types, s.space.object_types);
+  const auto never = content("consonant_with_a_warm_color", Truth::printed).never_distractor;
+  ASSERT_TRUE(never);
+  EXPECT_EQ(never->object_types, s.space.object_types);
   for (const std::string& texture : s.space.textures) {
     bool warm = false;
     for (const char* word : {"red", "yellow", "orange", "pink"}) warm = warm || texture.find(word) != std::string::npos;
-    EXPECT_EQ(s.never_distractor->contains("bowl", texture), warm) << texture;
+    EXPECT_EQ(never->contains("bowl", texture), warm) << texture;
   }
 }
 
@@ -240,7 +247,7 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");
   json = heart();
   json["task"] = "juggle";
-  EXPECT_SAYS(refusal(json), "mine.json: /task: expected pick_and_place, rotate or sweep, got \"juggle\"");
+  EXPECT_SAYS(refusal(json), "mine.json: /task: no task \"juggle\", expected one of: pick_and_place, rotate");
   json = heart();
   for (const char* name : {"", "a/../../b", "a\n", "a b", "=1"}) {
     Json named = heart();
@@ -254,7 +261,13 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "expected a member \"utterance\"");
   json = heart();
   json["commands"][0]["truth"]["avoid"] = json["commands"][0]["truth"]["target"];
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/0/truth: unknown member \"avoid\"");
+  json = load_scenario("sweep_block_without_touching_pan").json;
+  json["commands"][0]["truth"].erase("avoid");
   EXPECT_SAYS(refusal(json), "mine.json: /commands/0/truth: expected \"avoid\" for sweep");
+  json = heart();
+  json["environment"] = "kitchen";
+  EXPECT_SAYS(refusal(json), "mine.json: /environment: no environment \"kitchen\", expected one of: tabletop");
   json = heart();
   json["commands"][0]["seen"] = false;
   EXPECT_SAYS(refusal(json), "mine.json: /tests/0: expected a scenario with commands for this arm");
@@ -276,13 +289,16 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["train"] = {{"target", json["commands"][0]["truth"]["target"]}};
   EXPECT_SAYS(refusal(json), "mine.json: /train: expected \"as_method_asks\": false");
+  json["train"] = {{"barrier_distances_m", {.21}}};
+  EXPECT_SAYS(refusal(json), "mine.json: /train: unknown member \"barrier_distances_m\"");
+  json = load_scenario("sweep_block_without_touching_pan").json;
   json["train"] = {{"barrier_distances_m", {.21, .05}}};
   EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m/1: expected 0.15 to 0.3, got 0.05");
   json["train"] = {{"barrier_distances_m", Json::array()}};
   EXPECT_SAYS(refusal(json), "mine.json: /train/barrier_distances_m: expected at least one");
   json = heart();
   json["direction"] = "clockwise";
-  EXPECT_SAYS(refusal(json), "mine.json: /direction: expected no direction for another task than rotate");
+  EXPECT_SAYS(refusal(json), "mine.json: /: unknown member \"direction\"");
   json = load_scenario("rotate_block").json;
   json["direction"] = "left";
   EXPECT_SAYS(refusal(json), "mine.json: /direction: expected clockwise or counter_clockwise, got \"left\"");
@@ -325,8 +341,8 @@ TEST(Action, RefusesWhatCannotBeCarriedOut) {
 }
 
 TEST(Scene, HashCoversEveryField) {
-  Scene scene{"heart", "test", "cells", "test", Task::pick_and_place,
-              0,       1,      2,       0,      {{"heart", "red", Role::target, {.4, 0}, 0, 1}}};
+  Scene scene{"heart", "test", "cells", "test", "pick_and_place",
+              0,       1,      2,       0,      {{"heart", "red", role::target, {.4, 0}, 0, 1}}};
   std::set<std::uint64_t> hashes{scene.hash()};
   const auto expect_new = [&](const std::function<void(Scene&)>& change) {
     Scene changed = scene;
@@ -337,14 +353,14 @@ TEST(Scene, HashCoversEveryField) {
   expect_new([](Scene& s) { s.arm = "hard"; });
   expect_new([](Scene& s) { s.layout = "continuous"; });
   expect_new([](Scene& s) { s.split = "dev"; });
-  expect_new([](Scene& s) { s.task = Task::rotate; });
+  expect_new([](Scene& s) { s.task = "rotate"; });
   expect_new([](Scene& s) { s.angle_rad = 1; });
   expect_new([](Scene& s) { s.seed = 7; });
   expect_new([](Scene& s) { s.command = 1; });
   expect_new([](Scene& s) { s.index = 3; });
   expect_new([](Scene& s) { s.objects[0].object_type = "star"; });
   expect_new([](Scene& s) { s.objects[0].texture = "blue"; });
-  expect_new([](Scene& s) { s.objects[0].role = Role::goal; });
+  expect_new([](Scene& s) { s.objects[0].role = role::goal; });
   expect_new([](Scene& s) { s.objects[0].position_m.x += 1e-15; });
   expect_new([](Scene& s) { s.objects[0].position_m.y += 1e-15; });
   expect_new([](Scene& s) { s.objects[0].yaw_rad = 1e-15; });

@@ -32,6 +32,7 @@ class Listener : public Environment {
     stepped_ = true;
     return outcome_(rollout_);
   }
+  Observation observe() override { return {}; }
   Action expert_action() const override { return stepped_ ? second : first; }
   Action expert_action_for(std::uint8_t) const override { return first; }
 
@@ -45,10 +46,10 @@ class Listener : public Environment {
   bool stepped_ = false;
 };
 
-StepResult ended(Failure failure, bool truncated = false) {
+StepResult ended(const Failure& failure, bool recoverable = true) {
   StepResult result;
   result.failure = failure;
-  result.truncated = truncated;
+  result.recoverable = recoverable;
   return result;
 }
 
@@ -66,7 +67,7 @@ double deviation(const std::vector<double>& values) {
 }
 
 TEST(Dart, DisturbsTheExecutedActionByTheProtocolsDeviations) {
-  Listener environment([](int) { return ended(Failure::missed_object); });
+  Listener environment([](int) { return ended("missed_object"); });
   constexpr int n = 1500;
   demonstrations(environment, n);
   ASSERT_EQ(environment.executed.size(), static_cast<std::size_t>(per_clean));
@@ -108,11 +109,10 @@ TEST(Dart, AddsOnePairForEachRolloutThatIsNotDropped) {
       }
     return all.front().steps.size();
   };
-  EXPECT_EQ(pairs([](int) { return ended(Failure::none); }), 1u + per_clean);
-  EXPECT_EQ(pairs([](int) { return ended(Failure::wrong_object); }), 1u + per_clean);
-  for (const Failure dropped : {Failure::left_workspace, Failure::touched_obstacle})
-    EXPECT_EQ(pairs([dropped](int k) { return ended(k == 2 ? dropped : Failure::none); }), 1u + per_clean - 1);
-  EXPECT_EQ(pairs([](int k) { return ended(Failure::missed_object, k > 3); }), 1u + 3);
+  EXPECT_EQ(pairs([](int) { return ended(failure::none); }), 1u + per_clean);
+  EXPECT_EQ(pairs([](int) { return ended("wrong_object"); }), 1u + per_clean);
+  EXPECT_EQ(pairs([](int k) { return ended("left_workspace", k != 2); }), 1u + per_clean - 1);
+  EXPECT_EQ(pairs([](int k) { return ended("missed_object", k <= 3); }), 1u + 3);
 }
 
 }  // namespace

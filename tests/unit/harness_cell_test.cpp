@@ -159,7 +159,7 @@ std::vector<TestScene> tests(const Scenario& scenario, int n) {
 
 int successes(const std::vector<Episode>& episodes) {
   return static_cast<int>(
-      std::count_if(episodes.begin(), episodes.end(), [](const Episode& e) { return e.failure == Failure::none; }));
+      std::count_if(episodes.begin(), episodes.end(), [](const Episode& e) { return e.failure == failure::none; }));
 }
 
 TEST_F(Play, ReferenceRows) {
@@ -170,7 +170,7 @@ TEST_F(Play, ReferenceRows) {
   EXPECT_NEAR(successes(random), 25, 15);
   std::set<Failure> kinds;
   for (const Episode& e : random) kinds.insert(e.failure);
-  EXPECT_EQ(kinds, (std::set<Failure>{Failure::none, Failure::wrong_object})) << "it always takes something";
+  EXPECT_EQ(kinds, (std::set<Failure>{failure::none, "wrong_object"})) << "it always takes something";
   EXPECT_THROW(reference_actor("nothing"), InputError);
 }
 
@@ -205,7 +205,7 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
     EXPECT_EQ(policy.resets, 6);
     for (std::size_t i = 0; i < 6; ++i) {
       const bool bad = i % 3 == 2;
-      EXPECT_EQ(episodes[i].failure, bad ? Failure::method_error : Failure::missed_object) << way;
+      EXPECT_EQ(episodes[i].failure, bad ? failure::method_error : "missed_object") << way;
       EXPECT_EQ(episodes[i].error.empty(), !bad) << way;
       EXPECT_EQ(episodes[i].action.has_value(), !bad);
       EXPECT_EQ(to_json(episodes[i]).at("action").is_null(), bad);
@@ -249,7 +249,7 @@ TEST_F(Play, WithoutAnAbstractionAnEpisodeIsNotPlayed) {
   const auto episodes = evaluate(*environment, scenario->space, scenes, reference_actor("oracle"), [](int) {});
   ASSERT_EQ(episodes.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_EQ(episodes[i].failure, i == 2 ? Failure::abstraction_empty : Failure::none);
+    EXPECT_EQ(episodes[i].failure, i == 2 ? failure::abstraction_empty : failure::none);
   EXPECT_EQ(episodes[2].scene, scenes[2].scene.hash());
   EXPECT_FALSE(episodes[2].action);
 }
@@ -326,7 +326,7 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(demonstrations[i].instruction.utterance, i % 2 ? apple : tomato);
     EXPECT_EQ(shown[i].objects.size(), 3u) << "the named one, a distractor and the pallet";
-    EXPECT_EQ(shown[i].find(Role::target)->object_type, i % 2 ? "apple" : "tomato");
+    EXPECT_EQ(shown[i].find(role::target)->object_type, i % 2 ? "apple" : "tomato");
   }
 }
 

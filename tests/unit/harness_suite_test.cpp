@@ -11,6 +11,7 @@
 #include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
+#include <tabletop/content.hpp>
 
 #include "../engine_under_test.hpp"
 #include "testing.hpp"
@@ -103,13 +104,15 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
     const Scenario s = read_scenario(cell.scenario, "cell");
     ASSERT_EQ(s.tests.size(), 6u);
     EXPECT_EQ(s.tests[0].id, "test");
-    EXPECT_FALSE(s.tests[0].scenes.hard);
-    EXPECT_TRUE(s.tests[1].scenes.hard);
-    EXPECT_EQ(s.tests[1].scenes.later_letters, s.id == "letter") << "the rest is the first arm's";
+    std::vector<tabletop::Content> scenes;
+    for (const Arm& arm : s.tests) scenes.push_back(tabletop::content_of(*arm.scenes));
+    EXPECT_FALSE(scenes[0].hard);
+    EXPECT_TRUE(scenes[1].hard);
+    EXPECT_EQ(scenes[1].later_letters, s.id == "letter") << "the rest is the first arm's";
     EXPECT_EQ(s.tests[4].label_noise, .2);
     EXPECT_EQ(s.tests[5].missed_segment, .1);
     for (std::size_t i = 2; i < 6; ++i)
-      EXPECT_EQ(s.tests[i].scenes.distractors, s.tests[0].scenes.distractors) << "only what is seen differs";
+      EXPECT_EQ(scenes[i].distractors, scenes[0].distractors) << "only what is seen differs";
   }
   Suite twice = robustness;
   twice.arms[1]["arm"] = "hard";

@@ -11,7 +11,7 @@ namespace lgabench {
 namespace {
 
 const FeatureSpace space{"tabletop", {"heart", "star", "pan"}, {"red", "blue"}};
-const Command command{"Bring me the heart.", Task::pick_and_place};
+const Command command{"Bring me the heart.", "pick_and_place"};
 
 // Says yes to hearts and to red; costs a token a question.
 class Yes : public LanguageModel {
@@ -72,9 +72,9 @@ class AskedTest : public testing::Test {
   }
   Json ask_all() {
     Json questions = Json::array();
-    for (const auto& type : space.object_types) questions.push_back(protocol::to_json(Question{{}, {}, type}));
+    for (const auto& type : space.object_types) questions.push_back(protocol::to_json(Question{{}, {}, type}, command));
     for (const auto& texture : space.textures)
-      questions.push_back(protocol::to_json(Question{{}, Question::Group::texture, texture}));
+      questions.push_back(protocol::to_json(Question{{}, Question::Group::texture, texture}, command));
     return say({{"type", "ask"},
                 {"command", protocol::to_json(command)},
                 {"space", protocol::to_json(space)},

@@ -184,7 +184,7 @@ Observation observation(std::uint8_t colour) {
 TEST(Messages, demonstrations_arrive_as_they_were_packed) {
   Selection selection;
   selection.target = {{"heart"}, {"red"}};
-  selection.avoid = FeatureSet{{}, {"blue"}};
+  selection.second = SecondSet{{{}, {"blue"}}, "avoid"};
   selection.provenance = Provenance::cassette;
   selection.source = "a model";
   const std::vector<Demonstration> given{

@@ -539,7 +539,7 @@ TEST(Policies, OfCentroidsTakeTheMiddleOfTheMaskAndTrainNothing) {
 TEST(Policies, OfCentroidsTellTheTargetFromWhatIsToBeAvoided) {
   auto data = demonstrations(10);
   Instruction around_stars = instruction();
-  around_stars.selection.avoid = FeatureSet{{"star"}, {"blue"}};
+  around_stars.selection.second = SecondSet{{{"star"}, {"blue"}}, "avoid"};
   for (Demonstration& d : data) d.instruction = around_stars;
   const Trained centroid = learn({{Picture::mask}}, data, 5, 0, {{"policy", "centroid"}});
   const Action action = centroid.policy->act(scene(60, 100, 0, 30), around_stars);  // of equals the first is taken

@@ -84,6 +84,17 @@ TEST(InfoCommand, ScenarioAndSuite) {
   EXPECT_EQ(Json::parse(lgabench("info q1 --json").out).at("grid").at("engines"), Json({"mujoco"}));
 }
 
+TEST(InfoCommand, AnEnvironmentsTasksAndTheNumbersOfItsActions) {
+  const std::string said = lgabench("info tabletop").out;
+  EXPECT_SAYS(said, "task        sweep");
+  EXPECT_SAYS(said, "second set  avoid, the object to be avoided");
+  EXPECT_SAYS(said, "pose1.y   -0.5 to 0.5 m");
+  const Json json = Json::parse(lgabench("info tabletop --json").out);
+  EXPECT_EQ(json["action"].size(), 12u);
+  EXPECT_EQ(json["action"][2], (Json{{"name", "pose0.qx"}, {"unit", ""}, {"low", -1}, {"high", 1}}));
+  EXPECT_EQ(json["tasks"][0]["id"], "pick_and_place");
+}
+
 TEST(InfoCommand, RefusedAndUnknownNames) {
   const Outcome refused = lgabench("info wrong_sdk" + plugin_path("refused"));
   EXPECT_EQ(refused.status, 4);
@@ -91,7 +102,7 @@ TEST(InfoCommand, RefusedAndUnknownNames) {
   EXPECT_SAYS(refused.err, "SDK \"0.0.9\"");
   const Outcome unknown = lgabench("info nothing_of_that_name");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_SAYS(unknown.err, "no method, engine, suite or scenario \"nothing_of_that_name\"");
+  EXPECT_SAYS(unknown.err, "no method, engine, suite, scenario or environment \"nothing_of_that_name\"");
 }
 
 }  // namespace

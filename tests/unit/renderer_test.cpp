@@ -203,8 +203,9 @@ TEST(Renderer, BadObjectsAreRefused) {
 
 TEST(VisibleObjects, RestOnTheTableAsTheSceneSays) {
   Scene scene;
-  scene.objects = {{"heart", "red", Role::target, {0.4, -0.2}, 0.5, 3},
-                   {"pallet", "wooden", Role::goal, {0.5, 0.3}, 0, 1}};
+  scene.task = "pick_and_place";
+  scene.objects = {{"heart", "red", role::target, {0.4, -0.2}, 0.5, 3},
+                   {"pallet", "wooden", role::goal, {0.5, 0.3}, 0, 1}};
   const std::vector<VisibleObject> objects = visible_objects(scene);
   ASSERT_EQ(objects.size(), 2u);
   EXPECT_EQ(objects[0].object_type, "heart");

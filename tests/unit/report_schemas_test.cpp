@@ -105,7 +105,7 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"selection", "/commands/0/quality/target/textures/recall", 1.5},
       {"training", "/loss", "low"},
       {"training", "/epoch", 0.5},
-      {"episodes", "/failure", "bad_luck"},
+      {"episodes", "/failure", "Bad luck"},
       {"episodes", "/success", true},  // and a failure
       {"episodes", "/action", {1, 2, 3}},
       {"episodes", "/command", -1},
@@ -120,7 +120,7 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"summary", "/rows/0/marks", {"good"}},
       {"summary", "/rows/0/shift", {{"difference", 0.5}}},
       {"summary", "/rows/0/phi", {{"quality", nullptr}}},
-      {"summary", "/rows/0/failures", {{"bad_luck", 1}}},
+      {"summary", "/rows/0/failures", {{"bad_luck", 0}}},
       {"summary", "/rows/0/attribution", {{"policy", 1}}},
       {"summary", "/failed_cells/0/fault", nullptr},
       {"claims", "/claims/0/verdict", "maybe"},

@@ -8,8 +8,10 @@
 #include <tuple>
 
 #include <lgabench/core/hash.hpp>
+#include <tabletop/content.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/sampler.hpp>
+#include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
 namespace {
@@ -28,7 +30,7 @@ SceneRequest train_request(const Selection& selection, const std::string& layout
   return {layout, "train", "train", seed, {selection}};
 }
 
-std::vector<const SceneObject*> of_role(const Scene& scene, Role role) {
+std::vector<const SceneObject*> of_role(const Scene& scene, const Role& role) {
   std::vector<const SceneObject*> found;
   for (const SceneObject& o : scene.objects)
     if (o.role == role) found.push_back(&o);
@@ -41,8 +43,10 @@ std::vector<Polygon> outline(const SceneObject& o) {
 
 bool is_letter(const std::string& type) { return type.compare(0, 7, "letter ") == 0; }
 
-const SceneContent& content_of(const Scenario& s, const Scene& scene) {
-  return scene.arm == "train" ? s.train : s.arm(scene.arm).scenes;
+const Content& content_of(const Scenario& s, const Scene& scene) { return tabletop::content_of(s, scene.arm); }
+
+std::vector<std::string> layouts(const std::string& task) {
+  return lgabench::find_task(find_environment("tabletop"), task).layouts;
 }
 
 const ScenarioCommand& command_of(const Scenario& s, const Scene& scene) {
@@ -59,18 +63,19 @@ bool satisfies(const Scenario& s, const Scene& scene, const SceneObject& object,
 // while it turns, the way of spatula and target to the free zone.
 std::vector<Polygon> swept(const Scene& scene, SceneObject target) {
   const ObjectModel& model = object_model(target.object_type);
-  if (scene.task == Task::pick_and_place) {
-    target.position_m = scene.find(Role::goal)->position_m;
+  if (scene.task == "pick_and_place") {
+    target.position_m = scene.find(role::goal)->position_m;
     return outline(target);
   }
-  if (scene.task == Task::rotate) {
+  if (scene.task == "rotate") {
     Polygon disc;
     for (int i = 0; i < 64; ++i)
       disc.push_back(target.position_m + rotated({model.radius_m, 0}, 2 * 3.14159265358979323846 * i / 64));
     return {disc};
   }
+  if (scene.task != "sweep") return {};
   const double half = std::max(.06, model.radius_m),
-               side = scene.find(Role::obstacle)->position_m.y < target.position_m.y ? 1 : -1;
+               side = scene.find("obstacle")->position_m.y < target.position_m.y ? 1 : -1;
   double back = 0;  // of the target, from its centre
   for (const Polygon& polygon : outline(target))
     for (const Vec2 p : polygon) back = std::max(back, side * (target.position_m.y - p.y));
@@ -82,9 +87,9 @@ std::vector<Polygon> swept(const Scene& scene, SceneObject target) {
 }
 
 void check_geometry(const Scenario& s, const Scene& scene) {
-  const SceneObject* goal = scene.find(Role::goal);
+  const SceneObject* goal = scene.find(role::goal);
   // In fixed places, a few wide pairs are nearer than the margin: two frames, a line and a frame.
-  const bool may_be_near = scene.task == Task::sweep || (scene.task == Task::rotate && scene.layout == "cells");
+  const bool may_be_near = scene.task == "sweep" || (scene.task == "rotate" && scene.layout == "cells");
   const double margin = may_be_near ? .0049 : .0199;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto a = outline(scene.objects[i]);
@@ -94,11 +99,11 @@ void check_geometry(const Scenario& s, const Scene& scene) {
       ASSERT_GE(distance(a, outline(scene.objects[j])), margin) << canonical(to_json(scene));
     ASSERT_TRUE(!goal || &scene.objects[i] == goal || norm(scene.objects[i].position_m - goal->position_m) > .1);
   }
-  const bool barring = !content_of(s, scene).choice.empty() && scene.task == Task::sweep;  // may be touched
-  for (const SceneObject* target : of_role(scene, Role::target)) {
+  const bool barring = !content_of(s, scene).choice.empty() && scene.task == "sweep";  // may be touched
+  for (const SceneObject* target : of_role(scene, role::target)) {
     const auto moved = swept(scene, *target);
     for (const SceneObject& o : scene.objects) {
-      if (&o == target || o.role == Role::goal || (barring && o.role == Role::distractor)) continue;
+      if (moved.empty() || &o == target || o.role == role::goal || (barring && o.role == role::distractor)) continue;
       ASSERT_GE(distance(moved, outline(o)), margin) << canonical(to_json(scene));
     }
   }
@@ -106,43 +111,43 @@ void check_geometry(const Scenario& s, const Scene& scene) {
 
 void check_roles(const Scenario& s, const Scene& scene) {
   const ScenarioCommand& command = command_of(s, scene);
-  const SceneContent& content = content_of(s, scene);
-  const bool sweep = s.task == Task::sweep;
-  const auto targets = of_role(scene, Role::target), obstacles = of_role(scene, Role::obstacle);
+  const Content& content = content_of(s, scene);
+  const auto second = tabletop::find_task(s.task).second();
+  const auto targets = of_role(scene, role::target), seconds = of_role(scene, second ? second->in_scenes : "none");
   std::size_t right = 0;  // of a choice
   for (const std::string& type : content.choice)
-    right += (sweep ? *command.truth.avoid : command.truth.target).contains(type, "red");
-  ASSERT_EQ(targets.size(), content.choice.empty() || sweep ? 1u : right);
-  ASSERT_EQ(obstacles.size(), !sweep ? 0u : content.choice.empty() ? 1u : right);
-  ASSERT_EQ(of_role(scene, Role::goal).size(), s.task == Task::pick_and_place ? 1u : 0u);
-  const SceneObject* goal = scene.find(Role::goal);
+    right += (second ? *command.truth.second : command.truth.target).contains(type, "red");
+  ASSERT_EQ(targets.size(), content.choice.empty() || second ? 1u : right);
+  ASSERT_EQ(seconds.size(), !second ? 0u : content.choice.empty() ? 1u : right);
+  ASSERT_EQ(of_role(scene, role::goal).size(), s.task == "pick_and_place" ? 1u : 0u);
+  const SceneObject* goal = scene.find(role::goal);
   for (const SceneObject* target : targets) {
     ASSERT_TRUE(command.truth.target.contains(target->object_type, target->texture));
     ASSERT_TRUE(!content.target || content.target->contains(target->object_type, target->texture));
   }
-  for (const SceneObject* obstacle : obstacles) {
-    ASSERT_TRUE(command.truth.avoid->contains(obstacle->object_type, obstacle->texture));
-    ASSERT_TRUE(!content.avoid || content.avoid->contains(obstacle->object_type, obstacle->texture));
+  for (const SceneObject* other : seconds) {
+    ASSERT_TRUE(command.truth.second->contains(other->object_type, other->texture));
+    ASSERT_TRUE(!content.second || content.second->contains(other->object_type, other->texture));
   }
   if (goal) {
     ASSERT_EQ(goal->object_type, "pallet");
     ASSERT_EQ(goal->texture, "wooden");
     ASSERT_EQ(goal->yaw_rad, 0);
   }
-  ASSERT_EQ(scene.angle_rad != 0, s.task == Task::rotate);
+  ASSERT_EQ(scene.angle_rad != 0, s.task == "rotate");
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     ASSERT_EQ(scene.objects[i].instance_id, i + 1);
     ASSERT_TRUE(&scene.objects[i] == goal || scene.objects[i].object_type != "pallet");
   }
-  for (const SceneObject* d : of_role(scene, Role::distractor)) {
+  for (const SceneObject* d : of_role(scene, role::distractor)) {
     ASSERT_FALSE(satisfies(s, scene, *d, *targets[0])) << canonical(to_json(scene));
-    ASSERT_FALSE(command.truth.avoid && command.truth.avoid->contains(d->object_type, d->texture));
-    ASSERT_FALSE(scene.split != "train" && s.never_distractor &&
-                 s.never_distractor->contains(d->object_type, d->texture));
+    ASSERT_FALSE(command.truth.second && command.truth.second->contains(d->object_type, d->texture));
+    ASSERT_FALSE(scene.split != "train" && content.never_distractor &&
+                 content.never_distractor->contains(d->object_type, d->texture));
     for (const ScenarioCommand& other : s.commands)
       if (content.outside_all_commands) {
         ASSERT_FALSE(other.truth.target.contains(d->object_type, d->texture));
-        ASSERT_FALSE(other.truth.avoid && other.truth.avoid->contains(d->object_type, d->texture));
+        ASSERT_FALSE(other.truth.second && other.truth.second->contains(d->object_type, d->texture));
       }
     const SceneObject& t = *targets[0];
     ASSERT_TRUE(!content.hard || d->texture == t.texture || d->object_type == t.object_type);
@@ -166,7 +171,7 @@ TEST_P(Scenes, KeepTheProtocol) {
       check_geometry(scenario, test);
       check_roles(scenario, test);
       if (HasFatalFailure()) return;
-      ++distractors[of_role(test, Role::distractor).size()];
+      ++distractors[of_role(test, role::distractor).size()];
       ASSERT_EQ(test.command, commands[static_cast<std::size_t>(i) % commands.size()]);
       if (i % 10 != 0 || &arm != &scenario.tests.front()) continue;
       const Scene train = sample_scene(scenario, train_request(layout), i);
@@ -174,7 +179,8 @@ TEST_P(Scenes, KeepTheProtocol) {
       check_roles(scenario, train);
       if (HasFatalFailure()) return;
       EXPECT_TRUE(command_of(scenario, train).seen);
-      EXPECT_EQ(of_role(train, Role::distractor).size(), static_cast<std::size_t>(scenario.train.distractors.second));
+      EXPECT_EQ(of_role(train, role::distractor).size(),
+                static_cast<std::size_t>(tabletop::content_of(*scenario.train).distractors.second));
       const Scene dev = sample_scene(scenario, {layout, "dev", arm.id, 0}, i);
       const Scene other_seed = sample_scene(scenario, test_request(layout, 1, arm.id), i);
       for (const Scene& scene : {test, train, dev, other_seed}) {
@@ -182,14 +188,14 @@ TEST_P(Scenes, KeepTheProtocol) {
         contents.insert(canonical(to_json(scene)["objects"]));
       }
     }
-    const auto [fewest, most] = arm.scenes.distractors;
-    if (!arm.scenes.choice.empty()) continue;
+    const auto [fewest, most] = tabletop::content_of(*arm.scenes).distractors;
+    if (!tabletop::content_of(*arm.scenes).choice.empty()) continue;
     if (fewest == most) {
       EXPECT_EQ(distractors[static_cast<std::size_t>(most)], many) << arm.id;
       continue;
     }
     // In `released`, a target in the second place leaves one place for distractors.
-    const int one = layout == "released" && scenario.task != Task::sweep ? 3 * many / 4 : many / 2;
+    const int one = layout == "released" && scenario.task != "sweep" ? 3 * many / 4 : many / 2;
     EXPECT_NEAR(distractors[1], one, 250);
     EXPECT_EQ(distractors[1] + distractors[2], many);
   }
@@ -212,20 +218,20 @@ TEST_P(PairedScenes, DifferInTheirArmAlone) {
       const Scene other = scene(arm);
       const bool more = std::string(arm) != "texture";
       ASSERT_EQ(other.objects.size(), control.objects.size() + more);
-      for (const Role role : {Role::target, Role::obstacle, Role::goal}) {
-        const SceneObject *a = control.find(role), *b = other.find(role);
+      for (const Role which : {role::target, "obstacle", role::goal}) {
+        const SceneObject *a = control.find(which), *b = other.find(which);
         ASSERT_EQ(a == nullptr, b == nullptr);
         if (!a) continue;
         ASSERT_EQ(a->object_type, b->object_type);
         ASSERT_EQ(a->position_m.x, b->position_m.x) << arm << " " << i;
         ASSERT_EQ(a->position_m.y, b->position_m.y);
         ASSERT_EQ(a->yaw_rad, b->yaw_rad);
-        if (more || role == Role::goal) {
+        if (more || which == role::goal) {
           ASSERT_EQ(a->texture, b->texture);
         }
-        if (std::string(arm) == "texture" && role == Role::target) textures.insert(b->texture);
+        if (std::string(arm) == "texture" && which == role::target) textures.insert(b->texture);
       }
-      if (std::string(arm) == "hard") hard.insert(other.find(Role::distractor)->texture);
+      if (std::string(arm) == "hard") hard.insert(other.find(role::distractor)->texture);
     }
   }
   EXPECT_EQ(textures, (std::set<std::string>{"pink", "green", "yellow", "wooden", "tiger"}));
@@ -238,7 +244,7 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
   std::map<std::size_t, int> scenes;
   for (int i = 0; i < many; ++i) {
     const Scene scene = sample_scene(scenario, test_request(layout, 5, scenario.tests.front().id), i);
-    const SceneObject& target = *scene.find(Role::target);
+    const SceneObject& target = *scene.find(role::target);
     ++scenes[scene.objects.size()];
     ++target_ids[{scene.objects.size(), target.instance_id}];
     ++places[{target.position_m.x, target.position_m.y}];
@@ -255,7 +261,7 @@ TEST_P(Scenes, SayNothingByIdOrPlace) {
   if (layout == "continuous") {
     EXPECT_EQ(places.size(), many);
   } else {
-    EXPECT_EQ(places.size(), layout == "released" && scenario.task != Task::sweep ? 2u : 4u);
+    EXPECT_EQ(places.size(), layout == "released" && scenario.task != "sweep" ? 2u : 4u);
     for (const auto& [place, count] : places) EXPECT_NEAR(count, many / static_cast<double>(places.size()), 200);
   }
 }
@@ -306,12 +312,12 @@ TEST(Sampler, TheReleasedTruthChangesTheScenesOfThreeScenarios) {
 
 TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
   const Scenario s = load_scenario("sweep_block_without_touching_pan");
-  for (const std::string& layout : layouts(Task::sweep)) {
+  for (const std::string& layout : layouts("sweep")) {
     const double shift = layout == "continuous" ? .03 : 1e-9;
     std::map<std::tuple<bool, bool, bool>, int> seen;  // target's row, target's side, obstacle's side
     for (int i = 0; i < many; ++i) {
       const Scene scene = sample_scene(s, test_request(layout), i);
-      const SceneObject &target = *scene.find(Role::target), &obstacle = *scene.find(Role::obstacle);
+      const SceneObject &target = *scene.find(role::target), &obstacle = *scene.find("obstacle");
       const Vec2 at = target.position_m;
       const bool low_row = at.x < .5, left = at.y < 0, barred_left = obstacle.position_m.y < at.y;
       const double row = low_row ? .375 : .625;
@@ -320,7 +326,7 @@ TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
       EXPECT_EQ(obstacle.position_m.x, row);
       EXPECT_NEAR(obstacle.position_m.y, at.y + (barred_left ? -.21 : .21), 1e-12);
       EXPECT_EQ(target.yaw_rad, 0);
-      for (const SceneObject* d : of_role(scene, Role::distractor)) {
+      for (const SceneObject* d : of_role(scene, role::distractor)) {
         EXPECT_EQ(d->position_m.x, 1 - row);
         EXPECT_EQ(std::abs(d->position_m.y), .16);
       }
@@ -334,17 +340,17 @@ TEST(Sampler, SweepIsBarredOnOneSideAtRandom) {
 TEST(Sampler, SweepTakesItsObstacleFromTheSelection) {
   const Scenario s = load_scenario("sweep_block_without_touching_pan");
   Selection wrong = s.commands[0].truth;
-  wrong.avoid = FeatureSet{{"frame", "star"}, {"red"}};
+  wrong.second = SecondSet{{{"frame", "star"}, {"red"}}, "avoid"};
   std::set<std::string> obstacles;
   for (int i = 0; i < 200; ++i) {
     const Scene train = sample_scene(s, train_request(wrong, "cells"), i);
-    obstacles.insert(train.find(Role::obstacle)->object_type);
-    for (const SceneObject* d : of_role(train, Role::distractor))
-      EXPECT_FALSE(wrong.avoid->contains(d->object_type, d->texture));
-    EXPECT_EQ(sample_scene(s, test_request("cells"), i).find(Role::obstacle)->object_type, "pan");
+    obstacles.insert(train.find("obstacle")->object_type);
+    for (const SceneObject* d : of_role(train, role::distractor))
+      EXPECT_FALSE(wrong.second->contains(d->object_type, d->texture));
+    EXPECT_EQ(sample_scene(s, test_request("cells"), i).find("obstacle")->object_type, "pan");
   }
   EXPECT_EQ(obstacles, (std::set<std::string>{"frame", "star"}));
-  wrong.avoid.reset();
+  wrong.second.reset();
   EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
   wrong = s.commands[0].truth;
   wrong.target.object_types = {"frame"};  // wider than the spatula
@@ -362,12 +368,12 @@ TEST(Sampler, TrainingDistractorsOfSeveralCommandsAreOutsideThemAll) {
     std::set<std::string> distractors;
     for (int i = 0; i < many; ++i) {
       const Scene scene = sample_scene(s, train_request("cells"), i);
-      ASSERT_EQ(of_role(scene, Role::distractor).size(), 1u);
-      distractors.insert(scene.find(Role::distractor)->object_type);
+      ASSERT_EQ(of_role(scene, role::distractor).size(), 1u);
+      distractors.insert(scene.find(role::distractor)->object_type);
       if (i >= 100) continue;
       Selection other;
       other.target = {{"heart"}, {"red"}};
-      other.avoid = FeatureSet{{"mug"}, {"red"}};
+      other.second = SecondSet{{{"mug"}, {"red"}}, "avoid"};
       EXPECT_EQ(sample_scene(s, {"cells", "train", "train", 0, {other, other, other}}, i).hash(), scene.hash());
     }
     for (const std::string& type : types) EXPECT_EQ(distractors.count(type), 0u) << type;
@@ -377,24 +383,24 @@ TEST(Sampler, TrainingDistractorsOfSeveralCommandsAreOutsideThemAll) {
 
 TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
   const Scenario s = load_scenario("q3_utensil");
-  const auto distance = [](const Scene& scene, Role role) {
-    return std::abs(scene.find(role)->position_m.y - scene.find(Role::target)->position_m.y);
+  const auto distance = [](const Scene& scene, const Role& role) {
+    return std::abs(scene.find(role)->position_m.y - scene.find(role::target)->position_m.y);
   };
-  for (const std::string& layout : layouts(Task::sweep)) {
+  for (const std::string& layout : layouts("sweep")) {
     int near = 0;
     for (int i = 0; i < many; ++i) {
       const Scene train = sample_scene(s, train_request(layout), i);
-      const bool is_near = distance(train, Role::obstacle) < .2;
-      EXPECT_NEAR(distance(train, Role::obstacle), is_near ? .17 : .25, 1e-12);
-      EXPECT_EQ(train.find(Role::distractor)->position_m.x > .5, train.find(Role::obstacle)->position_m.x < .5);
-      EXPECT_EQ(std::abs(train.find(Role::distractor)->position_m.y), .16);
+      const bool is_near = distance(train, "obstacle") < .2;
+      EXPECT_NEAR(distance(train, "obstacle"), is_near ? .17 : .25, 1e-12);
+      EXPECT_EQ(train.find(role::distractor)->position_m.x > .5, train.find("obstacle")->position_m.x < .5);
+      EXPECT_EQ(std::abs(train.find(role::distractor)->position_m.y), .16);
       near += is_near;
 
       const Scene seen = sample_scene(s, test_request(layout, 0, "seen"), i),
                   varied = sample_scene(s, test_request(layout, 0, "seen_varied"), i);
-      EXPECT_NEAR(distance(seen, Role::obstacle), .21, 1e-12);
-      EXPECT_NEAR(distance(varied, Role::obstacle), distance(varied, Role::obstacle) < .2 ? .17 : .25, 1e-12);
-      EXPECT_NEAR(distance(varied, Role::distractor), distance(varied, Role::obstacle), 1e-12) << "opposite";
+      EXPECT_NEAR(distance(seen, "obstacle"), .21, 1e-12);
+      EXPECT_NEAR(distance(varied, "obstacle"), distance(varied, "obstacle") < .2 ? .17 : .25, 1e-12);
+      EXPECT_NEAR(distance(varied, role::distractor), distance(varied, "obstacle"), 1e-12) << "opposite";
       ASSERT_EQ(seen.objects.size(), varied.objects.size());
       for (std::size_t k = 0; k < seen.objects.size(); ++k) {  // scene by scene the same but for the distance
         EXPECT_EQ(seen.objects[k].object_type, varied.objects[k].object_type);
@@ -410,9 +416,10 @@ TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
 TEST(Sampler, ClockwiseTurnsTheOtherWayAndChangesNothingElse) {
   const Scenario left = load_scenario("rotate_block");
   Json json = left.json;
-  EXPECT_EQ(left.angle_deg, 120);
+  const double turn = sample_scene(left, test_request("cells"), 0).angle_rad;
+  EXPECT_NEAR(turn, 120 * 3.14159265358979323846 / 180, 1e-12);
   json["direction"] = "counter_clockwise";
-  EXPECT_EQ(read_scenario(json, "test").angle_deg, 120);
+  EXPECT_EQ(sample_scene(read_scenario(json, "test"), test_request("cells"), 0).angle_rad, turn);
   json["direction"] = "clockwise";
   const Scenario right = read_scenario(json, "test");
   for (int i = 0; i < 20; ++i) {
@@ -433,7 +440,7 @@ Selection hearts_and_stars(const Scenario& s) {
 
 TEST(Sampler, TestScenesDoNotDependOnTheSelection) {
   const Scenario s = load_scenario("heart");
-  for (const std::string& layout : layouts(Task::pick_and_place))
+  for (const std::string& layout : layouts("pick_and_place"))
     for (int i = 0; i < 100; ++i) {
       SceneRequest request = test_request(layout);
       const std::uint64_t without = sample_scene(s, request, i).hash();
@@ -447,7 +454,7 @@ TEST(Sampler, SelectionsShareTheLayout) {
   int same = 0;
   for (int i = 0; i < 200; ++i) {
     const auto target = [&](const Selection& selection, const char* layout) {
-      return sample_scene(s, train_request(selection, layout), i).find(Role::target)->position_m;
+      return sample_scene(s, train_request(selection, layout), i).find(role::target)->position_m;
     };
     const Vec2 a = target(s.commands[0].truth, "cells"), b = target(hearts_and_stars(s), "cells");
     EXPECT_EQ(a.x, b.x);
@@ -464,7 +471,7 @@ TEST(Sampler, TrainingTargetsAreUniformAndDistractorsOutsideTheSelection) {
   std::map<std::string, int> distractor_types;
   for (int i = 0; i < many; ++i) {
     const Scene scene = sample_scene(s, train_request(selection, "cells"), i);
-    const SceneObject &target = *scene.find(Role::target), &distractor = *scene.find(Role::distractor);
+    const SceneObject &target = *scene.find(role::target), &distractor = *scene.find(role::distractor);
     ++targets[{target.object_type, target.texture}];
     ++distractor_types[distractor.object_type];
     EXPECT_FALSE(selection.target.contains(distractor.object_type, distractor.texture));
@@ -489,8 +496,8 @@ TEST(Sampler, LaterLettersStandBesideTheEarliest) {
   int with_later = 0, distractors = 0;
   for (int i = 0; i < many; ++i) {
     const Scene scene = sample_scene(s, test_request("cells"), i);
-    const std::string& target = scene.find(Role::target)->object_type;
-    for (const SceneObject* d : of_role(scene, Role::distractor)) {
+    const std::string& target = scene.find(role::target)->object_type;
+    for (const SceneObject* d : of_role(scene, role::distractor)) {
       EXPECT_TRUE(!is_letter(d->object_type) || d->object_type > target);
       distractors += target != "letter V";
       with_later += is_letter(d->object_type);
@@ -504,8 +511,8 @@ TEST(Sampler, ReleasedShowsSmallTypesOnly) {
   std::set<std::string> targets;
   for (int i = 0; i < 200; ++i) {
     const Scene scene = sample_scene(s, test_request("released"), i);
-    targets.insert(scene.find(Role::target)->object_type);
-    for (const SceneObject* d : of_role(scene, Role::distractor))
+    targets.insert(scene.find(role::target)->object_type);
+    for (const SceneObject* d : of_role(scene, role::distractor))
       EXPECT_LE(std::max(object_model(d->object_type).size_m.x, object_model(d->object_type).size_m.y), .17 + 1e-9);
   }
   EXPECT_EQ(targets, (std::set<std::string>{"bowl", "container"}));

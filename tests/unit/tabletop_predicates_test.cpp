@@ -5,13 +5,15 @@
 #include <limits>
 
 #include <lgabench/core/error.hpp>
+#include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
-#include <tabletop/predicates.hpp>
+#include <tabletop/oracle.hpp>
+#include <tabletop/tasks/sweep.hpp>
 
 namespace lgabench::tabletop {
 namespace {
 
-SceneObject object(const std::string& type, Role role, Vec2 position, std::uint8_t id) {
+SceneObject object(const std::string& type, const Role& role, Vec2 position, std::uint8_t id) {
   SceneObject o;
   o.object_type = type;
   o.texture = "red";
@@ -24,16 +26,17 @@ SceneObject object(const std::string& type, Role role, Vec2 position, std::uint8
 // 0: distractor, 1: target, 2: the pallet.
 Scene bring() {
   Scene scene;
-  scene.objects = {object("block", Role::distractor, {.4, -.3}, 1), object("heart", Role::target, {.6, -.1}, 2),
-                   object("pallet", Role::goal, {.5, .3}, 3)};
+  scene.task = "pick_and_place";
+  scene.objects = {object("block", role::distractor, {.4, -.3}, 1), object("heart", role::target, {.6, -.1}, 2),
+                   object("pallet", role::goal, {.5, .3}, 3)};
   return scene;
 }
 
 Scene turn(double degrees) {
   Scene scene;
-  scene.task = Task::rotate;
+  scene.task = "rotate";
   scene.angle_rad = degrees * pi / 180;
-  scene.objects = {object("block", Role::distractor, {.4, -.3}, 1), object("block", Role::target, {.6, -.1}, 2)};
+  scene.objects = {object("block", role::distractor, {.4, -.3}, 1), object("block", role::target, {.6, -.1}, 2)};
   scene.objects[1].yaw_rad = 1;
   return scene;
 }
@@ -57,8 +60,8 @@ TEST(PickAndPlace, SucceedsWithinTheRadiusOfTheGoal) {
   const Scene scene = bring();
   for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
     const auto beside = [&](double r) { return Vec2{.5, .3} + rotated({r, 0}, angle); };
-    EXPECT_EQ(judge_moved(scene, 1, beside(.0999), .7, took_target), Failure::none);
-    EXPECT_EQ(judge_moved(scene, 1, beside(.1001), .7, took_target), Failure::bad_placement);
+    EXPECT_EQ(judge_moved(scene, 1, beside(.0999), .7, took_target), failure::none);
+    EXPECT_EQ(judge_moved(scene, 1, beside(.1001), .7, took_target), "bad_placement");
   }
 }
 
@@ -67,36 +70,36 @@ TEST(PickAndPlace, ADistractorOnTheGoalSpoilsIt) {
   auto poses = start(scene);
   poses[1].position_m = {.5, .3, .035};
   poses[0].position_m = {.5, .3 - .0999, .035};
-  EXPECT_EQ(judge(scene, poses, took_target), Failure::bad_placement);
+  EXPECT_EQ(judge(scene, poses, took_target), "bad_placement");
   poses[0].position_m = {.5, .3 - .1001, 0};
-  EXPECT_EQ(judge(scene, poses, took_target), Failure::none);
+  EXPECT_EQ(judge(scene, poses, took_target), failure::none);
 }
 
 TEST(PickAndPlace, SaysWhatWentWrong) {
   const Scene scene = bring();
-  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
-  EXPECT_EQ(judge_moved(scene, 0, {.5, .3}, 0, took_distractor), Failure::wrong_object);
-  EXPECT_EQ(judge_moved(scene, 1, {.7, .3}, 0, took_target), Failure::bad_placement);
-  EXPECT_EQ(judge_moved(scene, 1, {.7, .51}, 0, took_target), Failure::left_workspace);
-  EXPECT_EQ(judge_moved(scene, 0, {.24, 0}, 0, took_distractor), Failure::left_workspace);
-  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, {1, false}), Failure::truncated);
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), "missed_object");
+  EXPECT_EQ(judge_moved(scene, 0, {.5, .3}, 0, took_distractor), "wrong_object");
+  EXPECT_EQ(judge_moved(scene, 1, {.7, .3}, 0, took_target), "bad_placement");
+  EXPECT_EQ(judge_moved(scene, 1, {.7, .51}, 0, took_target), "left_workspace");
+  EXPECT_EQ(judge_moved(scene, 0, {.24, 0}, 0, took_distractor), "left_workspace");
+  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, {1, false}), failure::truncated);
 }
 
 TEST(PickAndPlace, IsJudgedByTheStateNotByTheLastMotion) {
-  EXPECT_EQ(judge_moved(bring(), 1, {.5, .3}, 0, took_nothing), Failure::none);
+  EXPECT_EQ(judge_moved(bring(), 1, {.5, .3}, 0, took_nothing), failure::none);
 }
 
 TEST(PickAndPlace, NeedsATargetAndAGoal) {
   Scene scene = bring();
-  scene.objects[2].role = Role::distractor;
+  scene.objects[2].role = role::distractor;
   EXPECT_THROW(judge(scene, start(scene), took_target), InputError);
   scene = bring();
-  scene.objects[1].role = Role::distractor;
+  scene.objects[1].role = role::distractor;
   EXPECT_THROW(judge(scene, start(scene), took_target), InputError);
 }
 
 TEST(PickAndPlace, ACentreIsTheMiddleAlsoOfAToppledObject) {
-  const SceneObject block = object("block", Role::target, {}, 1);
+  const SceneObject block = object("block", role::target, {}, 1);
   const double height = object_model("block").height_m;
   const Pose on_its_side{{.5, .3, .035}, {0, std::sin(pi / 4), 0, std::cos(pi / 4)}};  // a quarter turn about y
   EXPECT_NEAR(centre_of(block, on_its_side).x, .5 + height / 2, 1e-12);
@@ -106,58 +109,58 @@ TEST(PickAndPlace, ACentreIsTheMiddleAlsoOfAToppledObject) {
 // Paper, Q3: "a fruit" is right with the apple and with the tomato.
 TEST(PickAndPlace, AnyOfSeveralTargetsIsRight) {
   Scene scene = bring();
-  scene.objects.push_back(object("star", Role::target, {.4, 0}, 4));
+  scene.objects.push_back(object("star", role::target, {.4, 0}, 4));
   const Motion took_star{3, true};
-  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, took_target), Failure::none);
-  EXPECT_EQ(judge_moved(scene, 3, {.5, .3}, 0, took_star), Failure::none);
-  EXPECT_EQ(judge_moved(scene, 3, {.7, .3}, 0, took_star), Failure::bad_placement);
-  EXPECT_EQ(judge_moved(scene, 0, {.5, .1}, 0, took_distractor), Failure::wrong_object);
-  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
+  EXPECT_EQ(judge_moved(scene, 1, {.5, .3}, 0, took_target), failure::none);
+  EXPECT_EQ(judge_moved(scene, 3, {.5, .3}, 0, took_star), failure::none);
+  EXPECT_EQ(judge_moved(scene, 3, {.7, .3}, 0, took_star), "bad_placement");
+  EXPECT_EQ(judge_moved(scene, 0, {.5, .1}, 0, took_distractor), "wrong_object");
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), "missed_object");
 }
 
 TEST(Rotate, AnyOfSeveralTargetsIsRight) {
   Scene scene = turn(120);
-  scene.objects.push_back(object("bowl", Role::target, {.4, .2}, 3));
+  scene.objects.push_back(object("bowl", role::target, {.4, .2}, 3));
   const double turned = 120 * pi / 180;
-  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned, {2, true}), Failure::none);
-  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1}, 1 + turned, took_target), Failure::none);
-  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned + 1, {2, true}), Failure::bad_angle);
-  EXPECT_EQ(judge_moved(scene, 2, {.4, .35}, turned, {2, true}), Failure::bad_placement);
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned, {2, true}), failure::none);
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1}, 1 + turned, took_target), failure::none);
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .2}, turned + 1, {2, true}), "bad_angle");
+  EXPECT_EQ(judge_moved(scene, 2, {.4, .35}, turned, {2, true}), "bad_placement");
 }
 
 TEST(Rotate, SucceedsWithin15DegreesOfTheTrueAngle) {
   for (const double degrees : {120.0, 135.0, -120.0, 180.0}) {
     const Scene scene = turn(degrees);
     const auto after = [&](double d) { return judge_moved(scene, 1, {.6, -.1}, 1 + d * pi / 180, took_target); };
-    EXPECT_EQ(after(degrees), Failure::none);
-    EXPECT_EQ(after(degrees + 14.9), Failure::none);
-    EXPECT_EQ(after(degrees - 14.9), Failure::none);
-    EXPECT_EQ(after(degrees + 15.1), Failure::bad_angle);
-    EXPECT_EQ(after(degrees - 15.1), Failure::bad_angle);
-    EXPECT_EQ(after(degrees - 90), Failure::bad_angle) << "a square block's symmetry does not count";
-    EXPECT_EQ(after(0), Failure::bad_angle);
+    EXPECT_EQ(after(degrees), failure::none);
+    EXPECT_EQ(after(degrees + 14.9), failure::none);
+    EXPECT_EQ(after(degrees - 14.9), failure::none);
+    EXPECT_EQ(after(degrees + 15.1), "bad_angle");
+    EXPECT_EQ(after(degrees - 15.1), "bad_angle");
+    EXPECT_EQ(after(degrees - 90), "bad_angle") << "a square block's symmetry does not count";
+    EXPECT_EQ(after(0), "bad_angle");
   }
 }
 
 TEST(Rotate, TheTargetStaysAndDistractorsAreNotDisturbed) {
   const Scene scene = turn(120);
   const double yaw = 1 + 120 * pi / 180;
-  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .0999}, yaw, took_target), Failure::none);
-  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .1001}, yaw, took_target), Failure::bad_placement);
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .0999}, yaw, took_target), failure::none);
+  EXPECT_EQ(judge_moved(scene, 1, {.6, -.1 + .1001}, yaw, took_target), "bad_placement");
   auto poses = start(scene);
   poses[1].rotation = from_yaw(yaw);
   poses[0].position_m.x += .0199;
-  EXPECT_EQ(judge(scene, poses, took_target), Failure::none);
+  EXPECT_EQ(judge(scene, poses, took_target), failure::none);
   poses[0].position_m.x += .0002;
-  EXPECT_EQ(judge(scene, poses, took_target), Failure::bad_placement);
+  EXPECT_EQ(judge(scene, poses, took_target), "bad_placement");
 }
 
 // 0: distractor, 1: target, 2: obstacle.
 Scene sweep(const std::string& barred = "pan") {
   Scene scene;
-  scene.task = Task::sweep;
-  scene.objects = {object("heart", Role::distractor, {.6, .16}, 1), object("block", Role::target, {.375, .05}, 2),
-                   object(barred, Role::obstacle, {.375, -.16}, 3)};
+  scene.task = "sweep";
+  scene.objects = {object("heart", role::distractor, {.6, .16}, 1), object("block", role::target, {.375, .05}, 2),
+                   object(barred, "obstacle", {.375, -.16}, 3)};
   scene.objects[2].yaw_rad = pi / 2;
   return scene;
 }
@@ -166,21 +169,21 @@ TEST(Sweep, SucceedsInEitherZone) {
   const Scene scene = sweep();
   for (const double side : {-1.0, 1.0}) {
     const auto at = [&](double y) { return judge_moved(scene, 1, {.3, side * y}, 1, took_target); };
-    EXPECT_EQ(at(.3399), Failure::missed_zone);
-    EXPECT_EQ(at(.3401), Failure::none);
-    EXPECT_EQ(at(.4799), Failure::none);
-    EXPECT_EQ(at(.4801), Failure::missed_zone);
-    EXPECT_EQ(at(.51), Failure::left_workspace);
+    EXPECT_EQ(at(.3399), "missed_zone");
+    EXPECT_EQ(at(.3401), failure::none);
+    EXPECT_EQ(at(.4799), failure::none);
+    EXPECT_EQ(at(.4801), "missed_zone");
+    EXPECT_EQ(at(.51), "left_workspace");
   }
 }
 
 TEST(Sweep, SaysWhatWentWrong) {
   const Scene scene = sweep();
-  EXPECT_EQ(judge(scene, start(scene), took_nothing), Failure::missed_object);
-  EXPECT_EQ(judge(scene, start(scene), took_distractor), Failure::wrong_object);
-  EXPECT_EQ(judge(scene, start(scene), {2, true, true}), Failure::touched_obstacle);
-  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, true, true}), Failure::touched_obstacle);
-  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, false, true}), Failure::truncated);
+  EXPECT_EQ(judge(scene, start(scene), took_nothing), "missed_object");
+  EXPECT_EQ(judge(scene, start(scene), took_distractor), "wrong_object");
+  EXPECT_EQ(judge(scene, start(scene), {2, true, "touched_obstacle"}), "touched_obstacle");
+  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, true, "touched_obstacle"}), "touched_obstacle");
+  EXPECT_EQ(judge_moved(scene, 1, {.375, .41}, 0, {1, false, "touched_obstacle"}), failure::truncated);
 }
 
 TEST(Sweep, TouchingIsContactOrOverlapSeenFromAbove) {
@@ -207,7 +210,7 @@ TEST(Sweep, TouchingIsContactOrOverlapSeenFromAbove) {
 
 TEST(Sweep, NoneOfSeveralObstaclesMayBeTouchedAndADistractorMay) {
   Scene scene = sweep("fork");
-  scene.objects.push_back(object("spoon", Role::obstacle, {.375, -.24}, 4));
+  scene.objects.push_back(object("spoon", "obstacle", {.375, -.24}, 4));
   scene.objects[3].yaw_rad = pi / 2;
   const auto poses = start(scene);
   const auto touches = [&](const std::vector<Contact>& contacts, const std::vector<Polygon>& spatula = {}) {
@@ -222,7 +225,7 @@ TEST(Sweep, NoneOfSeveralObstaclesMayBeTouchedAndADistractorMay) {
 
 TEST(Sweep, NeedsATargetAndAnObstacle) {
   Scene scene = sweep();
-  scene.objects[2].role = Role::distractor;
+  scene.objects[2].role = role::distractor;
   EXPECT_THROW(touches_obstacle(scene, start(scene), {}, {}), InputError);
 }
 

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
-#include <tabletop/predicates.hpp>
+#include <tabletop/oracle.hpp>
 
 #include "../tabletop_bench.hpp"
 
@@ -15,10 +16,10 @@ namespace {
 // 0: distractor (id 1), 1: obstacle (id 2), 2: target (id 3); the right side, y > 0, is free.
 Scene sweep(const std::string& type = "block", const std::string& obstacle = "pan") {
   Scene scene;
-  scene.task = Task::sweep;
-  scene.objects = {object("heart", "blue", Role::distractor, {.625, .16}, 1),
-                   object(obstacle, "green", Role::obstacle, {.375, -.16}, 2),
-                   object(type, "red", Role::target, {.375, .05}, 3)};
+  scene.task = "sweep";
+  scene.objects = {object("heart", "blue", role::distractor, {.625, .16}, 1),
+                   object(obstacle, "green", "obstacle", {.375, -.16}, 2),
+                   object(type, "red", role::target, {.375, .05}, 3)};
   scene.objects[1].yaw_rad = pi / 2;
   return scene;
 }
@@ -26,7 +27,7 @@ Scene sweep(const std::string& type = "block", const std::string& obstacle = "pa
 TEST(Sweep, TheOracleBringsTheCentreToTheMiddleOfTheFreeZone) {
   for (const std::string type : {"block", "small block", "shorter block", "L-shaped block"}) {
     const Episode episode = play(environment(), sweep(type));
-    EXPECT_TRUE(episode.result.is_success) << type << ": " << to_string(episode.result.failure);
+    EXPECT_TRUE(episode.result.is_success) << type << ": " << episode.result.failure;
     const Vec2 reached = centre_of(sweep(type).objects[2], bench().world->pose(2));
     EXPECT_NEAR(reached.y, .41, .03) << type;
     EXPECT_NEAR(reached.x, .375, .03) << type;
@@ -41,11 +42,11 @@ TEST(Sweep, AUtensilInTheFreeWayIsPushedAlongAndStaysOnTheTable) {
     for (const std::string utensil : {"fork", "spoon", "knife"})
       for (const double side : {-1., 1.}) {
         Scene scene = sweep(type, "line");
-        scene.objects[0] = object(utensil, "blue", Role::distractor, {.375, .05 + side * .21}, 1);
+        scene.objects[0] = object(utensil, "blue", role::distractor, {.375, .05 + side * .21}, 1);
         scene.objects[0].yaw_rad = pi / 2;
         scene.objects[1].position_m = {.375, .05 - side * .21};
         const StepResult result = play(*household.environment, scene).result;
-        EXPECT_TRUE(result.is_success) << type << ", " << utensil << ", " << side << ": " << to_string(result.failure);
+        EXPECT_TRUE(result.is_success) << type << ", " << utensil << ", " << side << ": " << result.failure;
         const Vec2 reached = centre_of(scene.objects[0], household.world->pose(0));
         EXPECT_GT(std::abs(reached.y - .05), .22) << utensil << " was not pushed by the " << type;
       }
@@ -56,31 +57,31 @@ TEST(Sweep, FailuresAreTyped) {
     environment().reset(scene);
     return environment().step(from_to(from, to)).failure;
   };
-  EXPECT_EQ(outcome(sweep(), {.375, -.03}, {.375, .2}), Failure::missed_zone);
-  EXPECT_EQ(outcome(sweep(), {.5, -.03}, {.5, .3}), Failure::missed_object);
-  EXPECT_EQ(outcome(sweep(), {.625, .05}, {.625, .37}), Failure::wrong_object);
-  EXPECT_EQ(outcome(sweep(), {.375, -.01}, {.375, .5}), Failure::left_workspace);
+  EXPECT_EQ(outcome(sweep(), {.375, -.03}, {.375, .2}), "missed_zone");
+  EXPECT_EQ(outcome(sweep(), {.5, -.03}, {.5, .3}), "missed_object");
+  EXPECT_EQ(outcome(sweep(), {.625, .05}, {.625, .37}), "wrong_object");
+  EXPECT_EQ(outcome(sweep(), {.375, -.01}, {.375, .5}), "left_workspace");
   for (const std::string obstacle : {"pan", "line"}) {
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, -.15}), Failure::touched_obstacle) << obstacle;
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, -.16}, {.375, .37}), Failure::touched_obstacle)
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, -.15}), "touched_obstacle") << obstacle;
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, -.16}, {.375, .37}), "touched_obstacle")
         << obstacle << ": the spatula comes down on it";
-    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, .02}), Failure::missed_zone) << obstacle;
+    EXPECT_EQ(outcome(sweep("block", obstacle), {.375, .13}, {.375, .02}), "missed_zone") << obstacle;
   }
 }
 
 TEST(Sweep, ATouchIsRememberedAfterASecondAction) {
   environment().reset(sweep());
-  EXPECT_EQ(environment().step(from_to({.375, -.16}, {.375, -.16})).failure, Failure::touched_obstacle);
-  EXPECT_EQ(environment().step(environment().expert_action()).failure, Failure::touched_obstacle);
+  EXPECT_EQ(environment().step(from_to({.375, -.16}, {.375, -.16})).failure, "touched_obstacle");
+  EXPECT_EQ(environment().step(environment().expert_action()).failure, "touched_obstacle");
   environment().reset(sweep());
-  EXPECT_EQ(environment().step(from_to({.375, -.03}, {.375, .1})).failure, Failure::missed_zone);
+  EXPECT_EQ(environment().step(from_to({.375, -.03}, {.375, .1})).failure, "missed_zone");
   EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
 }
 
 TEST(Sweep, ZonesAreSeenInTheColoursOnly) {
   Scene scene = sweep();
   const Observation zones = environment().reset(scene);
-  scene.task = Task::rotate;
+  scene.task = "rotate";
   const Observation plain = environment().reset(scene);
   EXPECT_EQ(zones.ids, plain.ids);
   EXPECT_EQ(zones.instances.size(), 3u);

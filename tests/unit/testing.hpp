@@ -7,6 +7,7 @@
 #include <string>
 #include <system_error>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 
 namespace lgabench {
@@ -34,6 +35,11 @@ inline testing::AssertionResult says(const std::string& text, const std::string&
 // Macros, so that a failure names the line of the test.
 #define EXPECT_SAYS(text, part) EXPECT_TRUE(says(text, part))
 #define EXPECT_SILENT(text, part) EXPECT_FALSE(says(text, part))
+
+/// A command of that task, with the second set that the task has.
+inline Command command_of(const std::string& task, const std::string& utterance) {
+  return {utterance, task, find_task(find_environment("tabletop"), task).second};
+}
 
 /// A new directory, removed at the end.
 class TemporaryDirectory {

@@ -86,8 +86,8 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
       throw InputError(fmt::format(
           "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
           "--space {6} --answers openai --model {1} --cassette {0}",
-          cassette_.file().string(), options_.model, command.utterance, missing, questions.size(),
-          to_string(command.task), space.id));
+          cassette_.file().string(), options_.model, command.utterance, missing, questions.size(), command.task,
+          space.id));
     const Cassette::Turn turn(cassette_, options_.waiting);
     const std::vector<Request> open = without_reply();  // of those whose turn it was before
     if (options_.max_queries >= 0 && asked_ + static_cast<int>(open.size()) > options_.max_queries)

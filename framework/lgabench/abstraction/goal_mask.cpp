@@ -41,10 +41,10 @@ Table roles_of(const Observation& observation, const Selection& selection, Insta
   roles[0] = 0;
   for (const Instance& instance : observation.instances)
     roles[instance.id] = selection.target.contains(instance.object_type, instance.texture) ? target_role
-                         : selection.keeps(instance.object_type, instance.texture)         ? avoid_role
+                         : selection.keeps(instance.object_type, instance.texture)         ? second_role
                                                                                            : 0;
   if (instances == Instances::first)
-    for (const std::uint8_t role : {target_role, avoid_role}) keep_first(observation, role, roles);
+    for (const std::uint8_t role : {target_role, second_role}) keep_first(observation, role, roles);
   return roles;
 }
 
@@ -58,7 +58,7 @@ void role_mask(const Observation& observation, const Selection& selection, std::
 void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
                Instances instances) {
   Table kept = roles_of(observation, selection, instances);
-  std::replace(kept.begin(), kept.end(), avoid_role, target_role);
+  std::replace(kept.begin(), kept.end(), second_role, target_role);
   look_up(observation, kept, mask);
 }
 

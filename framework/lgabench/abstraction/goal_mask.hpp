@@ -9,7 +9,7 @@
 
 namespace lgabench {
 
-/// Which stay of several visible instances that match one role, the target's or the avoided one's.
+/// Which stay of several visible instances that match one role, the target's or the second set's.
 enum class Instances {
   all,
   first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
@@ -25,10 +25,10 @@ std::vector<std::uint8_t> goal_mask(const Observation& observation, const Select
 void goal_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
                Instances instances = Instances::all);
 
-/// The goal mask with the roles told apart: 1 on what matches the target, 2 on what matches `avoid` alone.
+/// The goal mask with the roles told apart: 1 on what matches the target, 2 on what matches the second set alone.
 void role_mask(const Observation& observation, const Selection& selection, std::vector<std::uint8_t>& mask,
                Instances instances = Instances::all);
-constexpr std::uint8_t target_role = 1, avoid_role = 2;
+constexpr std::uint8_t target_role = 1, second_role = 2;
 
 /// 1 on any object: what a segmentation without language gives. `left_out`: an object type that stays 0, "" for none.
 std::vector<std::uint8_t> object_mask(const Observation& observation, const std::string& left_out = "");

@@ -20,7 +20,7 @@ Selection TruthAsHuman::edit(const Command& command, const Selection& proposal) 
   const Selection& truth = truth_of(command);
   Selection edited = proposal;
   edited.target.object_types = truth.target.object_types;
-  if (edited.avoid && truth.avoid) edited.avoid->object_types = truth.avoid->object_types;
+  if (edited.second && truth.second) edited.second->object_types = truth.second->object_types;
   edited.provenance = Provenance::simulated_edit;
   edited.source += ", object types corrected to the true ones";
   return edited;

@@ -13,8 +13,9 @@ namespace {
 using Answer = Participant::Answer;
 
 Selection read_selection(const JsonReader& reader, const Scenario& scenario) {
-  const Selection selection = read_distribution(reader, scenario.space);
-  if (selection.avoid.has_value() != (scenario.task == Task::sweep)) reader.fail("avoid for sweep, and only there");
+  const Selection selection = read_distribution(reader, scenario.space, scenario.second);
+  if (scenario.second && !selection.second)
+    reader.fail(fmt::format("\"{}\" too, for {}", scenario.second->id, scenario.task));
   return selection;
 }
 

@@ -48,7 +48,7 @@ Prompt PromptTemplate::fill(const Command& command, const FeatureSpace& space, c
     return filled(text, {{"{object_types}", fmt::format("{}", fmt::join(space.object_types, ", "))},
                          {"{textures}", fmt::format("{}", fmt::join(space.textures, ", "))},
                          {"{command}", command.utterance},
-                         {"{about}", target ? "the target object" : "the object to be avoided"},
+                         {"{about}", target || !command.second ? "the target object" : command.second->phrase},
                          {"{group}", type ? "object type" : "object color"},
                          {"{candidate}", question.candidate}});
   };

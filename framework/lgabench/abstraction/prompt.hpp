@@ -12,7 +12,7 @@ struct Prompt {
 };
 
 /// The template prompts/selection.txt of the data directory: what the paper's prompt asks (appendix, "Full Prompt"), in
-/// other words, and for sweep of the object to be avoided too. Its version is the file's SHA-256.
+/// other words, and of the second set that the task has. Its version is the file's SHA-256.
 class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.

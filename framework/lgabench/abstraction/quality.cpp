@@ -27,9 +27,12 @@ Json quality(const FeatureSet& selected, const FeatureSet& truth) {
 
 Json quality(const Selection& selection, const Selection& truth) {
   if (selection.provenance == Provenance::none) return nullptr;
-  Json json{{"target", quality(selection.target, truth.target)}, {"avoid", nullptr}};
-  if (selection.avoid || truth.avoid)
-    json["avoid"] = quality(selection.avoid.value_or(FeatureSet{}), truth.avoid.value_or(FeatureSet{}));
+  Json json{{"target", quality(selection.target, truth.target)}};
+  if (selection.second || truth.second) {
+    const FeatureSet nothing;
+    json[(truth.second ? truth : selection).second->role] =
+        quality(selection.second ? *selection.second : nothing, truth.second ? *truth.second : nothing);
+  }
   return json;
 }
 

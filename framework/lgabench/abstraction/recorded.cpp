@@ -40,9 +40,13 @@ void RecordedLanguageModel::read() const {
   model_ = reader.at("model").string();
   for (const JsonReader& entry : reader.at("answers").elements()) {
     if ((entry.has("space") ? entry : reader).at("space").string() != space_.id) continue;
-    Recorded recorded{entry.has("scenario") ? entry.at("scenario").string() : "", entry.at("command").string(), {}};
-    recorded.yes.target = read_feature_set(entry.at("target"), space_);
-    if (entry.has("avoid")) recorded.yes.avoid = read_feature_set(entry.at("avoid"), space_);
+    Recorded recorded{entry.has("scenario") ? entry.at("scenario").string() : "",
+                      entry.at("command").string(),
+                      read_feature_set(entry.at("target"), space_),
+                      {}};
+    for (const auto& item : entry.json().items())
+      if (item.value().is_object() && item.key() != "target")
+        recorded.second[item.key()] = read_feature_set(entry.at(item.key()), space_);
     all_.push_back(std::move(recorded));
   }
   read_ = true;
@@ -80,9 +84,11 @@ std::vector<bool> RecordedLanguageModel::answer(const Command& command, const Fe
     if (!contains(is_type ? space_.object_types : space_.textures, q.candidate))
       throw MethodError(fmt::format("{}: \"{}\" is not in the space {}", model_, q.candidate, space_.id));
     const bool is_target = q.about == Question::About::target;
-    if (!is_target && !recorded.yes.avoid)
-      throw MethodError(fmt::format("{}: no recorded answer on what to avoid in \"{}\"", model_, recorded.asked_as));
-    const FeatureSet& set = is_target ? recorded.yes.target : *recorded.yes.avoid;
+    const auto second = command.second ? recorded.second.find(command.second->id) : recorded.second.end();
+    if (!is_target && second == recorded.second.end())
+      throw MethodError(fmt::format("{}: no recorded answer on {} in \"{}\"", model_,
+                                    command.second ? command.second->phrase : "a second set", recorded.asked_as));
+    const FeatureSet& set = is_target ? recorded.target : second->second;
     answers.push_back(contains(is_type ? set.object_types : set.textures, q.candidate));
   }
   cost_.lm_queries += static_cast<int>(questions.size());

@@ -1,5 +1,6 @@
 // A language model's published answers, replayed.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,7 @@ class RecordedLanguageModel : public LanguageModel {
   std::vector<std::string> known() const;
 
   /// @throws InputError where nothing is recorded for the command: says what is; MethodError for a candidate outside
-  /// the space, or for an object to be avoided that the model was not asked about.
+  /// the space, or for a second set that the model was not asked about.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
   std::string model() const override { return model_; }
@@ -43,8 +44,9 @@ class RecordedLanguageModel : public LanguageModel {
 
  private:
   struct Recorded {
-    std::string scenario, asked_as;  // scenario: "" where the paper has none
-    Selection yes;                   // the candidates answered yes
+    std::string scenario, asked_as;            // scenario: "" where the paper has none
+    FeatureSet target;                         // the candidates answered yes
+    std::map<std::string, FeatureSet> second;  // likewise, by role
   };
   const Recorded* find(const std::string& utterance) const;
   const Recorded& expect(const std::string& utterance) const;

@@ -17,8 +17,8 @@ SelectionCost difference(const SelectionCost& a, const SelectionCost& b) {
 
 Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model) {
   std::vector<Question> questions;
-  for (const About about : {About::target, About::avoid}) {
-    if (about == About::avoid && command.task != Task::sweep) continue;
+  for (const About about : {About::target, About::second}) {
+    if (about == About::second && !command.second) continue;
     for (const std::string& type : space.object_types) questions.push_back({about, Group::object_type, type});
     for (const std::string& texture : space.textures) questions.push_back({about, Group::texture, texture});
   }
@@ -29,11 +29,11 @@ Selection select_features(const Command& command, const FeatureSpace& space, Lan
     throw MethodError(fmt::format("{}: expected {} answers, got {}", model.model(), questions.size(), answers.size()));
 
   Selection selection;
-  if (command.task == Task::sweep) selection.avoid.emplace();
+  if (command.second) selection.second = SecondSet{{}, command.second->id};
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!answers[i]) continue;
     const Question& q = questions[i];
-    FeatureSet& set = q.about == About::target ? selection.target : *selection.avoid;
+    FeatureSet& set = q.about == About::target ? selection.target : *selection.second;
     (q.group == Group::object_type ? set.object_types : set.textures).push_back(q.candidate);
   }
   selection.provenance = model.provenance();

@@ -4,9 +4,9 @@
 
 namespace lgabench {
 
-/// Asks of every object type and every texture of the space whether the target could have it, and for sweep also
-/// whether the object to be avoided could: one question a candidate. The Selection holds what was answered yes, in the
-/// space's order, with the model's provenance and what these questions cost.
+/// Asks of every object type and every texture of the space whether the target could have it, and the same
+/// of the task's second set where it has one: one question a candidate. The Selection holds what was answered yes, in
+/// the space's order, with the model's provenance and what these questions cost.
 /// @throws MethodError if the model leaves a question unanswered.
 Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model);
 

@@ -18,7 +18,7 @@ std::string text(const FeatureSet& set, const FeatureSpace& space) {
 
 std::string selection_text(const Selection& selection, const FeatureSpace& space) {
   std::string words = "target: " + text(selection.target, space);
-  if (selection.avoid) words += ". avoid: " + text(*selection.avoid, space);
+  if (selection.second) words += fmt::format(". {}: {}", selection.second->role, text(*selection.second, space));
   return words;
 }
 

@@ -6,8 +6,9 @@
 
 namespace lgabench {
 
-/// "target: TYPES; TEXTURES", for sweep with ". avoid: TYPES; TEXTURES": names in the order of the space, separated by
-/// commas; "any" for all of the space's, "none" for none (docs/protocol.md, section 5: what LGA-L is told).
+/// "target: TYPES; TEXTURES", where there is a second set with ". ROLE: TYPES; TEXTURES" (sweep: ". avoid: ..."): names
+/// in the order of the space, separated by commas; "any" for all of the space's, "none" for none (docs/protocol.md,
+/// section 5: what LGA-L is told).
 std::string selection_text(const Selection& selection, const FeatureSpace& space);
 
 }  // namespace lgabench

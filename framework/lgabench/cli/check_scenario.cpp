@@ -9,6 +9,7 @@
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/gallery.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -44,7 +45,7 @@ struct Played {
 Played play(Environment& environment, const Scenario& scenario, const std::vector<TestScene>& scenes, const char* who) {
   Played played;
   for (const Episode& e : evaluate(environment, scenario.space, scenes, reference_actor(who), [](int) {}))
-    e.failure == Failure::none ? ++played.successes : ++played.failures[to_string(e.failure)];
+    e.failure == failure::none ? ++played.successes : ++played.failures[e.failure];
   return played;
 }
 
@@ -97,7 +98,7 @@ int check_scenario(const Arguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
   CheckReport report;
-  report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", to_string(scenario.task), scenario.environment,
+  report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment,
                                 scenario.commands.size(), scenario.tests.size()));
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
@@ -125,7 +126,7 @@ void add_check_scenario(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--layout", a->layouts, "cells, continuous or released; several with commas")
       ->delimiter(',')
-      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();
   verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
   verb->add_option("--out", a->out, "The picture's file; SCENARIO.png if not given");

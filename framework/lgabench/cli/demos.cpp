@@ -5,6 +5,7 @@
 
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/demonstrations.hpp>
@@ -60,7 +61,7 @@ void add_demos(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--layout", a->layout, "How objects are placed")
-      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();

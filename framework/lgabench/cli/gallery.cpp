@@ -5,10 +5,7 @@
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/cli/gallery.hpp>
 #include <lgabench/cli/picture.hpp>
-#include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
-#include <tabletop/renderer.hpp>
-#include <tabletop/sampler.hpp>
+#include <lgabench/core/environments.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -24,10 +21,13 @@ struct Tile {
 std::size_t pixel(int column, int row) { return static_cast<std::size_t>(row * Observation::columns + column); }
 
 // One object in the middle of the table, and what lies around it.
-Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::string& texture,
-              const std::string& caption) {
+Tile close_up(const std::string& type, const std::string& texture, const std::string& caption) {
   Tile tile{caption, 72, 72, {}};
-  const Observation seen = renderer.render({{type, texture, {{.5, 0, 0}, {}}, 1}});
+  const EnvironmentType& environment = find_environment("tabletop");
+  Scene scene;
+  scene.task = environment.tasks().front().id;
+  scene.objects = {{type, texture, role::distractor, {.5, 0}, 0, 1}};
+  const Observation seen = environment.draw(scene);
   const int left = (Observation::columns - tile.columns) / 2, top = (Observation::rows - tile.rows) / 2;
   for (int row = 0; row < tile.rows; ++row)
     for (int column = 0; column < tile.columns; ++column)
@@ -35,10 +35,12 @@ Tile close_up(tabletop::Renderer& renderer, const std::string& type, const std::
   return tile;
 }
 
-Tile scene_and_mask(tabletop::Renderer& renderer, const Scenario& scenario, const std::string& arm) {
-  const Scene scene = tabletop::sample_scene(scenario, {"cells", "test", arm, 0}, 0);
+Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  const std::string layout = find_task(environment, scenario.task).layouts.front();
+  const Scene scene = environment.sample(scenario, {layout, "test", arm, 0}, 0);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
-  const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+  const Observation seen = environment.draw(scene);
   const auto mask = goal_mask(seen, command.truth);
   Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance),
             2 * Observation::columns,
@@ -79,28 +81,27 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
 }  // namespace
 
 Sheet scene_sheet(const Scenario& scenario) {
-  tabletop::Renderer renderer;
   std::vector<Tile> tiles;
-  for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(renderer, scenario, arm.id));
+  for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
   return sheet(tiles, 1);
 }
 
 Sheet gallery(const std::string& what) {
-  tabletop::Renderer renderer;
   std::vector<Tile> tiles;
   if (what == "objects") {
-    for (const std::string& type : tabletop::object_types()) tiles.push_back(close_up(renderer, type, "yellow", type));
+    for (const std::string& type : load_feature_space("household").object_types)
+      tiles.push_back(close_up(type, "yellow", type));
     return sheet(tiles, 7);
   }
   if (what == "textures") {
     for (const std::string& texture : load_feature_space("tabletop").textures)
-      tiles.push_back(close_up(renderer, "pallet", texture, texture));
+      tiles.push_back(close_up("pallet", texture, texture));
     return sheet(tiles, 7);
   }
   if (what == "scenes") {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
-      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(renderer, scenario, arm.id));
+      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
     }
     return sheet(tiles, 2);
   }

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -40,7 +41,7 @@ std::string names(const std::vector<std::string>& chosen, const std::vector<std:
 }
 
 void print(const Scenario& scenario) {
-  to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, to_string(scenario.task));
+  to_stdout("{}, a scenario in {}\n  task        {}\n", scenario.id, scenario.environment, scenario.task);
   const auto print_set = [&scenario](const char* role, const FeatureSet& set) {
     to_stdout("  {:<10}  {}; textures: {}\n", role, names(set.object_types, scenario.space.object_types),
               names(set.textures, scenario.space.textures));
@@ -48,7 +49,7 @@ void print(const Scenario& scenario) {
   for (const ScenarioCommand& command : scenario.commands) {
     to_stdout("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
     print_set("target", command.truth.target);
-    if (command.truth.avoid) print_set("to avoid", *command.truth.avoid);
+    if (command.truth.second) print_set(command.truth.second->role.c_str(), *command.truth.second);
   }
   to_stdout("  answers     {}{}\n", scenario.recorded,
             scenario.edited == scenario.recorded ? "" : fmt::format("; people edit {}", scenario.edited));
@@ -81,6 +82,33 @@ Json to_json(const Suite& suite) {
           {"presets", suite.presets}};
 }
 
+Json to_json(const EnvironmentType& environment) {
+  Json tasks = Json::array();
+  for (const TaskInfo& task : environment.tasks()) {
+    tasks.push_back(
+        {{"id", task.id}, {"layouts", task.layouts}, {"failures", task.failures}, {"example", task.example}});
+    if (task.second) tasks.back()["second"] = {{"id", task.second->id}, {"phrase", task.second->phrase}};
+  }
+  return {{"kind", "environment"},
+          {"id", environment.id()},
+          {"tasks", tasks},
+          {"failures", environment.failures()},
+          {"action", lgabench::to_json(environment.action_space())}};
+}
+
+void print(const EnvironmentType& environment) {
+  to_stdout("{}, an environment\n", environment.id());
+  for (const TaskInfo& task : environment.tasks()) {
+    to_stdout("  task        {}\n    layouts     {}\n    failures    {}\n    example     {}\n", task.id,
+              fmt::join(task.layouts, ", "), fmt::join(task.failures, ", "), task.example);
+    if (task.second) to_stdout("    second set  {}, {}\n", task.second->id, task.second->phrase);
+  }
+  to_stdout("  failures    {}\n  action\n", fmt::join(environment.failures(), ", "));
+  for (const ActionNumber& number : environment.action_space().numbers)
+    to_stdout("    {:<8}  {} to {}{}{}\n", number.name, number.low, number.high, number.unit.empty() ? "" : " ",
+              number.unit);
+}
+
 template <class Thing>
 void show(const Thing& thing, const Json& as_json, bool json) {
   if (json)
@@ -107,16 +135,22 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     const Suite suite = load_suite(name);
     return show(suite, to_json(suite), json);
   }
+  if (known(environment_ids(), name)) {
+    const EnvironmentType& environment = find_environment(name);
+    return show(environment, to_json(environment), json);
+  }
   for (const auto& [file, reason] : catalogue.refused)
     if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
   std::vector<std::string> known = scenario_ids();
   for (const PluginInfo& plugin : catalogue.plugins) known.push_back(plugin.id);
+  for (const std::string& environment : environment_ids()) known.push_back(environment);
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list)) known.push_back(suite);
-  throw InputError(fmt::format(
-      "no method, engine, suite or scenario \"{}\"{}; lgabench list shows them, those of other plugins with "
-      "--plugin-path DIR",
-      name, suggestion(name, known)));
+  throw InputError(
+      fmt::format("no method, engine, suite, scenario or environment \"{}\"{}; lgabench list shows them, those of "
+                  "other plugins with "
+                  "--plugin-path DIR",
+                  name, suggestion(name, known)));
 }
 
 }  // namespace
@@ -128,7 +162,7 @@ void add_info(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("info", "Everything known of a method, engine, suite or scenario");
+  CLI::App* verb = app.add_subcommand("info", "Everything known of a method, engine, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
   verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");

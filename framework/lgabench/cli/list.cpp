@@ -33,7 +33,7 @@ Json scenarios() {
   Json all = Json::array();
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id);
-    all.push_back({{"id", id}, {"task", to_string(scenario.task)}, {"summary", scenario.commands.front().utterance}});
+    all.push_back({{"id", id}, {"task", scenario.task}, {"summary", scenario.commands.front().utterance}});
   }
   return all;
 }

@@ -8,6 +8,7 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -20,7 +21,7 @@ using Words = std::vector<std::string>;
 
 struct Arguments {
   std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
-  Words commands, unseen, types, textures{"ALL"}, avoid_types, avoid_textures{"ALL"};
+  Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
   std::optional<double> angle_deg;
   bool clockwise = false, hard = false;
   fs::path directory = ".";
@@ -44,6 +45,12 @@ Json set_of(const Words& types, const Words& textures) {
   return {{"object_types", names(types)}, {"textures", names(textures)}};
 }
 
+std::vector<std::string> task_ids() {
+  std::vector<std::string> ids;
+  for (const TaskInfo& task : installed_tasks()) ids.push_back(task.id);
+  return ids;
+}
+
 Json range_of(const std::string& text) {
   const std::size_t colon = text.find(':');
   int fewest = 0, most = 0;
@@ -55,7 +62,12 @@ Json range_of(const std::string& text) {
 
 Json scenario_json(const Arguments& a) {
   Json truth{{"target", set_of(a.types, a.textures)}};
-  if (!a.avoid_types.empty()) truth["avoid"] = set_of(a.avoid_types, a.avoid_textures);
+  const EnvironmentType& environment = find_environment("tabletop");
+  const std::optional<SecondRole>& second = find_task(environment, a.task).second;
+  if (!a.other_types.empty()) {
+    if (!second) throw InputError(fmt::format("--other-types: {} has no other objects than its target", a.task));
+    truth[second->id] = set_of(a.other_types, a.other_textures);
+  }
   Json commands = Json::array();
   for (const std::string& utterance : a.commands) commands.push_back({{"utterance", utterance}, {"truth", truth}});
   for (const std::string& utterance : a.unseen)
@@ -64,7 +76,7 @@ Json scenario_json(const Arguments& a) {
   Json tests = Json::array({{{"arm", "test"}, {"distractors", distractors}}});
   if (a.hard) tests.push_back({{"arm", "hard"}, {"distractors", distractors}, {"hard", true}});
   if (!a.unseen.empty()) tests.push_back({{"arm", "unseen"}, {"distractors", distractors}, {"unseen", true}});
-  Json json{{"id", a.name},         {"environment", "tabletop"},
+  Json json{{"id", a.name},         {"environment", environment.id()},
             {"task", a.task},       {"feature_space", a.space},
             {"commands", commands}, {"tests", tests}};
   if (a.angle_deg) json["angle_deg"] = *a.angle_deg;
@@ -104,12 +116,12 @@ void add_new_scenario(CLI::App& app, int& exit) {
       ->allow_extra_args(false);
   list("--types", a->types, "Object types that the command means, or ALL; asked for if left out");
   list("--textures", a->textures, "Their textures, or ALL");
-  list("--avoid-types", a->avoid_types, "sweep: object types that must not be touched");
-  list("--avoid-textures", a->avoid_textures, "sweep: their textures, or ALL");
+  list("--other-types", a->other_types, "Object types of the task's other objects: what a sweep must not touch");
+  list("--other-textures", a->other_textures, "Their textures, or ALL");
   verb->add_option("--space", a->space, "The words there are (lgabench render --gallery objects)")
       ->check(one_of("space", {"tabletop", "household"}))
       ->capture_default_str();
-  verb->add_option("--task", a->task, "What is done with it")->capture_default_str();
+  verb->add_option("--task", a->task, "What is done with it")->check(one_of("task", task_ids()))->capture_default_str();
   verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
   verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
   verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();
@@ -122,8 +134,8 @@ void add_new_scenario(CLI::App& app, int& exit) {
            {"--space", "SPACE"},
            {"--types", "TYPE,..."},
            {"--textures", "TEXTURE,..."},
-           {"--avoid-types", "TYPE,..."},
-           {"--avoid-textures", "TEXTURE,..."}});
+           {"--other-types", "TYPE,..."},
+           {"--other-textures", "TEXTURE,..."}});
   arrange(*verb, "The task and its scenes",
           {{"--task", "TASK"}, {"--angle", "DEGREES"}, {"--clockwise", ""}, {"--distractors", "N:M"}, {"--hard", ""}});
   verb->footer(

@@ -1,16 +1,16 @@
 // A picture in memory, made of enlarged pieces, and its PNG bytes.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/observation.hpp>
-#include <tabletop/textures.hpp>
 
 namespace lgabench::cli {
 
-using tabletop::Rgb;
+using Rgb = std::array<std::uint8_t, 3>;
 
 /// How pixel `i` of a picture or a goal mask is shown.
 Rgb pixel_colour(const Observation& seen, std::size_t i);

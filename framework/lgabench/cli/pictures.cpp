@@ -11,13 +11,13 @@
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/harness/evaluator.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <tabletop/renderer.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -58,14 +58,15 @@ class Pictures {
     if (hex(scene.hash()) != request.at("scene").string())
       throw InputError("this version samples another scene than the run played");
 
-    const Observation seen = renderer_.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+    const Observation seen = find_environment(played.scenario.environment).draw(scene);
     const Arm& test = played.scenario.arm(arm);
     const Observation perceived = imperfect_textualization(
         seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
     for (const JsonReader& selection : request.at("selections").elements()) {
-      const auto mask = goal_mask(perceived, read_distribution(selection.at("distribution"), played.scenario.space),
-                                  selection.at("instances").string() == "first" ? Instances::first : Instances::all);
+      const auto mask = goal_mask(
+          perceived, read_distribution(selection.at("distribution"), played.scenario.space, played.scenario.second),
+          selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     return {{"picture", picture_of(seen)},
@@ -113,7 +114,6 @@ class Pictures {
     return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
   }
 
-  tabletop::Renderer renderer_;
   std::map<std::pair<std::string, std::string>, std::unique_ptr<Environment>> environments_;  // by engine and space
   std::map<std::string, std::unique_ptr<Played>> cells_;                                      // by file
 };

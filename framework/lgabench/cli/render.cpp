@@ -10,11 +10,10 @@
 #include <lgabench/cli/gallery.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/picture.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <tabletop/renderer.hpp>
-#include <tabletop/sampler.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -60,13 +59,13 @@ void render_gallery(const Arguments& arguments) {
 void render(const Arguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
-  const Scene scene = tabletop::sample_scene(
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  const Scene scene = environment.sample(
       scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
-  tabletop::Renderer renderer;
-  const Observation seen = renderer.render(tabletop::visible_objects(scene), tabletop::ground_of(scene));
+  const Observation seen = environment.draw(scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3);
@@ -79,7 +78,7 @@ void render(const Arguments& arguments) {
   to_stdout("{}\n", file.string());
   to_stdout("{}, {}: {}\n", scenario.id, scene.arm, command.utterance);
   for (const SceneObject& object : scene.objects)
-    to_stdout("  {:3}  {:10}  {} {}\n", object.instance_id, to_string(object.role), object.texture, object.object_type);
+    to_stdout("  {:3}  {:10}  {} {}\n", object.instance_id, object.role, object.texture, object.object_type);
 }
 
 }  // namespace
@@ -95,7 +94,7 @@ void add_render(CLI::App& app, int&) {
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
   verb->add_option("--layout", arguments->layout, "How objects are placed")
-      ->check(one_of("layout", {"cells", "continuous", "released"}))
+      ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();
   verb->add_option("--split", arguments->split, "Whose scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
@@ -109,10 +108,11 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
+  const std::string layouts = fmt::format("{}", fmt::join(installed_layouts(), "|"));
   arrange(*verb, "What is drawn",
           {{"--gallery", "objects|textures|scenes"},
            {"--index", "N"},
-           {"--layout", "cells|continuous|released"},
+           {"--layout", layouts.c_str()},
            {"--split", "train|dev|test"},
            {"--arm", "ARM"},
            {"--truth", "released|printed"},

@@ -16,7 +16,6 @@
 #include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/environments.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <tabletop/renderer.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -34,7 +33,7 @@ struct Arguments {
 struct Recorded {
   Cell cell;
   Scenario scenario;
-  std::string arm, outcome, scene;  // outcome: to_string(Failure); scene: its hash
+  std::string arm, outcome, scene;  // outcome: a Failure; scene: its hash
   int index = 0;
   Action action;
 };
@@ -140,8 +139,6 @@ void replay(const Arguments& a) {
   if (hex(scene.hash()) != episode.scene)
     throw InputError("replay: this version samples another scene than the run played");
 
-  tabletop::Renderer renderer;
-  std::vector<tabletop::VisibleObject> objects = tabletop::visible_objects(scene);
   std::vector<Picture> frames;
   const auto add = [&](const Observation& seen, const std::optional<Tool>& tool) {
     frames.emplace_back(zoom * Observation::columns, zoom * Observation::rows);
@@ -150,12 +147,10 @@ void replay(const Arguments& a) {
     });
     if (tool) draw(*tool, frames.back());
   };
-  const auto look = [&](const PhysicsWorld& world, const std::optional<Tool>& tool) {
-    for (std::size_t i = 0; i < objects.size(); ++i) objects[i].pose = world.pose(static_cast<int>(i));
-    add(renderer.render(objects, tabletop::ground_of(scene)), tool);
-  };
+  std::unique_ptr<Environment> environment;
+  const auto look = [&](const std::optional<Tool>& tool) { add(environment->observe(), tool); };
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const auto environment = make_environment(
+  environment = make_environment(
       episode.scenario,
       std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", episode.cell.engine)), frame_s, look));
   add(environment->reset(scene), std::nullopt);
@@ -163,9 +158,8 @@ void replay(const Arguments& a) {
   add(end.observation, std::nullopt);
 
   write_file(a.out, ending == ".gif" ? gif(frames, frame_s) : filmstrip(frames).png());
-  const std::string outcome = to_string(end.failure);
-  to_stdout("{}: {} frames; {} {}\n", a.out.string(), frames.size(), end.failure == Failure::none ? "success" : outcome,
-            outcome == episode.outcome ? "as recorded" : "here, recorded as " + episode.outcome);
+  to_stdout("{}: {} frames; {} {}\n", a.out.string(), frames.size(), end.is_success ? "success" : end.failure,
+            end.failure == episode.outcome ? "as recorded" : "here, recorded as " + episode.outcome);
 }
 
 }  // namespace

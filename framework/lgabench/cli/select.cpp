@@ -13,6 +13,7 @@
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 
@@ -73,7 +74,11 @@ Answerer make_answerer(const Arguments& a) {
 std::vector<Asked> commands_of(const Scenario& scenario) {
   std::vector<Asked> asked;
   for (const ScenarioCommand& c : scenario.commands)
-    asked.push_back({scenario.answers_of, scenario.recorded, scenario.space, {c.utterance, scenario.task}, c.truth});
+    asked.push_back({scenario.answers_of,
+                     scenario.recorded,
+                     scenario.space,
+                     {c.utterance, scenario.task, scenario.second},
+                     c.truth});
   return asked;
 }
 
@@ -101,11 +106,17 @@ std::vector<Asked> find_commands(const Arguments& arguments) {
   Asked asked{"",
               Scenario().recorded,
               load_feature_space(arguments.space),
-              {arguments.command, Task::pick_and_place},
+              {arguments.command, arguments.task, std::nullopt},
               std::nullopt};
-  for (const Task task : {Task::pick_and_place, Task::rotate, Task::sweep})
-    if (to_string(task) == arguments.task) asked.command.task = task;
+  for (const TaskInfo& task : installed_tasks())
+    if (task.id == arguments.task) asked.command.second = task.second;
   return {asked};
+}
+
+std::vector<std::string> task_ids() {
+  std::vector<std::string> ids;
+  for (const TaskInfo& task : installed_tasks()) ids.push_back(task.id);
+  return ids;
 }
 
 std::string list(const std::vector<std::string>& names, const std::vector<std::string>& all) {
@@ -164,7 +175,8 @@ void select(const Asked& asked, LanguageModel* model, const Arguments& arguments
   to_stdout("\n");
   to_stdout("in words    {}\n", text);
   print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
-  if (selection.avoid) print_set("avoid", *selection.avoid, asked.space, asked.truth ? judged.at("avoid") : Json());
+  if (const auto& second = selection.second)
+    print_set(second->role.c_str(), *second, asked.space, asked.truth ? judged.at(second->role) : Json());
 }
 
 }  // namespace
@@ -190,7 +202,7 @@ void add_select(CLI::App& app, int&) {
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "The task, where the command is not one of a scenario")
-      ->check(one_of("task", {"pick_and_place", "rotate", "sweep"}))
+      ->check(one_of("task", task_ids()))
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "The feature space, where the command is not one of a scenario")
       ->capture_default_str();
@@ -205,9 +217,10 @@ void add_select(CLI::App& app, int&) {
   add_scenario_path(*verb);
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
   arrange(*verb, "", {{"command", "COMMAND"}});
+  const std::string tasks = fmt::format("{}", fmt::join(task_ids(), "|"));
   arrange(*verb, "What is asked",
           {{"--suite", "SUITE"},
-           {"--task", "pick_and_place|rotate|sweep"},
+           {"--task", tasks.c_str()},
            {"--space", "SPACE"},
            {"--truth", "released|printed"},
            {"--scenario-path", "DIR"}});

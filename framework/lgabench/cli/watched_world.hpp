@@ -19,7 +19,7 @@ struct Tool {
 /// Passes every call on, and tells `look` every `period_s` of simulated time, before the step. One thread.
 class WatchedWorld final : public PhysicsWorld {
  public:
-  using Look = std::function<void(const PhysicsWorld& world, const std::optional<Tool>& tool)>;
+  using Look = std::function<void(const std::optional<Tool>& tool)>;
   WatchedWorld(std::unique_ptr<PhysicsWorld> world, double period_s, Look look)
       : world_(std::move(world)), look_(std::move(look)), period_s_(period_s) {}
 
@@ -32,7 +32,7 @@ class WatchedWorld final : public PhysicsWorld {
   double time_step_s() const override { return world_->time_step_s(); }
   void step() override {
     if (elapsed_s_ >= period_s_) {
-      look_(*world_, tool_);
+      look_(tool_);
       elapsed_s_ = 0;
     }
     elapsed_s_ += time_step_s();

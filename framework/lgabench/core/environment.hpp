@@ -10,21 +10,14 @@
 
 namespace lgabench {
 
-/// Why an episode did not succeed (docs/protocol.md, section 2).
-enum class Failure {
-  none,
-  missed_object,
-  wrong_object,
-  bad_placement,
-  bad_angle,
-  missed_zone,
-  touched_obstacle,
-  left_workspace,
-  truncated,
-  abstraction_empty,
-  method_error
-};
-std::string to_string(Failure failure);
+/// Why an episode did not succeed: one of these words, or one of the environment's (EnvironmentType::failures()).
+using Failure = std::string;
+namespace failure {
+inline constexpr const char* none = "none";
+inline constexpr const char* truncated = "truncated";                  // the limit in simulation steps was reached
+inline constexpr const char* abstraction_empty = "abstraction_empty";  // nothing was selected: not played
+inline constexpr const char* method_error = "method_error";            // the method threw, or gave no finite action
+}  // namespace failure
 
 /// What an action led to.
 struct StepResult {
@@ -32,7 +25,8 @@ struct StepResult {
   bool terminated = false;  // the task's one action is done
   bool truncated = false;   // the limit in simulation steps was reached: never a success
   bool is_success = false;
-  Failure failure = Failure::none;  // none exactly if is_success
+  bool recoverable = true;          // false: no further action can make it a success
+  Failure failure = failure::none;  // none exactly if is_success
 };
 
 /// One thread at a time. Every call but reset needs a reset before it.
@@ -48,6 +42,9 @@ class Environment {
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
   /// @throws MethodError for an action that is not finite, EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
+
+  /// What is seen in the present state; also while step() is under way, by whoever looks on at the engine.
+  virtual Observation observe() = 0;
 
   /// The oracle's action in the present state, for the scene's target.
   virtual Action expert_action() const = 0;

@@ -7,10 +7,10 @@
 
 namespace lgabench {
 
-/// One yes/no question: could the target (or the object to be avoided) have this object type or texture?
+/// One yes/no question: could the target (or the second set) have this object type or texture?
 struct Question {
-  /// What is to be moved, or for sweep what must not be touched.
-  enum class About { target, avoid } about = About::target;
+  /// What is to be moved, or the task's second set (Command::second).
+  enum class About { target, second } about = About::target;
   /// Which of its two features.
   enum class Group { object_type, texture } group = Group::object_type;
   std::string candidate;

@@ -1,8 +1,8 @@
 // A scenario: commands, a task, the true distributions, and the scenes it trains and tests on. Read without an engine.
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <lgabench/core/scene.hpp>
@@ -13,7 +13,8 @@ namespace lgabench {
 /// What a method is told of the task: the words, and the kind of motion that is wanted.
 struct Command {
   std::string utterance;
-  Task task = Task::pick_and_place;
+  std::string task;                                 // an id of the environment's list
+  std::optional<SecondRole> second = std::nullopt;  // what it speaks of beside the target; none for most tasks
 };
 
 /// One way to ask for the task, and what the scenario's author means by it.
@@ -23,25 +24,15 @@ struct ScenarioCommand {
   bool seen = true;  // demonstrated; an unseen command is only tested (paper, Q3)
 };
 
-/// What scenes of one kind hold. Targets and obstacles are drawn from the command's truth where nothing else is said.
+/// What scenes of one kind hold: the environment's own, see EnvironmentType::read_content().
 struct SceneContent {
-  std::optional<FeatureSet> target, avoid;
-  bool as_method_asks = false;  // training alone: targets and obstacles from the Selection, if the method wants that
-  std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
-  bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
-  bool hard = false;           // a distractor shares the target's type or its texture, and still is no target
-  bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
-  /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets; for
-  /// sweep, obstacles), the others are distractors.
-  std::vector<std::string> choice;
-  /// Sweep: how far from the target, along y, what bars a side alone stands; each with equal odds, one a scene.
-  std::vector<double> barrier_distances_m{.21};
+  virtual ~SceneContent() = default;
 };
 
 /// Test scenes of one kind, played by one policy. Arms share their random streams: scene i of each has one layout.
 struct Arm {
   std::string id;
-  SceneContent scenes;
+  std::shared_ptr<const SceneContent> scenes;  // never null
   bool unseen = false;                         // give the unseen commands instead of the seen ones
   double label_noise = 0, missed_segment = 0;  // how imperfect the textualization is (see textualization.hpp)
 };
@@ -53,21 +44,21 @@ enum class Truth { released, printed };
 /// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
 struct Scenario {
   std::string id, environment;
-  Task task = Task::pick_and_place;
-  double angle_deg = 0;  // rotate only: counter-clockwise seen from above, negative where it is clockwise
+  std::string task;                  // an id of the environment's list
+  std::optional<SecondRole> second;  // the task's
   FeatureSpace space;
   std::vector<ScenarioCommand> commands;
   std::string answers_of;  // the scenario whose recorded answers hold for this one; mostly its own id
   /// Files of the data directory's answers/, without their ending: whose answers "recorded" means here, and which of
   /// them people are given to edit.
   std::string recorded = "claude", edited = "claude";
-  std::optional<FeatureSet> never_distractor;  // test distractors stay out of it, beyond the true distribution
-  SceneContent train;
+  std::shared_ptr<const SceneContent> train;  // never null
+  bool as_method_asks = true;  // training targets and second sets come from the Selection, if the method wants that
   std::vector<Arm> tests;
   Json json;  // as read: goes into a cell's configuration whole
 
   /// Command number `i` as a method is given it. @pre 0 <= i < commands.size()
-  Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task}; }
+  Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task, second}; }
   std::vector<std::string> utterances() const;  // of all commands
   /// @throws InputError for a test arm that the scenario lacks.
   const Arm& arm(const std::string& name) const;
@@ -78,7 +69,8 @@ struct Scenario {
   int training_scenes(int demonstrations) const;
 };
 
-/// Reads and checks a scenario's JSON; `file` is named in errors. @throws InputError with file and place.
+/// Reads and checks a scenario's JSON, with its environment; `file` is named in errors. @throws InputError with file
+/// and place, also for an environment that is not installed.
 Scenario read_scenario(const Json& json, const std::string& file);
 
 /// The scenario named `id` (scenario_files.hpp says where it is looked for). With the printed truth, what the file says

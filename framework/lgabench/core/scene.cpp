@@ -4,51 +4,24 @@
 
 namespace lgabench {
 
-std::string to_string(Task task) {
-  switch (task) {
-    case Task::pick_and_place:
-      return "pick_and_place";
-    case Task::rotate:
-      return "rotate";
-    case Task::sweep:
-      return "sweep";
-  }
-  throw Error("a Task outside its enumeration");
-}
-
-std::string to_string(Role role) {
-  switch (role) {
-    case Role::target:
-      return "target";
-    case Role::distractor:
-      return "distractor";
-    case Role::obstacle:
-      return "obstacle";
-    case Role::goal:
-      return "goal";
-  }
-  throw Error("a Role outside its enumeration");
-}
-
 Json to_json(const Scene& scene) {
   Json objects = Json::array();
   for (const SceneObject& o : scene.objects)
     objects.push_back({{"object_type", o.object_type},
                        {"texture", o.texture},
-                       {"role", to_string(o.role)},
+                       {"role", o.role},
                        {"position_m", {o.position_m.x, o.position_m.y}},
                        {"yaw_rad", o.yaw_rad},
                        {"instance_id", o.instance_id}});
-  return {{"scenario", scene.scenario},   {"arm", scene.arm},
-          {"layout", scene.layout},       {"split", scene.split},
-          {"seed", scene.seed},           {"index", scene.index},
-          {"command", scene.command},     {"task", to_string(scene.task)},
-          {"angle_rad", scene.angle_rad}, {"objects", std::move(objects)}};
+  return {{"scenario", scene.scenario},   {"arm", scene.arm},   {"layout", scene.layout},
+          {"split", scene.split},         {"seed", scene.seed}, {"index", scene.index},
+          {"command", scene.command},     {"task", scene.task}, {"angle_rad", scene.angle_rad},
+          {"objects", std::move(objects)}};
 }
 
 std::uint64_t Scene::hash() const { return hash64(canonical(to_json(*this))); }
 
-const SceneObject* Scene::find(Role role) const {
+const SceneObject* Scene::find(const Role& role) const {
   for (const SceneObject& o : objects)
     if (o.role == role) return &o;
   return nullptr;

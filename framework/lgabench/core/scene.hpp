@@ -9,16 +9,17 @@
 
 namespace lgabench {
 
-enum class Task { pick_and_place, rotate, sweep };
-std::string to_string(Task task);
-
-enum class Role { target, distractor, obstacle, goal };
-std::string to_string(Role role);
+/// What an object is in its scene: one of these, or a word of the environment's (the second set's objects).
+using Role = std::string;
+namespace role {
+inline constexpr const char *target = "target", *distractor = "distractor";
+inline constexpr const char* goal = "goal";  // where a target belongs: part of the table, nothing to act on
+}  // namespace role
 
 /// One object of a scene.
 struct SceneObject {
   std::string object_type, texture;
-  Role role = Role::distractor;
+  Role role = role::distractor;
   Vec2 position_m;  // of the object type's centre
   double yaw_rad = 0;
   std::uint8_t instance_id = 0;  // 1..255, permuted over the scene
@@ -28,8 +29,8 @@ struct SceneObject {
 /// Never given to a method: it holds roles, seed and index.
 struct Scene {
   std::string scenario, arm, layout, split;
-  Task task = Task::pick_and_place;
-  double angle_rad = 0;  // rotate: the turn that counts as success
+  std::string task;      // an id of the environment's list
+  double angle_rad = 0;  // the turn that the task asks for; 0 where it asks for none
   std::uint64_t seed = 0;
   int index = 0;
   int command = 0;                   // which of the scenario's commands is given
@@ -37,9 +38,9 @@ struct Scene {
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;
-  /// First object with the role, or nullptr. The Scene owns it. Several objects may be targets (any of them is right)
-  /// or obstacles (none may be touched).
-  const SceneObject* find(Role role) const;
+  /// First object with the role, or nullptr. The Scene owns it. Several objects may have one role: any of several
+  /// targets is right.
+  const SceneObject* find(const Role& role) const;
 };
 
 Json to_json(const Scene& scene);

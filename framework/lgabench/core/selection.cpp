@@ -42,10 +42,19 @@ Provenance provenance_from(const std::string& word) {
   throw InputError("expected a provenance, got \"" + word + "\"");
 }
 
+bool operator==(const SecondSet& a, const SecondSet& b) {
+  return a.role == b.role && static_cast<const FeatureSet&>(a) == static_cast<const FeatureSet&>(b);
+}
+
 Json distribution_json(const Selection& selection) {
   Json json{{"target", to_json(selection.target)}};
-  if (selection.avoid) json["avoid"] = to_json(*selection.avoid);
+  if (selection.second) json[selection.second->role] = to_json(*selection.second);
   return json;
+}
+
+Json distribution_of(Json selection) {
+  for (const char* told_beside : {"provenance", "source", "asked_as", "cost"}) selection.erase(told_beside);
+  return selection;
 }
 
 Json to_json(const Selection& selection) {
@@ -60,11 +69,15 @@ Json to_json(const Selection& selection) {
   return json;
 }
 
-Selection read_distribution(const JsonReader& reader, const FeatureSpace& space) {
-  reader.only({"target", "avoid"});
+Selection read_distribution(const JsonReader& reader, const FeatureSpace& space,
+                            const std::optional<SecondRole>& second) {
+  std::vector<std::string> members{"target"};
+  if (second) members.push_back(second->id);
+  reader.only(members);
   Selection selection;
   selection.target = read_feature_set(reader.at("target"), space);
-  if (reader.has("avoid")) selection.avoid = read_feature_set(reader.at("avoid"), space);
+  if (second && reader.has(second->id))
+    selection.second = SecondSet{read_feature_set(reader.at(second->id), space), second->id};
   return selection;
 }
 

@@ -32,29 +32,46 @@ struct SelectionCost {
 SelectionCost& operator+=(SelectionCost& cost, const SelectionCost& more);
 SelectionCost operator-(const SelectionCost& all, const SelectionCost& before);
 
-/// Feature abstraction phi -> phi-hat (paper, section 3.1). For sweep, `avoid` describes the obstacle.
+/// A second set of objects that a task's commands speak of beside the target: what must be avoided, what to put it on.
+struct SecondRole {
+  std::string id;      // "avoid": its name in JSON, in questions and in a Selection's text
+  std::string phrase;  // "the object to be avoided": its name in prompts
+};
+
+/// The features of that set.
+struct SecondSet : FeatureSet {
+  std::string role;  // SecondRole::id
+};
+bool operator==(const SecondSet& a, const SecondSet& b);
+
+/// Feature abstraction phi -> phi-hat (paper, section 3.1). `second` describes the task's second set of objects; absent
+/// for tasks that have none.
 struct Selection {
   FeatureSet target;
-  std::optional<FeatureSet> avoid;
+  std::optional<SecondSet> second;
   Provenance provenance = Provenance::none;
   std::string source;    // model, participant or file
   std::string asked_as;  // the wording that was answered
   SelectionCost cost;
 
-  /// Nothing can be shown: no target, or an obstacle asked for and none selected. Such a cell is not trained.
-  bool empty() const { return target.empty() || (avoid && avoid->empty()); }
-  /// The object is kept in the goal mask. Types and textures of target and avoid are never crossed.
+  /// Nothing can be shown: no target, or a second set asked for and none selected. Such a cell is not trained.
+  bool empty() const { return target.empty() || (second && second->empty()); }
+  /// The object is kept in the goal mask. Types and textures of target and second set are never crossed.
   bool keeps(const std::string& object_type, const std::string& texture) const {
-    return target.contains(object_type, texture) || (avoid && avoid->contains(object_type, texture));
+    return target.contains(object_type, texture) || (second && second->contains(object_type, texture));
   }
 };
 
 Json to_json(const Selection& selection);
 
-/// The distribution alone (target and avoid), which is what scenes depend on.
+/// The distribution alone, which is what scenes depend on: {"target": set}, and the second set under its role's id.
 Json distribution_json(const Selection& selection);
+/// Likewise, from what to_json() wrote.
+Json distribution_of(Json selection);
 
-/// Reads {"target": set, "avoid": set?}; provenance and cost are left at their defaults.
-Selection read_distribution(const JsonReader& reader, const FeatureSpace& space);
+/// Reads a distribution whose second set, if it has one, is named as `second` says; provenance and cost are left at
+/// their defaults. @throws InputError for another member.
+Selection read_distribution(const JsonReader& reader, const FeatureSpace& space,
+                            const std::optional<SecondRole>& second);
 
 }  // namespace lgabench

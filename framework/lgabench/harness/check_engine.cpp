@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/harness/check.hpp>
@@ -32,8 +33,7 @@ std::string bytes_of(const Observation& seen) {
 Played play(Environment& environment, const Scene& scene) {
   const std::string before = bytes_of(environment.reset(scene));
   const StepResult result = environment.step(environment.expert_action());
-  return {fmt::format("{} {} {}\n", before, bytes_of(result.observation), to_string(result.failure)),
-          result.is_success};
+  return {fmt::format("{} {} {}\n", before, bytes_of(result.observation), result.failure), result.is_success};
 }
 
 // A block is reset, lifted and let go, without the framework's renderer, which keeps threads of its own.
@@ -55,17 +55,18 @@ void use_alone(const PluginInfo& engine) {
 }
 
 // Scenes of one task, forwards and twice backwards. Returns their bytes.
-std::string judge_task(const std::string& scenario_id, const PluginInfo& engine, CheckReport& report) {
-  const Scenario scenario = load_scenario(scenario_id);
+std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, CheckReport& report) {
+  const Scenario scenario = load_scenario(task_info.example);
   const auto environment = make_environment(scenario, load_engine(engine));
-  const std::string task = to_string(scenario.task);
+  const std::string& task = task_info.id;
   std::vector<Scene> scenes;
   std::vector<Played> forwards;
   int won = 0;
   std::string all;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < scenes_a_task; ++i) {
-    scenes.push_back(test_scene(scenario, "continuous", scenario.tests.front().id, seed, i));
+    scenes.push_back(test_scene(scenario, task_info.layouts[static_cast<std::size_t>(i) % task_info.layouts.size()],
+                                scenario.tests.front().id, seed, i));
     forwards.push_back(play(*environment, scenes.back()));
     won += forwards.back().success;
     all += forwards.back().bytes;
@@ -102,9 +103,9 @@ CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase) {
     phase(doing);
     use_alone(engine);
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
-    for (const char* id : {"heart", "rotate_block", "sweep_block_without_touching_pan"}) {
-      phase(doing = std::string("scenes of ") + id);
-      all += judge_task(id, engine, report);
+    for (const TaskInfo& task : installed_tasks()) {
+      phase(doing = "scenes of " + task.example);
+      all += judge_task(task, engine, report);
     }
   } catch (const PluginError&) {
     throw;

@@ -10,6 +10,7 @@
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/harness/check.hpp>
@@ -22,7 +23,6 @@ namespace {
 
 constexpr int demonstrations = 10, scenes_an_arm = 5;
 constexpr std::uint64_t seed = 7;
-constexpr const char* layout = "cells";
 
 // Counts what is asked; or answers no to everything, as a model that sees nothing fitting would.
 class CountingModel : public LanguageModel {
@@ -47,6 +47,29 @@ class CountingModel : public LanguageModel {
   bool always_no_;
 };
 
+// Answers with the truth, where nobody's answers are recorded.
+class TruthfulModel : public LanguageModel {
+ public:
+  explicit TruthfulModel(const std::vector<ScenarioCommand>& commands) : truth_(commands) {}
+  std::vector<bool> answer(const Command& command, const FeatureSpace&,
+                           const std::vector<Question>& questions) override {
+    const Selection truth = truth_.specify(command);
+    std::vector<bool> answers;
+    for (const Question& question : questions) {
+      const FeatureSet& set = question.about == Question::About::target ? truth.target : truth.second.value();
+      const auto& names = question.group == Question::Group::object_type ? set.object_types : set.textures;
+      answers.push_back(std::find(names.begin(), names.end(), question.candidate) != names.end());
+    }
+    return answers;
+  }
+  std::string model() const override { return "true distribution"; }
+  Provenance provenance() const override { return Provenance::truth; }
+  SelectionCost cost() const override { return {}; }
+
+ private:
+  TruthAsHuman truth_;
+};
+
 class Lines : public TrainingLog {
  public:
   void epoch(int epochs, long long steps, double loss) override {
@@ -65,10 +88,13 @@ struct TestSight {
 // A cell's worth of everything that the method is given.
 struct Bench {
   Scenario scenario;
+  std::string layout;
   std::unique_ptr<Environment> environment;
   std::vector<TestSight> sights;
 
-  Bench(const std::string& id, const PluginInfo& engine) : scenario(load_scenario(id)) {
+  Bench(const std::string& id, const PluginInfo& engine)
+      : scenario(load_scenario(id)),
+        layout(find_task(find_environment(scenario.environment), scenario.task).layouts.front()) {
     environment = make_environment(scenario, load_engine(engine));
     for (const Arm& arm : scenario.tests)
       for (int i = 0; i < scenes_an_arm; ++i) {
@@ -156,7 +182,7 @@ class MethodCheck {
       for (std::size_t c = 0; c < bench->scenario.commands.size(); ++c) {
         const Command command = bench->scenario.command(static_cast<int>(c));
         auto [selection, asked] = select("select", bench->scenario, command, false);
-        if (judged && first) judge_selection(needs, selection, asked, bench->scenario.space);
+        if (judged && first) judge_selection(needs, selection, asked, bench->scenario);
         use.selections += canonical(distribution_json(selection)) + '\n';
         instructions.push_back({command.utterance, std::move(selection)});
       }
@@ -180,7 +206,8 @@ class MethodCheck {
   std::pair<Selection, int> select(const std::string& what, const Scenario& scenario, const Command& command,
                                    bool always_no) {
     RecordedLanguageModel recorded(scenario, recorded_source(scenario, "recorded", plugin_.asks == "edit"));
-    CountingModel lm(recorded, always_no);
+    TruthfulModel truthful(scenario.commands);
+    CountingModel lm(recorded.knows(command) ? static_cast<LanguageModel&>(recorded) : truthful, always_no);
     DeclaredHuman human(std::make_unique<TruthAsHuman>(scenario.commands), plugin_.asks);
     Lines log;
     Services services{lm, human, options_, seed, log, declared_truth(scenario.commands, plugin_.asks)};
@@ -196,7 +223,7 @@ class MethodCheck {
       for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
     std::vector<Scene> scenes;
     for (int i = 0; i < demonstrations; ++i)
-      scenes.push_back(training_scene(bench.scenario, layout, selections, seed, i));
+      scenes.push_back(training_scene(bench.scenario, bench.layout, selections, seed, i));
     std::vector<Demonstration> shown = demonstrate(*bench.environment, scenes, needs, bench.scenario.utterances());
     for (std::size_t i = 0; i < shown.size(); ++i)
       shown[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
@@ -225,11 +252,11 @@ class MethodCheck {
     return text;
   }
 
-  void judge_selection(const Needs& needs, const Selection& selection, int asked, const FeatureSpace& space) {
+  void judge_selection(const Needs& needs, const Selection& selection, int asked, const Scenario& scenario) {
     const bool selects = selection.provenance != Provenance::none;
     std::string fault = thrown([&] {
       const Json json = distribution_json(selection);
-      read_distribution(JsonReader(json, "select()"), space);
+      read_distribution(JsonReader(json, "select()"), scenario.space, scenario.second);
     });
     if (fault.empty() && !selects && needs.targets == Needs::Targets::selected)
       fault = "needs() asks for scenes of the method's own Selection, and select() returns none";
@@ -241,21 +268,30 @@ class MethodCheck {
     report_.ok("cost", asked > 0 ? fmt::format("{} questions asked", asked) : "services.lm was not asked");
   }
 
-  // Commands that q1 has besides the first one's kind: nothing fits, and sweep.
+  // Commands of other kinds than the first: nothing fits, and those that speak of a second set.
   void judge_other_commands(const Needs& needs, const Scenario& scenario) {
     std::string fault = thrown([&] { select("select with every answer no", scenario, scenario.command(0), true); });
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
                   "select() bears a language model that answers no to everything",
                   "return the empty Selection: the host counts such a cell as failed by the abstraction");
-    const Scenario sweep = load_scenario("sweep_block_without_touching_pan");
+    for (const TaskInfo& task : installed_tasks())
+      if (task.second) judge_second_set(needs, task);
+  }
+
+  void judge_second_set(const Needs& needs, const TaskInfo& task) {
+    const Scenario scenario = load_scenario(task.example);
     Selection both;
-    fault = thrown([&] { both = select("select for sweep", sweep, sweep.command(0), false).first; });
-    const bool half = needs.targets == Needs::Targets::selected && !both.avoid;
+    const std::string fault =
+        thrown([&] { both = select("select for " + task.id, scenario, scenario.command(0), false).first; });
+    const bool half = needs.targets == Needs::Targets::selected && !both.second;
     if (fault.empty() && half)
-      report_.note("sweep", "the Selection says nothing of the obstacle: cells of sweep scenarios will fail",
-                   "set `avoid` where command.task is Task::sweep");
+      report_.note(task.id,
+                   fmt::format("the Selection says nothing of {}: cells of {} scenarios will fail", task.second->phrase,
+                               task.id),
+                   "set `second` where the command has one");
     else
-      report_.judge("sweep", fault.empty() ? "" : "select() threw: " + fault, "select() bears a sweep command",
+      report_.judge(task.id, fault.empty() ? "" : "select() threw: " + fault,
+                    fmt::format("select() bears a {} command", task.id),
                     "commands of every task are given to select()");
   }
 
@@ -322,12 +358,23 @@ class MethodCheck {
   HostedMethod method_;
 };
 
+// The first shipped scenario that tests commands which were not demonstrated.
+std::string with_unseen_commands() {
+  for (const std::string& id : scenario_ids()) {
+    const Scenario scenario = load_scenario(id);
+    for (const ScenarioCommand& command : scenario.commands)
+      if (!command.seen) return id;
+  }
+  throw InputError("scenarios: expected one with an unseen command");
+}
+
 }  // namespace
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
   std::vector<std::unique_ptr<Bench>> benches;
-  for (const char* id : {"heart", "q3_fruit"}) benches.push_back(std::make_unique<Bench>(id, engine));
+  for (const std::string& id : {installed_tasks().front().example, with_unseen_commands()})
+    benches.push_back(std::make_unique<Bench>(id, engine));
   phase("load");
   return MethodCheck(job, phase).run(benches);
 }

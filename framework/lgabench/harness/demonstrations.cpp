@@ -32,8 +32,7 @@ bool recovery_step(Environment& environment, const Scene& scene, double sigma, i
   action.pose0 = disturbed(action.pose0, sigma, stream);
   action.pose1 = disturbed(action.pose1, sigma, stream);
   StepResult result = environment.step(action);
-  if (result.truncated || result.failure == Failure::left_workspace || result.failure == Failure::touched_obstacle)
-    return false;
+  if (!result.recoverable) return false;
   step = {std::move(result.observation), label(environment.expert_action())};
   return true;
 }

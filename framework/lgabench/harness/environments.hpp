@@ -1,4 +1,4 @@
-// The environments that scenarios may name; the only part of the harness that knows them.
+// Scenes and worlds of a scenario, as its environment makes them.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -13,7 +13,7 @@ namespace {
 Action oracle(const Environment& environment, const Scene&, const Observation&) { return environment.expert_action(); }
 
 Action random_object(const Environment& environment, const Scene& scene, const Observation& observation) {
-  const SceneObject* goal = scene.find(Role::goal);
+  const SceneObject* goal = scene.find(role::goal);
   std::vector<std::uint8_t> visible;
   for (const Instance& instance : observation.instances)
     if (instance.pixels > 0 && !(goal && instance.id == goal->instance_id)) visible.push_back(instance.id);
@@ -24,7 +24,7 @@ Action random_object(const Environment& environment, const Scene& scene, const O
 
 Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
-  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), Failure::abstraction_empty, {}, "", {}, ""};
+  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), failure::abstraction_empty, {}, "", {}, ""};
   if (test.abstraction_empty) return episode;
   const Observation observation =
       imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
@@ -35,7 +35,7 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
     episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {
     to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());
-    episode.failure = Failure::method_error;
+    episode.failure = failure::method_error;
     episode.error = e.what();
   }
   return episode;
@@ -52,8 +52,8 @@ Json to_json(const Episode& e) {
             {"index", e.index},
             {"command", e.command},
             {"scene", hex(e.scene)},
-            {"success", e.failure == Failure::none},
-            {"failure", to_string(e.failure)},
+            {"success", e.failure == failure::none},
+            {"failure", e.failure},
             {"action", e.action ? Json(*e.action) : Json(nullptr)},
             {"attribution", e.attribution.empty() ? Json(nullptr) : Json(e.attribution)}};
   if (e.input_seen) json["input_seen"] = *e.input_seen;
@@ -95,9 +95,9 @@ void attribute_failures(Environment& environment, const FeatureSpace& space, con
                         const Actor& with_truth, std::vector<Episode>& episodes) {
   for (std::size_t i = 0; i < episodes.size(); ++i) {
     Episode& episode = episodes[i];
-    if (episode.failure == Failure::none) continue;
-    const bool saved = episode.failure == Failure::abstraction_empty ||
-                       play(environment, space, scenes.at(i), with_truth).failure == Failure::none;
+    if (episode.failure == failure::none) continue;
+    const bool saved = episode.failure == failure::abstraction_empty ||
+                       play(environment, space, scenes.at(i), with_truth).failure == failure::none;
     episode.attribution = saved ? "abstraction" : "policy";
   }
 }

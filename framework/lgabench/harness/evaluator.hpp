@@ -17,7 +17,7 @@ struct Episode {
   std::string arm;
   int index = 0, command = 0;
   std::uint64_t scene = 0;  // hash
-  Failure failure = Failure::none;
+  Failure failure = failure::none;
   std::optional<ActionVector> action;  // none where the actor gave none
   std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
   std::optional<bool> input_seen;      // Policy::seen_in_training() of the action

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include <lgabench/core/action_space.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 
@@ -125,7 +126,7 @@ void write_demonstration(const Library& h5, hid_t group, const Demonstration& de
   write_attribute(h5, group, "utterance", demonstration.instruction.utterance);
   // A dataset, not an attribute: attributes end at 64 KiB.
   const std::string table = canonical(instances);
-  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, 12}, actions.data(), false);
+  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, two_poses().numbers.size()}, actions.data(), false);
   write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
   const Handle obs = make_group(h5, group, "obs");
   write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
@@ -176,7 +177,8 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
   const auto instances = JsonReader(tables, h5.file(), place + "/instances").elements();
   const hsize_t steps = instances.size();
   if (steps == 0 || steps > 10000) h5.fail(place, "expected 1 to 10000 steps");
-  const auto actions = read_dataset<float>(h5, group, "actions", H5T_NATIVE_FLOAT, {steps, 12}, place);
+  const auto actions =
+      read_dataset<float>(h5, group, "actions", H5T_NATIVE_FLOAT, {steps, two_poses().numbers.size()}, place);
   const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, {steps, rows, columns, 3}, place);
   const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, {steps, rows, columns}, place);
 

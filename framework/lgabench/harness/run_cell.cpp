@@ -96,7 +96,7 @@ DemonstrationCache demonstration_cache(const CellJob& job) {
 }
 
 // A plugin may return anything; only names of the space can be shown and counted, only finite costs added up.
-void expect_usable(const FeatureSpace& space, const Selection& selection) {
+void expect_usable(const Scenario& scenario, const Selection& selection) {
   constexpr std::size_t longest = 2000;
   const auto& [queries, tokens, lm_seconds, human_seconds] = selection.cost;
   if (queries < 0 || tokens < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
@@ -108,16 +108,12 @@ void expect_usable(const FeatureSpace& space, const Selection& selection) {
   for (const std::string* words : {&selection.source, &selection.asked_as})
     if (words->size() > longest || one_line(*words) != *words)
       throw MethodError(fmt::format("selection: /source and /asked_as: expected a line of at most {} bytes", longest));
-  const auto check = [&space](const FeatureSet& set) {
-    try {
-      const Json json = to_json(set);
-      read_feature_set(JsonReader(json, "selection"), space);
-    } catch (const InputError& e) {
-      throw MethodError(e.what());
-    }
-  };
-  check(selection.target);
-  if (selection.avoid) check(*selection.avoid);
+  try {
+    const Json json = distribution_json(selection);
+    read_distribution(JsonReader(json, "selection"), scenario.space, scenario.second);
+  } catch (const InputError& e) {
+    throw MethodError(e.what());
+  }
 }
 
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
@@ -133,7 +129,7 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell) {
 std::string first_error(const std::vector<Episode>& episodes) {
   constexpr std::size_t longest = 2000;
   for (const Episode& episode : episodes)
-    if (episode.failure == Failure::method_error) return one_line(episode.error.substr(0, longest));
+    if (episode.failure == failure::method_error) return one_line(episode.error.substr(0, longest));
   return "";
 }
 
@@ -178,7 +174,7 @@ void run_cell(const CellJob& job, const PhaseReport& report) {
     const Command command = scenario.command(static_cast<int>(c));
     Selection selection;
     if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
-    expect_usable(scenario.space, selection);
+    expect_usable(scenario, selection);
     instructions.push_back({command.utterance, std::move(selection)});
   }
   const bool on_selected = method && needs.targets == Needs::Targets::selected;

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/run_layout.hpp>
 
@@ -102,8 +103,9 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
     const fs::path bin = program_directory();
     Json hashes;
     for (const char* name : {"lgabench-worker", "lgabench-method"}) hashes[name] = sha256_file(bin / name);
-    for (const char* name : {"liblgabench_core.so", "liblgabench_tabletop.so", "liblgabench_learning.so"})
-      hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
+    std::vector<std::string> libraries{"liblgabench_core.so", "liblgabench_learning.so"};
+    for (const std::string& id : environment_ids()) libraries.push_back(fmt::format("liblgabench_env_{}.so", id));
+    for (const std::string& name : libraries) hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
     return hashes;
   }();
   Json build = programs;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
@@ -71,8 +72,7 @@ Json to_json(const Grid& grid) {
 Grid apply(const JsonReader& overrides, Grid grid) {
   overrides.only(grid_members);
   if (overrides.has("scenarios")) grid.scenarios = names(overrides.at("scenarios"), "scenario", scenario_ids());
-  if (overrides.has("layouts"))
-    grid.layouts = names(overrides.at("layouts"), "layout", {"cells", "continuous", "released"});
+  if (overrides.has("layouts")) grid.layouts = names(overrides.at("layouts"), "layout", installed_layouts());
   if (overrides.has("engines")) grid.engines = names(overrides.at("engines"));
   if (overrides.has("methods")) grid.methods = names(overrides.at("methods"));
   if (overrides.has("demonstrations"))

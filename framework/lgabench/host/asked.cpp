@@ -11,12 +11,10 @@ namespace {
 
 bool nothing_in(const Selection& s) {
   const auto none = [](const FeatureSet& set) { return set.object_types.empty() && set.textures.empty(); };
-  return none(s.target) && (!s.avoid || none(*s.avoid));
+  return none(s.target) && (!s.second || none(*s.second));
 }
 
-bool same_distribution(const Selection& a, const Selection& b) {
-  return a.target == b.target && a.avoid.has_value() == b.avoid.has_value() && (!a.avoid || *a.avoid == *b.avoid);
-}
+bool same_distribution(const Selection& a, const Selection& b) { return a.target == b.target && a.second == b.second; }
 
 // Names in the space's order, each once.
 std::vector<std::string> in_order(const std::vector<std::string>& names, const std::vector<std::string>& order) {
@@ -32,7 +30,7 @@ Selection in_order(Selection selection, const FeatureSpace& space) {
     set = {in_order(set.object_types, space.object_types), in_order(set.textures, space.textures)};
   };
   sort(selection.target);
-  if (selection.avoid) sort(*selection.avoid);
+  if (selection.second) sort(*selection.second);
   return selection;
 }
 
@@ -64,17 +62,17 @@ void Asked::rethrow() const {
 Json Asked::answer_questions(const JsonReader& reader) {
   const auto [command, space, questions] = protocol::read_or_malformed([&] {
     std::vector<Question> all;
-    for (const JsonReader& one : reader.at("questions").elements()) all.push_back(protocol::read_question(one));
-    return std::tuple(protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")), all);
+    const Command asked = protocol::read_command(reader.at("command"));
+    for (const JsonReader& one : reader.at("questions").elements()) all.push_back(protocol::read_question(one, asked));
+    return std::tuple(asked, protocol::read_space(reader.at("space")), all);
   });
   LanguageModel& lm = services_.lm;
   const std::vector<bool> answers = lm.answer(command, space, questions);
-  if (command.task == Task::sweep && !model_.avoid) model_.avoid.emplace();
+  if (command.second && !model_.second) model_.second = SecondSet{{}, command.second->id};
   for (std::size_t i = 0; i < std::min(answers.size(), questions.size()); ++i) {
     if (!answers[i]) continue;
-    const bool avoid = questions[i].about == Question::About::avoid;
-    if (avoid && !model_.avoid) model_.avoid.emplace();
-    FeatureSet& set = avoid ? *model_.avoid : model_.target;
+    const bool second = questions[i].about == Question::About::second;
+    FeatureSet& set = second ? *model_.second : model_.target;
     (questions[i].group == Question::Group::texture ? set.textures : set.object_types)
         .push_back(questions[i].candidate);
   }

@@ -1,15 +1,17 @@
 #include <lgabench/host/messages.hpp>
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cstring>
+
+#include <lgabench/core/action_space.hpp>
 
 namespace lgabench::protocol {
 namespace {
 
 using About = Question::About;
 using Group = Question::Group;
-
-constexpr std::array<Task, 3> tasks{Task::pick_and_place, Task::rotate, Task::sweep};
 
 FeatureSet read_set(const JsonReader& reader) {
   reader.only({"object_types", "textures"});
@@ -24,14 +26,18 @@ std::array<double, 12> numbers(const Action& action) {
 
 }  // namespace
 
-Json to_json(const Command& command) { return {{"utterance", command.utterance}, {"task", to_string(command.task)}}; }
+Json to_json(const Command& command) {
+  Json json{{"utterance", command.utterance}, {"task", command.task}};
+  if (command.second) json["second"] = {{"id", command.second->id}, {"phrase", command.second->phrase}};
+  return json;
+}
 
 Command read_command(const JsonReader& reader) {
-  Command command{reader.at("utterance").string(), Task::pick_and_place};
-  const std::string word = reader.at("task").string();
-  for (const Task task : tasks)
-    if (to_string(task) == word) command.task = task;
-  if (to_string(command.task) != word) reader.at("task").fail("pick_and_place, rotate or sweep");
+  Command command{reader.at("utterance").string(), reader.at("task").string(), std::nullopt};
+  if (reader.has("second")) {
+    const JsonReader second = reader.at("second");
+    command.second = SecondRole{second.at("id").string(), second.at("phrase").string()};
+  }
   return command;
 }
 
@@ -52,10 +58,14 @@ Json told(const Selection& selection) {
 }
 
 Selection read_selection(const JsonReader& reader) {
-  reader.only({"target", "avoid", "provenance", "source", "asked_as"});
   Selection selection;
   selection.target = read_set(reader.at("target"));
-  if (reader.has("avoid")) selection.avoid = read_set(reader.at("avoid"));
+  const Json distribution = distribution_of(reader.json());
+  for (const auto& item : distribution.items()) {
+    if (item.key() == "target") continue;
+    if (selection.second) reader.fail("one second set at most");
+    selection.second = SecondSet{read_set(reader.at(item.key())), item.key()};
+  }
   if (reader.has("provenance")) selection.provenance = provenance_from(reader.at("provenance").string());
   if (reader.has("source")) selection.source = reader.at("source").string();
   if (reader.has("asked_as")) selection.asked_as = reader.at("asked_as").string();
@@ -87,17 +97,20 @@ Needs read_needs(const JsonReader& reader) {
   return needs;
 }
 
-Json to_json(const Question& question) {
-  return {{"about", question.about == About::avoid ? "avoid" : "target"},
+Json to_json(const Question& question, const Command& command) {
+  if (question.about == About::second && !command.second)
+    throw MethodError("a question about a second set, which the command does not have");
+  return {{"about", question.about == About::second ? command.second->id : "target"},
           {"group", question.group == Group::texture ? "texture" : "object_type"},
           {"candidate", question.candidate}};
 }
 
-Question read_question(const JsonReader& reader) {
+Question read_question(const JsonReader& reader, const Command& command) {
   const std::string about = reader.at("about").string(), group = reader.at("group").string();
-  if (about != "target" && about != "avoid") reader.at("about").fail("target or avoid");
+  if (about != "target" && !(command.second && about == command.second->id))
+    reader.at("about").fail(command.second ? fmt::format("target or {}", command.second->id) : "target");
   if (group != "object_type" && group != "texture") reader.at("group").fail("object_type or texture");
-  return {about == "avoid" ? About::avoid : About::target, group == "texture" ? Group::texture : Group::object_type,
+  return {about == "target" ? About::target : About::second, group == "texture" ? Group::texture : Group::object_type,
           reader.at("candidate").string()};
 }
 
@@ -168,22 +181,13 @@ Action read_action(const std::string& bytes) {
 }
 
 Json layout() {
-  Json numbers = Json::array();
-  for (const char* pose : {"pose0", "pose1"}) {
-    const auto add = [&](const char* name, const char* unit, double low, double high) {
-      numbers.push_back({{"name", std::string(pose) + "." + name}, {"unit", unit}, {"low", low}, {"high", high}});
-    };
-    add("x", "m", Workspace::x_min, Workspace::x_max);
-    add("y", "m", Workspace::y_min, Workspace::y_max);
-    for (const char* name : {"qx", "qy", "qz", "qw"}) add(name, "", -1, 1);
-  }
   return {{"observation",
            {{"rows", Observation::rows},
             {"columns", Observation::columns},
             {"channels", 3},
             {"x_m", {Workspace::x_min, Workspace::x_max}},
             {"y_m", {Workspace::y_min, Workspace::y_max}}}},
-          {"action", numbers}};
+          {"action", lgabench::to_json(two_poses())}};
 }
 
 }  // namespace lgabench::protocol

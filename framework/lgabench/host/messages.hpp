@@ -28,7 +28,7 @@ FeatureSpace read_space(const JsonReader& reader);
 
 /// As a method is told of one: with provenance, source and wording, and without cost.
 Json told(const Selection& selection);
-/// Reads that, or what a method returns: {"target", "avoid"?}. Names as they are.
+/// Reads that, or what a method returns: {"target", a second set?}. Names as they are.
 Selection read_selection(const JsonReader& reader);
 
 Json to_json(const Instruction& instruction);
@@ -37,8 +37,9 @@ Instruction read_instruction(const JsonReader& reader);
 Json to_json(const Needs& needs);
 Needs read_needs(const JsonReader& reader);
 
-Json to_json(const Question& question);
-Question read_question(const JsonReader& reader);
+/// A question about a command's second set bears the name of its role.
+Json to_json(const Question& question, const Command& command);
+Question read_question(const JsonReader& reader, const Command& command);
 
 Json to_json(const SelectionCost& cost);
 SelectionCost read_cost(const JsonReader& reader);

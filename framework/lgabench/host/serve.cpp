@@ -35,7 +35,7 @@ class RemoteModel : public LanguageModel {
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override {
     Json all = Json::array();
-    for (const Question& question : questions) all.push_back(protocol::to_json(question));
+    for (const Question& question : questions) all.push_back(protocol::to_json(question, command));
     const Frame frame = ask(channel_,
                             {{"type", "ask"},
                              {"command", protocol::to_json(command)},

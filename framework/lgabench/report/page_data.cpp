@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/geometry.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>

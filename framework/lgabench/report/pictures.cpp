@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/selection.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -26,9 +27,7 @@ struct Request {
 // All that a goal mask depends on beside the scene.
 Json what_is_kept(const CellResult& cell, const Json& selection) {
   const Json all = "all", chosen = cell.options.value("instances", all);
-  Json distribution{{"target", selection.at("target")}};
-  if (selection.contains("avoid")) distribution["avoid"] = selection.at("avoid");
-  return {{"distribution", distribution}, {"instances", chosen.is_string() ? chosen : all}};
+  return {{"distribution", distribution_of(selection)}, {"instances", chosen.is_string() ? chosen : all}};
 }
 
 // A request for each scene in which a method failed, by index, then as the cells are ordered.

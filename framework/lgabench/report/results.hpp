@@ -67,9 +67,6 @@ struct RunResults {
   int foreign = 0;     // there, not asked for by run.json: ignored
 };
 
-/// Every word that `failure` may be on a failed episode, in a fixed order.
-std::vector<std::string> failure_words();
-
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/report/summary.hpp>
 #include <lgabench/report/writers.hpp>
 

@@ -37,7 +37,7 @@ class Cheat : public Policy {
     };
     const auto scene = std::find_if(known_.begin(), known_.end(), shows);
     if (scene == known_.end()) throw MethodError("a scene that is not known");
-    return {{scene->find(Role::target)->position_m, {}}, {scene->find(Role::goal)->position_m, {}}};
+    return {{scene->find(role::target)->position_m, {}}, {scene->find(role::goal)->position_m, {}}};
   }
 
  private:

@@ -1,0 +1,77 @@
+#include <tabletop/content.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <tabletop/task.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+void append(std::vector<std::string>& names, std::vector<std::string> more) {
+  names.insert(names.end(), more.begin(), more.end());
+}
+
+void read_choice(const JsonReader& reader, const FeatureSpace& space, Content& content) {
+  constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
+  content.choice = reader.strings();
+  if (content.choice.size() > most) reader.fail(fmt::format("at most {} object types", most));
+  for (const JsonReader& type : reader.elements())
+    if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
+      type.fail("an object type of the feature space");
+}
+
+void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& content) {
+  constexpr int most = 2;  // distractors: more do not fit beside the widest target
+  const FeatureSpace& space = scenario.space;
+  if (reader.has("target")) content.target = read_feature_set(reader.at("target"), space);
+  if (scenario.second && reader.has(scenario.second->id))
+    content.second = read_feature_set(reader.at(scenario.second->id), space);
+  if (reader.has("distractors")) {
+    const auto range = reader.at("distractors").elements();
+    if (range.size() != 2) reader.at("distractors").fail("[fewest, most]");
+    content.distractors.first = static_cast<int>(range[0].integer(0, most));
+    content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
+  }
+  if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
+  if (reader.has("hard")) content.hard = reader.at("hard").boolean();
+  if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
+  if (reader.has("choice")) read_choice(reader.at("choice"), space, content);
+}
+
+}  // namespace
+
+const Content& content_of(const SceneContent& scenes) { return dynamic_cast<const Content&>(scenes); }
+
+const Content& content_of(const Scenario& scenario, const std::string& arm) {
+  return content_of(arm == "train" ? *scenario.train : *scenario.arm(arm).scenes);
+}
+
+std::vector<std::string> scenario_members(const Task& task) {
+  std::vector<std::string> names{"never_distractor"};
+  append(names, task.scenario_members());
+  return names;
+}
+
+std::vector<std::string> scene_members(const Task& task) {
+  std::vector<std::string> names{"target", "distractors", "outside_all_commands", "hard", "later_letters", "choice"};
+  if (const auto second = task.second()) names.push_back(second->id);
+  append(names, task.scene_members());
+  return names;
+}
+
+Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
+  Content content;
+  if (training) content.distractors = {1, 1};
+  if (file.has("never_distractor"))
+    content.never_distractor = read_feature_set(file.at("never_distractor"), scenario.space);
+  if (scenes) read_scenes(*scenes, scenario, content);
+  find_task(scenario.task).read(file, scenes, content);
+  if (training && scenario.as_method_asks && (content.target || content.second))
+    scenes->fail("\"as_method_asks\": false beside \"target\"" +
+                 (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
+  return content;
+}
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,41 @@
+// What a tabletop scenario says of its scenes.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench::tabletop {
+
+class Task;
+
+/// What scenes of one kind hold. Targets and the second set are drawn from the command's truth where nothing else is
+/// said.
+struct Content : SceneContent {
+  std::optional<FeatureSet> target, second;
+  std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
+  bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
+  bool hard = false;           // a distractor shares the target's type or its texture, and still is no target
+  bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
+  /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets, or
+  /// the second set where the task has one), the others are distractors.
+  std::vector<std::string> choice;
+  std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
+  std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
+};
+
+/// Of scenes that lgabench read for this environment: an arm's, or those to train on.
+const Content& content_of(const SceneContent& scenes);
+const Content& content_of(const Scenario& scenario, const std::string& arm);
+
+/// Names of the members, as EnvironmentType asks for them.
+std::vector<std::string> scenario_members(const Task& task);
+std::vector<std::string> scene_members(const Task& task);
+
+/// EnvironmentType::read_content().
+Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training);
+
+}  // namespace lgabench::tabletop

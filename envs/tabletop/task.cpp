@@ -1,0 +1,59 @@
+#include <tabletop/task.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/core/suggest.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+template <class List, class Id>
+auto named(const char* what, const List& list, const std::string& id, Id id_of) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const auto& one) { return id_of(one) == id; });
+  if (found != list.end()) return *found;
+  std::vector<std::string> known;
+  for (const auto& one : list) known.push_back(id_of(one));
+  throw InputError(none_named(what, id, known));
+}
+
+}  // namespace
+
+void Task::place(const Layout& layout, const Content&, std::vector<SceneObject>& objects, const Streams& stream) const {
+  if (layout.target_places.empty())
+    place_freely(
+        layout, [&](const SceneObject& target) { return room(layout, target); }, objects, stream);
+  else
+    place_on_cells(layout, objects, stream("layout"));
+}
+
+std::vector<Polygon> Task::room(const Layout&, const SceneObject&) const { return {}; }
+
+Motion Task::carry_out(const Scene&, const Bodies& bodies, const Action& action) const {
+  return pick_and_place(bodies, action);
+}
+
+const Task& find_task(const std::string& id) {
+  return *named("task", tasks(), id, [](const Task* task) { return task->id(); });
+}
+
+Layout find_layout(const Task& task, const std::string& id) {
+  return named(fmt::format("layout of {}", task.id()).c_str(), task.layouts(), id,
+               [](const Layout& layout) { return layout.id; });
+}
+
+std::vector<Vec2> four_places() { return {{.375, -.36}, {.625, -.36}, {.375, -.06}, {.625, -.06}}; }
+
+Layout released_layout(std::optional<Vec2> pallet) {
+  constexpr double widest = .17;
+  return {"released", {{.34375, -.265625}, {.34375, .125}}, {{.34375, .125}, {.625, -.265625}}, pallet, widest};
+}
+
+const SceneObject& expect(const Scene& scene, const Role& role) {
+  const SceneObject* found = scene.find(role);
+  if (!found) throw InputError(fmt::format("scene: expected an object to be a {}", role));
+  return *found;
+}
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,86 @@
+// A task: what is placed, what an action does, what the expert would do, and what counts as success. One file of
+// tasks/ each.
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/environments.hpp>
+#include <tabletop/content.hpp>
+#include <tabletop/motions.hpp>
+#include <tabletop/placement.hpp>
+#include <tabletop/renderer.hpp>
+
+namespace lgabench::tabletop {
+
+/// A task's second set of objects: its name in Selections, and the one that its objects have in scenes.
+struct SecondObjects : SecondRole {
+  Role in_scenes;  // SceneObject::role
+};
+
+/// An object where a motion left it.
+struct Final {
+  const SceneObject& object;
+  Pose pose;
+  Vec2 centre_m;  // see centre_of()
+  double yaw_rad;
+};
+
+/// One object, constant, for as long as the program runs. Whatever is not overridden is as in pick-and-place.
+class Task {
+ public:
+  virtual ~Task() = default;
+
+  virtual std::string id() const = 0;
+  virtual std::vector<Layout> layouts() const = 0;
+  virtual std::optional<SecondObjects> second() const { return std::nullopt; }
+  /// Failure words of judge() and carry_out(), beside those that every task has (failures.hpp).
+  virtual std::vector<std::string> failures() const = 0;
+  /// A shipped scenario: TaskInfo::example, which is also the first of this task in a gallery.
+  virtual std::string example() const = 0;
+
+  /// Members of the task's own in a scenario's file, and in its "train" and "tests"; read() puts what they say into
+  /// `content.numbers`. Arguments as of EnvironmentType::read_content().
+  virtual std::vector<std::string> scenario_members() const { return {}; }
+  virtual std::vector<std::string> scene_members() const { return {}; }
+  virtual void read(const JsonReader& /*file*/, const JsonReader* /*scenes*/, Content& /*content*/) const {}
+  /// Scene::angle_rad.
+  virtual double angle_rad(const Content&) const { return 0; }
+
+  /// Sets position and yaw of every object but the goal. objects[0] is a target and takes its place first, from a
+  /// stream of its own, so that scenes with other distractors share it. A distractor that finds no place is left out
+  /// (fixed places). @throws Error where free places run out.
+  virtual void place(const Layout& layout, const Content& content, std::vector<SceneObject>& objects,
+                     const Streams& stream) const;
+  /// What must stay free beside the target itself for its motion: seen from above.
+  virtual std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const;
+  /// What is painted on the table.
+  virtual Ground ground() const { return Ground::plain; }
+
+  /// Carries out what the action means in this task. @pre `action` is executable.
+  virtual Motion carry_out(const Scene& scene, const Bodies& bodies, const Action& action) const;
+  /// What does the task in the present state, with objects[object] as the target. `poses` in the order of
+  /// scene.objects; the world is only looked at. @throws InputError where the scene lacks an object that this needs.
+  virtual Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
+                               std::size_t object) const = 0;
+  /// Did that target end as the task asks? All bodies rest, within the workspace. Pure. `finals` in the order of
+  /// scene.objects. @returns failure::none or one of failures(). @throws InputError where the scene lacks an object.
+  virtual Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const = 0;
+};
+
+/// All tasks, in the order in which tables and checks name them.
+const std::vector<const Task*>& tasks();
+/// @throws InputError that lists the known ones.
+const Task& find_task(const std::string& id);
+/// The task's layout of that name. @throws InputError that lists its layouts.
+Layout find_layout(const Task& task, const std::string& id);
+
+/// What several tasks build on. The four fixed places of pick-and-place ("cells").
+std::vector<Vec2> four_places();
+/// The five places of the authors' released code: targets in the first two, distractors in the second and third.
+Layout released_layout(std::optional<Vec2> pallet = {});
+/// The first object of that role. @throws InputError where there is none.
+const SceneObject& expect(const Scene& scene, const Role& role);
+
+}  // namespace lgabench::tabletop

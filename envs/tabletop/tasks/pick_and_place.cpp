@@ -1,0 +1,54 @@
+// Pick-and-place: bring the target onto the pallet.
+#include <tabletop/oracle.hpp>
+#include <tabletop/task.hpp>
+
+#include <tabletop/objects.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+constexpr double near_m = 0.1;  // of the goal's centre
+
+class PickAndPlace final : public Task {
+ public:
+  std::string id() const override { return "pick_and_place"; }
+  std::vector<std::string> failures() const override { return {failure::bad_placement}; }
+  std::string example() const override { return "heart"; }
+
+  std::vector<Layout> layouts() const override {
+    constexpr Vec2 pallet{.5, .3}, released_pallet{.625, .125};
+    return {{"cells", four_places(), four_places(), pallet},
+            {"continuous", {}, {}, pallet},
+            released_layout(released_pallet)};
+  }
+
+  // A large target reaches beyond the pallet that it is brought to.
+  std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const override {
+    return placed_outline(object_model(target.object_type), *layout.pallet, target.yaw_rad);
+  }
+
+  Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
+                       std::size_t object) const override {
+    return bring(scene, poses, world, object, expect(scene, role::goal).position_m);
+  }
+
+  Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
+    expect(scene, role::goal);
+    Vec2 goal;
+    for (const Final& f : finals)
+      if (f.object.role == role::goal) goal = f.centre_m;
+    if (norm(target.centre_m - goal) > near_m) return failure::bad_placement;
+    for (const Final& f : finals)
+      if (f.object.role == role::distractor && norm(f.centre_m - goal) <= near_m) return failure::bad_placement;
+    return failure::none;
+  }
+};
+
+}  // namespace
+
+const Task& task_pick_and_place() {
+  static const PickAndPlace task;
+  return task;
+}
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,90 @@
+// The environments that are installed: what the framework asks of one beside playing scenes (environment.hpp).
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/action_space.hpp>
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/physics_world.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// A task of an environment, by its words.
+struct TaskInfo {
+  std::string id;
+  std::vector<std::string> layouts;   // how its objects may be placed
+  std::optional<SecondRole> second;   // the set of objects that its commands speak of beside the target
+  std::vector<std::string> failures;  // the task's own words, beside those that all tasks of the environment share
+  std::string example;                // a shipped scenario: what checks play where any scenario of the task will do
+};
+
+/// All that a scene depends on (docs/protocol.md, section 3): not engine, method, thread or host.
+struct SceneRequest {
+  std::string layout;  // one of the task's
+  std::string split;   // train, dev or test
+  std::string arm;     // of the scenario's tests, or "train" for training scenes
+  std::uint64_t seed = 0;
+  /// Of training targets and second sets where the scenario leaves them to the method: one a command, only the
+  /// distributions count. Empty: the truth.
+  std::vector<Selection> selections = {};
+  /// Of test scenes that one training seed has to itself: part of their random streams. None: shared by all seeds.
+  std::optional<std::uint64_t> training_seed = {};
+};
+
+/// A kind of environment: one object, constant, for as long as the program runs. Any thread, but draw().
+class EnvironmentType {
+ public:
+  virtual ~EnvironmentType() = default;
+
+  virtual const std::string& id() const = 0;
+  /// In the order in which tables and checks name them.
+  virtual const std::vector<TaskInfo>& tasks() const = 0;
+  /// Every word that step() may give for a failure but the framework's own, in the order in which reports list them.
+  virtual const std::vector<std::string>& failures() const = 0;
+
+  /// What the numbers of its actions mean.
+  virtual const ActionSpace& action_space() const = 0;
+
+  /// Members that a scenario's file may have for the environment to read: beside those of scenario.hpp, and in "train"
+  /// and each of "tests" beside those of Arm.
+  virtual std::vector<std::string> scenario_members(const TaskInfo& task) const = 0;
+  virtual std::vector<std::string> scene_members(const TaskInfo& task) const = 0;
+  /// Reads what scenes of one kind hold. `file`: the whole scenario; `scenes`: its "train", null where it has none, or
+  /// one of its "tests". `scenario` is complete but for these. @throws InputError with file and place.
+  virtual std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
+                                                           const JsonReader* scenes, bool training) const = 0;
+
+  /// Scene number `index`. @throws InputError where layout, split or arm is unknown, or the distribution holds nothing
+  /// that the layout can show.
+  virtual Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const = 0;
+  /// What is seen at the scene's beginning, without an engine. One thread at a time.
+  virtual Observation draw(const Scene& scene) const = 0;
+  /// An environment on that engine, for scenes of that space. @throws EngineError if the engine fails.
+  virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace& space) const = 0;
+};
+
+/// The environment named `id`: the shared library lgabench_env_ID beside lgabench's own, loaded when it is first asked
+/// for. @throws InputError for one that is not installed.
+const EnvironmentType& find_environment(const std::string& id);
+
+/// Ids of all that are installed, sorted.
+std::vector<std::string> environment_ids();
+
+/// Tasks of all that are installed.
+std::vector<TaskInfo> installed_tasks();
+/// Layouts of all tasks, each once.
+std::vector<std::string> installed_layouts();
+/// Words for a failure, in a report's order: of all environments, then the framework's.
+std::vector<std::string> failure_words();
+
+/// The environment's task of that id. @throws InputError that lists the known ones.
+const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id);
+
+}  // namespace lgabench
+
+/// What the library of an environment defines.
+extern "C" const lgabench::EnvironmentType* lgabench_environment();

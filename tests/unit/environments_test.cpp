@@ -1,0 +1,60 @@
+// What is known of an environment from its library: tasks, layouts, words.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <lgabench/core/environments.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+using Words = std::vector<std::string>;
+
+TEST(Environments, AreTheLibrariesBesideLgabenchsOwn) {
+  EXPECT_EQ(environment_ids(), Words{"tabletop"});
+  EXPECT_EQ(find_environment("tabletop").id(), "tabletop");
+  EXPECT_EQ(&find_environment("tabletop"), &find_environment("tabletop"));
+  EXPECT_SAYS(message_of<InputError>([] { find_environment("tabletops"); }),
+              "no environment \"tabletops\" (did you mean \"tabletop\"?), expected one of: tabletop");
+  for (const char* path : {"", "../lib/liblgabench_env_tabletop", "core"})
+    EXPECT_THROW(find_environment(path), InputError) << path;
+}
+
+TEST(Environments, TasksNameTheirLayoutsSecondSetAndExample) {
+  const EnvironmentType& tabletop = find_environment("tabletop");
+  const TaskInfo& sweep = find_task(tabletop, "sweep");
+  EXPECT_EQ(sweep.layouts, (Words{"cells", "continuous", "released"}));
+  ASSERT_TRUE(sweep.second);
+  EXPECT_EQ(sweep.second->id, "avoid");
+  EXPECT_EQ(sweep.second->phrase, "the object to be avoided");
+  EXPECT_EQ(sweep.failures, (Words{"missed_zone", "touched_obstacle"}));
+  EXPECT_FALSE(find_task(tabletop, "rotate").second);
+  EXPECT_SAYS(message_of<InputError>([&] { find_task(tabletop, "swep"); }),
+              "no task \"swep\" (did you mean \"sweep\"?)");
+  for (const TaskInfo& task : installed_tasks()) {
+    const Scenario example = load_scenario(task.example);
+    EXPECT_EQ(example.task, task.id);
+    EXPECT_EQ(example.second.has_value(), task.second.has_value()) << task.id;
+  }
+}
+
+// The order of columns in summary.csv.
+TEST(Environments, FailureWordsKeepTheirOrder) {
+  const Words words = failure_words();
+  EXPECT_EQ(words, (Words{"missed_object", "wrong_object", "bad_placement", "bad_angle", "missed_zone",
+                          "touched_obstacle", "left_workspace", "truncated", "abstraction_empty", "method_error"}));
+}
+
+TEST(Environments, DrawWhatAnEpisodeBeginsWith) {
+  const Scenario heart = load_scenario("heart");
+  const EnvironmentType& tabletop = find_environment(heart.environment);
+  const Scene scene = tabletop.sample(heart, {"cells", "test", "test"}, 3);
+  const Observation seen = tabletop.draw(scene), again = tabletop.draw(scene);
+  EXPECT_EQ(seen.rgb, again.rgb);
+  EXPECT_EQ(seen.instances.size(), scene.objects.size());
+}
+
+}  // namespace
+}  // namespace lgabench
