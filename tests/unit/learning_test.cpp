@@ -550,7 +550,7 @@ TEST(Policies, OfCentroidsTellTheTargetFromWhatIsToBeAvoided) {
 // A heart to take and a star to avoid; what is both counts as the heart.
 TEST(Policies, SeeWhatIsToBeAvoidedApartWhereTheMaskIsSigned) {
   Instruction around_stars = instruction();
-  around_stars.selection.avoid = FeatureSet{{"star", "heart"}, {"blue", "red"}};
+  around_stars.selection.second = SecondSet{{{"star", "heart"}, {"blue", "red"}}, "avoid"};
   PolicyInputs seen{{Picture::mask}};
   for (const bool apart : {false, true}) {
     seen.signed_mask = apart;
@@ -577,9 +577,9 @@ TEST(Policies, SeeWhatIsToBeAvoidedApartWhereTheMaskIsSigned) {
 // Of two roles in one small pixel the target's stays.
 TEST(Inputs, ASmallPixelOfASignedMaskIsTheTargetsIfItTouchesIt) {
   std::vector<std::uint8_t> roles(rows * columns);
-  roles[0] = avoid_role;
+  roles[0] = second_role;
   roles[1] = target_role;
-  roles[8] = avoid_role;
+  roles[8] = second_role;
   std::vector<float> small(input_pixels), native(rows * columns);
   shrink_mask(roles, input_size, small.data());
   EXPECT_EQ(std::vector<float>(small.begin(), small.begin() + 4), (std::vector<float>{1, 0, -1, 0}));

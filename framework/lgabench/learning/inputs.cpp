@@ -35,14 +35,14 @@ void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize size, float*
   for (int r = 0; r < size.rows; ++r)
     for (int c = 0; c < size.columns; ++c) {
       const int left = first(c, columns, size.columns), right = last(c, columns, size.columns);
-      bool target = false, avoid = false;
+      bool target = false, second = false;
       for (int y = first(r, rows, size.rows); y < last(r, rows, size.rows); ++y)
         for (int x = left; x < right; ++x) {
           const std::uint8_t role = mask[static_cast<std::size_t>(y * columns + x)];
           target = target || role == target_role;
-          avoid = avoid || role == avoid_role;
+          second = second || role == second_role;
         }
-      *out++ = target ? 1.f : avoid ? -1.f : 0.f;
+      *out++ = target ? 1.f : second ? -1.f : 0.f;
     }
 }
 

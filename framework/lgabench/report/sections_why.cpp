@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
