@@ -20,7 +20,7 @@ constexpr int scenes = 100;
 class Cheat : public Policy {
  public:
   explicit Cheat(const Scenario& scenario) {
-    const tabletop::SceneRequest request{"cells", "test", scenario.tests.front().id, 0};
+    const SceneRequest request{"cells", "test", scenario.tests.front().id, 0};
     for (int i = 0; i < scenes; ++i) known_.push_back(tabletop::sample_scene(scenario, request, i));
   }
 
