@@ -40,7 +40,8 @@ function(lgabench_install_package)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
           FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"
           PATTERN reader.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN head.hpp EXCLUDE PATTERN linear.hpp EXCLUDE
-          PATTERN tower.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE
+          PATTERN tower.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE PATTERN heat_map_network.hpp EXCLUDE
+          PATTERN motion.hpp EXCLUDE PATTERN places.hpp EXCLUDE PATTERN policies.hpp EXCLUDE
           PATTERN cli EXCLUDE PATTERN harness EXCLUDE PATTERN report EXCLUDE
           PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
   # An SDK of another version is refused when a plugin is read; CMake may say so first.

@@ -99,6 +99,11 @@ TEST(UsualSeconds, GrowWithWhatIsLearntAndPlayed) {
   EXPECT_NEAR(with("epochs", 75), .14, .05);
   EXPECT_LT(with("network", "plain"), .9);
   EXPECT_LT(with("policy", "centroid"), .1);
+  Cell few = cell, many = cell;
+  few.demonstrations = 16, many.demonstrations = 1600;
+  for (Cell* one : {&few, &many}) one->method.options["policy"] = "heat_map";
+  EXPECT_GT(usual_seconds(few), 3);
+  EXPECT_LT(usual_seconds(many), usual_seconds(few) + 2) << "as many steps for any data";
   Cell two = cell, hundred = cell;
   two.scenario["commands"] = {Json::object(), Json::object(), {{"seen", false}}};
   EXPECT_NEAR(usual_seconds(two) / usual_seconds(cell), 2, .1) << "demonstrations are of each seen command";

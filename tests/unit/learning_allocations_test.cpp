@@ -84,7 +84,7 @@ TEST_P(Acting, OnTheGoalMaskMakesNoAllocation) {
   EXPECT_EQ(to_vector(again), first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Policies, Acting, testing::Values("regression", "centroid"));
+INSTANTIATE_TEST_SUITE_P(Policies, Acting, testing::Values("regression", "centroid", "heat_map"));
 
 }  // namespace
 }  // namespace lgabench

@@ -483,7 +483,7 @@ TEST(Policies, TellWhetherTheirInputStoodInTraining) {
   std::replace(star_moved.ids.begin(), star_moved.ids.end(), std::uint8_t{7}, std::uint8_t{0});
   std::rotate(moved.ids.begin(), moved.ids.begin() + 7, moved.ids.end());
   star_moved.rgb[0] ^= 1;
-  for (const char* policy : {"regression", "centroid"}) {
+  for (const char* policy : {"regression", "centroid", "heat_map"}) {
     const Trained mask = learn({{Picture::mask}}, data, 1, 0, {{"policy", policy}});
     EXPECT_EQ(mask.policy->seen_in_training(), std::nullopt) << "of no action yet";
     act(mask, shown);
@@ -614,6 +614,26 @@ TEST(Policies, MayBeShownAPictureOfTheMethodsOwn) {
   EXPECT_NE(act(learn({{Picture::rgb}}, data, 5), probe), shown);
 }
 
+// The heat map takes what a method shows, a text beside colours included, and needs a picture of it.
+TEST(Policies, OfHeatMapsSeeAllInputs) {
+  const auto data = demonstrations(3);
+  const Json heat_map{{"policy", "heat_map"}};
+  const Observation probe = scene(30, 100, 80, 30);
+  Observation recoloured = probe;
+  for (auto& byte : recoloured.rgb) byte = static_cast<std::uint8_t>(255 - byte);
+  const Trained rgb = learn({{Picture::rgb}, Text::utterance}, data, 1, 0, heat_map);
+  EXPECT_NE(act(rgb, probe), act(rgb, recoloured));
+  EXPECT_EQ(rgb.log.back().steps, 300);
+  Instruction other = instruction();
+  other.utterance = "Bring me the heart.";
+  rgb.policy->act(probe, other);
+  EXPECT_EQ(rgb.policy->seen_in_training(), false);
+  const Trained all = learn({{Picture::rgb, Picture::mask}}, data, 1, 0, heat_map);
+  EXPECT_LT(norm(all.policy->act(probe, instruction()).pose0.position_m - Vec2{.25 + 50 / 256., -.5 + 120 / 256.}),
+            .05);
+  EXPECT_THROW(learn({{}, Text::utterance}, data, 1, 0, heat_map), InputError);
+}
+
 TEST(Policies, OfAnUnknownNameAreRefused) {
   EXPECT_THROW(learn({{Picture::mask}}, demonstrations(1), 1, 0, {{"policy", "oracle"}}), InputError);
 }
@@ -674,6 +694,10 @@ TEST(ShippedMethods, RefuseACentroidWhereTheySeeNoMask) {
   for (const char* id : {"lga_l", "gcbc_dart", "gcbc_seg"})
     EXPECT_NE(refusal(id, {{"policy", "centroid"}}).find("needs a goal mask"), std::string::npos) << id;
   EXPECT_EQ(refusal("factorial", {{"policy", "centroid"}, {"input", "object_mask"}}), "");
+  for (const char* id : {"lga", "lga_hill", "human", "lga_s", "lga_l", "gcbc_dart", "gcbc_seg", "factorial"})
+    EXPECT_EQ(refusal(id, {{"policy", "heat_map"}}), "") << id;
+  EXPECT_EQ(refusal("factorial", {{"policy", "heat_map"}, {"input", "rgb"}}), "");
+  EXPECT_NE(refusal("lga_l", {{"policy", "heat_map"}, {"image", "none"}}).find("image=none needs"), std::string::npos);
   for (const char* id : {"lga", "lga_s", "factorial"}) {
     EXPECT_EQ(refusal(id, {{"mask", "signed"}}), "") << id;
     EXPECT_NE(refusal(id, {{"mask", "signed"}, {"policy", "centroid"}}).find("mask=signed needs"), std::string::npos);

@@ -31,6 +31,7 @@ constexpr std::array<Entry, 15> table{{
 }};
 constexpr double other_learn_ms = .065;   // of a method that the table lacks
 constexpr double network_plain = .83;     // beside batch normalisation (docs/performance.md)
+constexpr double heat_map_s = .22;        // of a sample of its batches, of which there are as many for any data
 constexpr double start_s = .1;            // processes, plugins, files
 constexpr double demonstration_s = .001;  // clean; from the cache
 constexpr double episode_s = .005;        // with the second try on the true mask
@@ -62,7 +63,9 @@ double usual_seconds(const Cell& cell, bool* of_its_own) {
                                   return !c.is_object() || c.value("seen", Json()) != false;
                                 });
   const double episodes = cell.episodes * count(cell.scenario, "tests", [](const Json&) { return true; });
-  return start_s + demonstrations * (demonstration_s + passes * learn_ms / 1000) + episodes * episode_s;
+  const double learn_s = options.value("policy", Json()) == "heat_map" ? heat_map_s * std::min(demonstrations, 16.)
+                                                                       : demonstrations * passes * learn_ms / 1000;
+  return start_s + demonstrations * demonstration_s + learn_s + episodes * episode_s;
 }
 
 void Costs::learn(const Cell& cell, double seconds) {

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include <lgabench/core/error.hpp>
-#include <lgabench/learning/loss.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
 
@@ -48,9 +47,7 @@ struct CentroidRule::Impl {
     std::vector<Demonstrated> seen;
     for (int row = 0; row < samples.rows; ++row) {
       const float* const mask = samples.picture(0, row);
-      ActionVector values;
-      std::copy_n(samples.labels.data() + std::ptrdiff_t{row} * action_size, action_size, values.begin());
-      const Action done = executable(from_vector(values));
+      const Action done = executable(samples.label(row));
       labels.push_back(done);
       const auto places = look(mask, &done.pose0.position_m);
       if (!places) continue;

@@ -8,7 +8,6 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/learning/heat_map_network.hpp>
-#include <lgabench/learning/loss.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
 
@@ -158,9 +157,7 @@ void HeatMap::Impl::begin(const Samples& samples) {
   std::vector<Demonstrated> shown;
   std::vector<std::size_t> rows;  // of those
   for (int row = 0; row < samples.rows; ++row) {
-    ActionVector values;
-    std::copy_n(samples.labels.data() + std::ptrdiff_t{row} * action_size, action_size, values.begin());
-    const Action done = executable(from_vector(values));
+    const Action done = executable(samples.label(row));
     labels.push_back(done);
     look(samples, row, lessons.emplace_back(Lesson{new_view()}).view);
     const View& view = lessons.back().view;

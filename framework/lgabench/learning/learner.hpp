@@ -32,7 +32,7 @@ class Learner {
   virtual void begin(const Samples&) {}
   /// Actions as to_vector() has them, rows x 12, valid until the next call. Labels are not read.
   virtual const std::vector<float>& predict(const Samples& samples) = 0;
-  /// Mean loss over `batch`, which names rows of `samples`; keeps the loss's gradients for update().
+  /// Mean loss over `batch`, which names rows of begin()'s samples; keeps the loss's gradients for update().
   virtual double backward(const Samples& samples, const std::vector<int>& batch) = 0;
   /// One step of an optimiser along the gradients of the last backward().
   virtual void update(double learning_rate) = 0;

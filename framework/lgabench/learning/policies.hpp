@@ -1,4 +1,4 @@
-// The learners that the option `policy` chooses among.
+// The learners that the option `policy` chooses among. Private to learning/.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,8 +1,7 @@
 #include <lgabench/learning/samples.hpp>
 
+#include <algorithm>
 #include <utility>
-
-#include <lgabench/core/action.hpp>
 
 namespace lgabench {
 
@@ -12,6 +11,12 @@ Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), 
     pictures.emplace_back(n * static_cast<std::size_t>(picture.numbers()));
   if (shape.text) text.resize(n * text_size);
   labels.resize(n * ActionVector().size());
+}
+
+Action Samples::label(int row) const {
+  ActionVector values;
+  std::copy_n(labels.data() + static_cast<std::size_t>(row) * values.size(), values.size(), values.begin());
+  return from_vector(values);
 }
 
 // A majority vote in one pass (Boyer and Moore 1991).

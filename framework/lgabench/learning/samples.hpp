@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include <lgabench/core/action.hpp>
 #include <lgabench/learning/inputs.hpp>
 
 namespace lgabench {
@@ -32,6 +33,9 @@ struct Samples {
   float* picture(std::size_t which, int row) {
     return pictures[which].data() + std::ptrdiff_t{row} * shape.pictures[which].numbers();
   }
+
+  /// One row's label, from_vector().
+  Action label(int row) const;
 
   SampleShape shape;
   int rows;
