@@ -26,9 +26,10 @@ function(lgabench_install_package)
   install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
           FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"
-          PATTERN reader.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN head.hpp EXCLUDE PATTERN linear.hpp EXCLUDE
+          PATTERN reader.hpp EXCLUDE PATTERN area_mean.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN head.hpp EXCLUDE PATTERN linear.hpp EXCLUDE
           PATTERN tower.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE
-          PATTERN cli EXCLUDE PATTERN harness EXCLUDE PATTERN report EXCLUDE
+          PATTERN cli EXCLUDE PATTERN host EXCLUDE PATTERN job EXCLUDE PATTERN cell EXCLUDE
+          PATTERN harness EXCLUDE PATTERN report EXCLUDE
           PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
   # An SDK of another version is refused when a plugin is read; CMake may say so first.
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake COMPATIBILITY ExactVersion)
@@ -42,7 +43,7 @@ function(lgabench_link_data)
   file(MAKE_DIRECTORY ${share})
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
                answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
-               embeddings:framework/lgabench/learning/embeddings paper:results/paper formats:docs/formats
+               embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                python:python)
     string(REPLACE ":" ";" pair ${pair})

@@ -1,13 +1,10 @@
 // What several tests need.
 #pragma once
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <string>
-#include <system_error>
 
-#include <lgabench/core/files.hpp>
+#include <lgabench/core/scratch.hpp>
 
 namespace lgabench {
 
@@ -36,21 +33,8 @@ inline testing::AssertionResult says(const std::string& text, const std::string&
 #define EXPECT_SILENT(text, part) EXPECT_FALSE(says(text, part))
 
 /// A new directory, removed at the end.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = (fs::temp_directory_path() / "lgabench-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
-    path = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  fs::path path;
+struct TemporaryDirectory : Scratch {
+  TemporaryDirectory() : Scratch("test") {}
 };
 
 }  // namespace lgabench

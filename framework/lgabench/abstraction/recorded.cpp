@@ -20,6 +20,17 @@ std::vector<std::string> recorded_sources() {
   return json_names(data_directory() / "answers", none_to_list);
 }
 
+std::string answers_complaint(const std::string& word) {
+  const std::vector<std::string> sources = recorded_sources();
+  if (word == "recorded" || word == "openai" || !cassette_of(word).empty() || contains(sources, word)) return "";
+  return fmt::format("expected recorded, {}, openai or cassette:FILE, got {}", fmt::join(sources, ", "), word);
+}
+
+std::string cassette_of(const std::string& word) {
+  const std::string prefix = cassette_prefix;
+  return word.rfind(prefix, 0) == 0 ? word.substr(prefix.size()) : "";
+}
+
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit) {
   if (answers != "recorded") return answers;
   return to_edit ? scenario.edited : scenario.recorded;

@@ -10,6 +10,14 @@ namespace lgabench {
 /// Whose answers there are: the data directory's answers/, without their ending.
 std::vector<std::string> recorded_sources();
 
+/// What answers begin with that are a cassette's: its file follows, in Cell::answers its SHA-256.
+constexpr const char* cassette_prefix = "cassette:";
+/// The words that --answers takes: recorded, one of recorded_sources(), openai (a server's model is asked now), or
+/// cassette:FILE (what one said before). "" for one of these, else what is expected.
+std::string answers_complaint(const std::string& word);
+/// FILE of cassette:FILE; "" for another word.
+std::string cassette_of(const std::string& word);
+
 /// Whose answers `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own, to
 /// be edited by people or used as they are.
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit = false);

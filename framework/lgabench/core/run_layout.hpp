@@ -7,11 +7,14 @@
 
 namespace lgabench {
 
+/// What a cell does, one after the other; timing.json has the seconds of each, as "select_s".
+extern const std::vector<std::string> cell_phases;
+
 /// The files of a finished cell, status.json, which is written last, excepted.
 extern const std::vector<std::string> cell_files;
 
-/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names are
-/// letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
+/// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names
+/// are letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
 std::vector<std::string> artefact_names(const fs::path& files);
 
 /// 16 hexadecimal digits: the name of a cell's directory.
