@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/core/hash.hpp>
-#include <lgabench/core/scenario.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/environments.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/scenario.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {

@@ -190,8 +190,8 @@ class MethodCheck {
   std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected) {
     phase_(doing_ = "demonstrations that needs() asks for");
     const std::vector<Scene> scenes = sample(bench.scenario, layout, selected, seed, demonstrations);
-    const std::vector<Demonstration> shown =
-        instructed(demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
+    const std::vector<Demonstration> shown = instructed(
+        demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
     return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
   }
 
@@ -246,8 +246,7 @@ class MethodCheck {
   void judge_without_selection(Policy& policy, const Bench& bench) {
     const std::vector<Instruction> nothing(bench.scenario.commands.size(), {bench.scenario.command(0).utterance, {}});
     const Actor actor = policy_actor(policy, nothing, job_.method.id);
-    const std::string fault =
-        thrown([&] { act("act with an empty Selection", actor, bench, bench.sights.front()); });
+    const std::string fault = thrown([&] { act("act with an empty Selection", actor, bench, bench.sights.front()); });
     report_.judge("act with an empty Selection", fault, "a finite action", "the host may give an empty Selection");
   }
 
