@@ -42,7 +42,8 @@ function(lgabench_install_package)
           PATTERN reader.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN head.hpp EXCLUDE PATTERN linear.hpp EXCLUDE
           PATTERN tower.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE PATTERN heat_map_network.hpp EXCLUDE
           PATTERN motion.hpp EXCLUDE PATTERN places.hpp EXCLUDE PATTERN policies.hpp EXCLUDE
-          PATTERN cli EXCLUDE PATTERN harness EXCLUDE PATTERN report EXCLUDE
+          PATTERN cli EXCLUDE PATTERN host EXCLUDE PATTERN job EXCLUDE PATTERN cell EXCLUDE
+          PATTERN harness EXCLUDE PATTERN report EXCLUDE
           PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
   # An SDK of another version is refused when a plugin is read; CMake may say so first.
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake COMPATIBILITY ExactVersion)
@@ -56,7 +57,7 @@ function(lgabench_link_data)
   file(MAKE_DIRECTORY ${share})
   foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
                answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
-               embeddings:framework/lgabench/learning/embeddings paper:results/paper formats:docs/formats
+               embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                python:python)
     string(REPLACE ":" ";" pair ${pair})

@@ -1,6 +1,6 @@
 // A file of demonstrations.
+#include <lgabench/cell/hdf5.hpp>
 #include <lgabench/core/error.hpp>
-#include <lgabench/harness/hdf5.hpp>
 
 #include "fuzz.hpp"
 

@@ -1,5 +1,5 @@
 // A suite's file, and the cells of its presets where they are few.
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/expand.hpp>
 
 #include "fuzz.hpp"
 

@@ -223,6 +223,14 @@ class CacheCommand(Case):
         self.assertIn("no action \"claer\" (did you mean \"clear\"?)", self.call("cache", "claer", expect=2).stderr)
         self.assertIn("4 were there", self.call(*RUN, "--out", "out").stderr)
 
+    def test_a_file_says_which_programs_made_it(self):
+        """Another build of any of them makes its own."""
+        self.call(*RUN, "--out", "out")
+        seal = json.loads(next((self.dir / "cache").iterdir()).read_bytes().rsplit(b"\n", 2)[-2])
+        build = json.loads(next((self.dir / "out/cells").glob("*/status.json")).read_text())["build"]
+        programs = ("engine", "lgabench-worker", "liblgabench_core.so", "liblgabench_env_tabletop.so")
+        self.assertEqual(seal["made_from"]["builds"], {name: build[name] for name in programs})
+
 
 class Completion(Case):
     def completed(self, *words):

@@ -146,12 +146,12 @@ class Verify(unittest.TestCase):
             file.write("\n")
         done = self.verify("--all", expect=1)
         self.assertRegex(done.stderr.splitlines()[0],
-                         rf"^edited: .*{self.cell.name}: episodes.jsonl differs from its checksum in status.json")
+                         rf"^edited: .*{self.cell.name}/episodes.jsonl does not have the bytes that were written")
         self.assertIn("3 of 3 finished cells", done.stdout)
 
     def test_a_cell_under_another_name_is_edited(self):
         self.change("cell.json", 0, training_seed=1)
-        self.assertIn("cell.json does not hash to the directory's name", self.verify("--sample", "1", expect=1).stderr)
+        self.assertIn("cell.json does not have the bytes that were written", self.verify("--sample", "1", expect=1).stderr)
 
     def test_no_run(self):
         shutil.rmtree(self.run_directory / "cells")

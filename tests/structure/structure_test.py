@@ -30,7 +30,7 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "harness", "report", "cli"):
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "job", "cell", "harness", "report", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
@@ -47,7 +47,7 @@ class IncludeGraph(unittest.TestCase):
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
-                       "framework/lgabench/harness", "framework/lgabench/report", "framework/lgabench/cli", "envs"):
+                       "framework/lgabench/job", "framework/lgabench/cell", "framework/lgabench/harness", "framework/lgabench/report", "framework/lgabench/cli", "envs"):
             self.forbid(folder, r"torch|ATen|c10")
         headers = [(str(f), p) for f, p in includes("framework/lgabench/learning")
                    if f.suffix == ".hpp" and re.match(r"torch/torch\.h", p)]
@@ -62,6 +62,11 @@ class IncludeGraph(unittest.TestCase):
 
     def test_the_framework_names_no_environment(self):
         self.forbid("framework", r"tabletop/")
+
+    def test_a_run_and_its_cells_share_jobs_alone(self):
+        self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
+        self.forbid("framework/lgabench/harness", r"lgabench/cell/")
+        self.forbid("framework/lgabench/cell", r"lgabench/(harness|report|cli)/")
 
 
 class Needed(unittest.TestCase):

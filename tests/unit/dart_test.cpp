@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include <lgabench/harness/demonstrations.hpp>
-#include <lgabench/harness/environments.hpp>
+#include <lgabench/cell/demonstrations.hpp>
+#include <lgabench/cell/environments.hpp>
 
 namespace lgabench {
 namespace {

@@ -109,10 +109,9 @@ TEST(UsualSeconds, GrowWithWhatIsLearntAndPlayed) {
   EXPECT_NEAR(usual_seconds(two) / usual_seconds(cell), 2, .1) << "demonstrations are of each seen command";
   hundred.episodes = 100;
   EXPECT_GT(usual_seconds(hundred), usual_seconds(cell) + .3);
-  bool of_its_own = false;
-  EXPECT_TRUE((usual_seconds(cell, &of_its_own), of_its_own));
+  EXPECT_EQ(measured_on(cell), "");
   cell.method.id = "my_method";
-  EXPECT_FALSE((usual_seconds(cell, &of_its_own), of_its_own));
+  EXPECT_EQ(measured_on(cell), "LGA");
 }
 
 TEST(Forecasts, CountByRow) {

@@ -4,12 +4,12 @@
 #include <functional>
 #include <set>
 
+#include <lgabench/cell/constant_action.hpp>
+#include <lgabench/cell/demonstrations.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/hdf5.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/harness/constant_action.hpp>
-#include <lgabench/harness/demonstrations.hpp>
-#include <lgabench/harness/environments.hpp>
-#include <lgabench/harness/evaluator.hpp>
-#include <lgabench/harness/hdf5.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 #include "../engine_under_test.hpp"

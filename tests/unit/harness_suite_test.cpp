@@ -6,7 +6,7 @@
 #include <set>
 
 #include <lgabench/core/hash.hpp>
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
 #include <lgabench/harness/suite.hpp>

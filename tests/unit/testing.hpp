@@ -1,14 +1,12 @@
 // What several tests need.
 #pragma once
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <string>
-#include <system_error>
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/scratch.hpp>
 
 namespace lgabench {
 
@@ -42,21 +40,8 @@ inline Command command_of(const std::string& task, const std::string& utterance)
 }
 
 /// A new directory, removed at the end.
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = (fs::temp_directory_path() / "lgabench-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::system_error(errno, std::generic_category(), name);
-    path = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-
-  fs::path path;
+struct TemporaryDirectory : Scratch {
+  TemporaryDirectory() : Scratch("test") {}
 };
 
 }  // namespace lgabench

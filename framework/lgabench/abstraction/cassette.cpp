@@ -83,4 +83,12 @@ std::set<std::string> Cassette::models() const {
   return models_;
 }
 
+std::string Cassette::only_model() const {
+  const std::set<std::string> all = models();
+  if (all.size() != 1)
+    throw InputError(fmt::format("{}: expected replies of one model, it has {}", file_.string(),
+                                 all.empty() ? "none" : fmt::format("those of {}", fmt::join(all, ", "))));
+  return *all.begin();
+}
+
 }  // namespace lgabench

@@ -54,6 +54,8 @@ class Cassette {
   const std::filesystem::path& file() const { return file_; }
   /// Of all replies, sorted.
   std::set<std::string> models() const;
+  /// @throws InputError where they are not of exactly one.
+  std::string only_model() const;
 
  private:
   bool read();  // the lines that were added since; whether all of them are whole

@@ -2,35 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
-#include <initializer_list>
-#include <utility>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/filled.hpp>
 #include <lgabench/core/hash.hpp>
 
 namespace lgabench {
-namespace {
-
-// One pass: what is put in is not searched for placeholders again.
-std::string filled(const std::string& text, std::initializer_list<std::pair<const char*, std::string>> values) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const auto value = std::find_if(values.begin(), values.end(), [&](const auto& v) {
-      return text.compare(at, std::char_traits<char>::length(v.first), v.first) == 0;
-    });
-    if (value == values.end()) {
-      result += text[at++];
-    } else {
-      result += value->second;
-      at += std::char_traits<char>::length(value->first);
-    }
-  }
-  return result;
-}
-
-}  // namespace
 
 PromptTemplate::PromptTemplate() {
   const fs::path file = data_directory() / "prompts" / "selection.txt";

@@ -1,25 +1,25 @@
 // lgabench-worker check-job: uses a plugin as cells do, and looks at what that leaves. `lgabench check-plugin` starts
 // it.
+#include <lgabench/cell/check.hpp>
 #include <lgabench/cli/job.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/harness/check.hpp>
+#include <lgabench/job/job.hpp>
 
 namespace lgabench::cli {
 namespace {
 
-void check(const JsonReader& job, const Messages& messages) {
-  const int perturb = static_cast<int>(job.at("perturb").integer(0, 255));
-  perturb_heap(perturb);  // of an engine, which runs in this process
-  const CheckPhase phase = [&messages](const std::string& name) { messages.send({{"phase", name}, {"count", 0}}); };
-  const PluginInfo engine = job_plugin(job.at("engine"));
+void check(const JsonReader& reader, const Messages& messages) {
+  const CheckJob job = read_check_job(reader);
+  perturb_heap(job.perturb);  // of an engine, which runs in this process
+  const CheckPhase phase = [&messages](const std::string& name) { messages.at({name}); };
   const auto on_method = [&] {
-    HostJob method{job_plugin(job.at("method")), job.at("options").json(), 0, job.at("scratch").string()};
-    method.perturb = perturb;
-    return check_method(method, engine, phase);
+    HostJob method{*job.method, job.options, 0, job.scratch};
+    method.perturb = job.perturb;
+    return check_method(method, job.engine, phase);
   };
-  const CheckReport report = job.has("method") ? on_method() : check_engine(engine, phase);
-  write_file(job.at("report").string(), canonical(to_json(report)) + '\n');
+  const CheckReport report = job.method ? on_method() : check_engine(job.engine, phase);
+  write_file(job.report, canonical(to_json(report)) + '\n');
 }
 
 }  // namespace

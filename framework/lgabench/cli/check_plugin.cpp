@@ -13,9 +13,10 @@
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
-#include <lgabench/harness/check.hpp>
+#include <lgabench/harness/suite.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 #include <lgabench/host/python_method.hpp>
+#include <lgabench/job/check_report.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -48,22 +49,21 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
 
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, 0};
-  const bool is_method = plugin.kind == "method";
+  const PluginInfo& engine = plugin.kind == "engine" ? plugin : usual_engine(catalogue);
   const Json options = options_of(plugin, a.settings);
   std::array<fs::path, 2> reports{scratch.path / "first.json", scratch.path / "second.json"};
   std::array<WorkerEnd, 2> ends;
   const auto make = [&](std::size_t i) {
-    Json job{{"limits", worker_limits(pool)},
-             {"perturb", i == 0 ? 0 : 165},
-             {"report", reports[i].string()},
-             {"options", options},
-             {"engine", plugin_json(is_method ? catalogue.find("engine", "mujoco") : plugin)}};
-    if (is_method) {
-      const fs::path own = scratch.path / fmt::format("method{}", i);
-      fs::create_directory(own);
-      job.update({{"method", plugin_json(plugin)}, {"scratch", own.string()}});
-    }
-    return WorkerTask{job, scratch.path / fmt::format("log{}.txt", i), "check-job"};
+    CheckJob job;
+    job.engine = engine;
+    if (plugin.kind == "method") job.method = plugin;
+    job.options = options;
+    job.scratch = scratch.path / fmt::format("method{}", i);
+    job.perturb = i == 0 ? 0 : 165;
+    job.report = reports[i];
+    job.limits = worker_limits(pool);
+    fs::create_directory(job.scratch);
+    return WorkerTask{to_json(job), scratch.path / fmt::format("log{}.txt", i), "check-job"};
   };
   const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
                           [&](std::size_t i, const WorkerEnd& end) { ends[i] = end; }, [] {}};
@@ -75,7 +75,7 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
       found[i] = read_check_report(read_json(reports[i]), reports[i].string());
       continue;
     }
-    const bool said_why = !ends[i].complaint.is_null() && ends[i].host_signal == 0;
+    const bool said_why = ends[i].complaint && ends[i].complaint->signal == 0;
     const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
     report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
                    said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/gallery.hpp>
@@ -14,15 +16,14 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/environments.hpp>
-#include <lgabench/harness/evaluator.hpp>
+#include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string file, engine = "mujoco";
+  std::string file, engine;
   std::vector<std::string> layouts{"cells", "continuous"};
   fs::path out;
   int scenes = 50;
@@ -96,7 +97,8 @@ void judge_answers(const Scenario& scenario, CheckReport& report) {
 int check_scenario(const Arguments& a) {
   const Scenario scenario = scenario_of(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
+  const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
+  const auto environment = make_environment(scenario, load_engine(engine));
   CheckReport report;
   report.ok("file", fmt::format("{} in {}, {} command(s), {} arm(s)", scenario.task, scenario.environment,
                                 scenario.commands.size(), scenario.tests.size()));
@@ -128,7 +130,7 @@ void add_check_scenario(CLI::App& app, int& exit) {
       ->delimiter(',')
       ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();
-  verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
+  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
   verb->add_option("--out", a->out, "The picture's file; SCENARIO.png if not given");
   add_plugin_path(*verb, a->plugin_path);
   add_scenario_path(*verb);

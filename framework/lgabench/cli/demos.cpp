@@ -3,21 +3,22 @@
 
 #include <memory>
 
+#include <lgabench/cell/demonstrations.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/hdf5.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/demonstrations.hpp>
-#include <lgabench/harness/environments.hpp>
-#include <lgabench/harness/hdf5.hpp>
+#include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, layout = "cells", engine = "mujoco", out, inspect;
+  std::string scenario, layout = "cells", engine, out, inspect;
   int n = 10, noisy = 0;
   double noise = .2;
   std::uint64_t seed = 0;
@@ -29,13 +30,14 @@ void write(const Arguments& a) {
     throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
   const Scenario scenario = load_scenario(a.scenario);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
-  const auto environment = make_environment(scenario, load_engine(catalogue.find("engine", a.engine)));
+  const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
+  const auto environment = make_environment(scenario, load_engine(engine));
   std::vector<Scene> scenes;
   for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, {}, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
   const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
   write_file(a.out,
-             demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, a.engine)));
+             demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, engine.id)));
   to_stdout("{}\n", a.out);
 }
 
@@ -72,7 +74,7 @@ void add_demos(CLI::App& app, int&) {
                    "DART: standard deviation of the noise in the last of these; it grows up to there")
       ->check(within(0, 10))
       ->capture_default_str();
-  verb->add_option("--engine", a->engine, "An engine, by plugin id")->capture_default_str();
+  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
   add_plugin_path(*verb, a->plugin_path);
   add_scenario_path(*verb);
   auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");

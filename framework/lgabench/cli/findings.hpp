@@ -1,6 +1,6 @@
 // How check-plugin and check-scenario show what they found.
 #pragma once
-#include <lgabench/harness/check.hpp>
+#include <lgabench/job/check_report.hpp>
 
 namespace lgabench::cli {
 

@@ -11,7 +11,6 @@
 #include <new>
 
 #include <lgabench/cli/verbs.hpp>
-#include <lgabench/core/hash.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench::cli {
@@ -26,12 +25,12 @@ void limit(int resource, long long value) {
 Json read_job() {
   const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
   Json job = parse_json(text, "job");
-  const JsonReader limits = JsonReader(job, "job").at("limits");
+  const Limits limits = read_limits(JsonReader(job, "job"));
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_FSIZE, 1LL << 28);
-  limit(RLIMIT_CPU, limits.at("cpu_s").integer(1, 1LL << 40));
+  limit(RLIMIT_CPU, limits.cpu_s);
 #if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory counts
-  limit(RLIMIT_DATA, limits.at("data_bytes").integer(1, 1LL << 60));
+  limit(RLIMIT_DATA, limits.data_bytes);
 #endif
   return job;
 }
@@ -40,55 +39,44 @@ Json read_job() {
 
 Messages::Messages() : open_(::fcntl(3, F_GETFD) != -1) {}
 
+void Messages::at(const PhaseCount& place) const {
+  phase_ = place.phase;
+  send(to_json(place));
+}
+
+void Messages::complain(Complaint complaint) const {
+  constexpr std::size_t longest = 2000;  // whatever a plugin throws, the line has room in the pipe
+  complaint.reason = complaint.reason.substr(0, longest);
+  send(to_json(complaint));
+}
+
 void Messages::send(const Json& message) const {
-  if (message.contains("phase")) phase_ = message["phase"];
   if (!open_) return;
   const std::string line = message.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
   [[maybe_unused]] const ssize_t sent = ::write(3, line.data(), line.size());  // nobody listening: no harm
 }
 
-PluginInfo job_plugin(const JsonReader& reader) {
-  PluginInfo info;
-  if (reader.has("python")) {
-    info.file = reader.at("file").string();
-    info.kind = "method";
-    info.id = reader.at("id").string();
-    info.asks = reader.at("asks").string();
-    info.sha256 = sha256_file(info.file);
-    info.python = reader.at("python").json();
-  } else {
-    info = read_plugin(reader.at("file").string());
-  }
-  if (info.sha256 != reader.at("sha256").string())
-    throw PluginError(fmt::format("{}: changed since the run began", info.file.string()));
-  return info;
-}
-
 void do_job(const std::function<void(const JsonReader& job, const Messages& messages)>& work) {
   const Messages messages;
-  const auto complain = [&messages](const std::exception& e, const char* fault, bool refused = false) {
-    constexpr std::size_t longest = 2000;  // whatever a plugin throws, the line has room in the pipe
-    messages.send({{"reason", std::string(e.what()).substr(0, longest)}, {"fault", fault}, {"refused", refused}});
-  };
   try {
     const Json job = read_job();
     work(JsonReader(job, "job"), messages);
   } catch (const MethodGone& e) {
     const MethodGone placed(fmt::format("{} in phase {}", e.what(), messages.phase()), e.signal);
-    messages.send({{"reason", placed.what()}, {"fault", "plugin"}, {"signal", e.signal}});
+    messages.complain({placed.what(), true, e.signal});
     throw placed;
   } catch (const MethodError& e) {
-    complain(e, "plugin");
+    messages.complain({e.what(), true});
     throw;
   } catch (const PluginError& e) {
-    complain(e, "plugin", true);
+    messages.complain({e.what(), true, 0, true});
     throw;
   } catch (const std::bad_alloc&) {
     const MethodError e("out of memory (the limit is --memory)");
-    complain(e, "plugin");
+    messages.complain({e.what(), true});
     throw e;
   } catch (const std::exception& e) {
-    complain(e, "host");
+    messages.complain({e.what()});
     throw;
   }
   // All is on the disk. What plugins do at exit can neither help nor harm any more.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include <lgabench/core/json.hpp>
-#include <lgabench/plugin/loader.hpp>
+#include <lgabench/job/job.hpp>
 
 namespace lgabench::cli {
 
@@ -14,17 +14,17 @@ namespace lgabench::cli {
 class Messages {
  public:
   Messages();
-  void send(const Json& message) const;
+  void at(const PhaseCount& place) const;
+  void complain(Complaint complaint) const;
   /// The last phase that was told, or "".
   const std::string& phase() const { return phase_; }
 
  private:
+  void send(const Json& message) const;
+
   bool open_;
   mutable std::string phase_;
 };
-
-/// The plugin {"file", "sha256"}. @throws PluginError where it is refused, or another one by now.
-PluginInfo job_plugin(const JsonReader& reader);
 
 /// A verb's whole run: reads the job on stdin, sets its limits (a crash leaves no core; a loop, a leak or a log without
 /// end ends with this process), does the work and ends the process. Tells of what the work throws, and who is at fault,

@@ -9,6 +9,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/filled.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 
@@ -31,12 +32,6 @@ std::string class_name(const std::string& name) {
   return text;
 }
 
-std::string filled(std::string text, const std::string& placeholder, const std::string& value) {
-  for (std::size_t at = 0; (at = text.find(placeholder, at)) != std::string::npos; at += value.size())
-    text.replace(at, placeholder.size(), value);
-  return text;
-}
-
 void expect_name(const std::string& name) {
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   if (name.empty() || name.size() > 63 || name[0] < 'a' || name[0] > 'z' ||
@@ -53,14 +48,11 @@ void new_plugin(const Arguments& a) {
   const fs::path prefix = fs::weakly_canonical(program_directory().parent_path());
   const fs::path templates = data_directory() / "templates";
   const auto write = [&](const fs::path& from, const std::string& to) {
-    std::string text = read_file(templates / from);
-    for (const auto& [placeholder, value] : {std::pair<std::string, std::string>{"@NAME@", a.name},
-                                             {"@CLASS@", class_name(a.name)},
-                                             {"@KIND@", a.kind},
-                                             {"@VERSION@", LGABENCH_VERSION},
-                                             {"@PREFIX@", prefix.string()}})
-      text = filled(std::move(text), placeholder, value);
-    write_file(directory / to, text);
+    write_file(directory / to, filled(read_file(templates / from), {{"@NAME@", a.name},
+                                                                    {"@CLASS@", class_name(a.name)},
+                                                                    {"@KIND@", a.kind},
+                                                                    {"@VERSION@", LGABENCH_VERSION},
+                                                                    {"@PREFIX@", prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
   if (a.kind == "python") {

@@ -4,19 +4,18 @@
 
 #include <iostream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <memory>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/cell.hpp>
-#include <lgabench/harness/environments.hpp>
-#include <lgabench/harness/evaluator.hpp>
+#include <lgabench/job/job.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
@@ -49,29 +48,25 @@ class Pictures {
   // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...]}, in base64: the scene, goal masks of the request's
   // Selections, and the scene after its action on each of its engines (null for one that is not there). @throws
   // InputError where the scene is not the one asked for.
-  Json draw(const JsonReader& request) {
-    const Played& played = cell(request.at("cell").string());
-    const int index = static_cast<int>(request.at("index").integer(0, std::numeric_limits<int>::max()));
-    const std::string arm = request.at("arm").string();
-    const Scene scene = test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index,
-                                   played.cell.scenes_of_seed());
-    if (hex(scene.hash()) != request.at("scene").string())
-      throw InputError("this version samples another scene than the run played");
+  Json draw(const PictureRequest& request) {
+    const Played& played = cell(request.cell.string());
+    const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
+                                   request.index, played.cell.scenes_of_seed());
+    if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
 
     const Observation seen = find_environment(played.scenario.environment).draw(scene);
-    const Arm& test = played.scenario.arm(arm);
+    const Arm& test = played.scenario.arm(request.arm);
     const Observation perceived = imperfect_textualization(
         seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
     Json masks = Json::array();
-    for (const JsonReader& selection : request.at("selections").elements()) {
+    for (const Json& one : request.selections) {
+      const JsonReader selection(one, "selection");
       const auto mask = goal_mask(
           perceived, read_distribution(selection.at("distribution"), played.scenario.space, played.scenario.second),
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    return {{"picture", picture_of(seen)},
-            {"masks", masks},
-            {"ends", request.has("engines") ? ends(played.scenario, scene, request) : Json::array()}};
+    return {{"picture", picture_of(seen)}, {"masks", masks}, {"ends", ends(played.scenario, scene, request)}};
   }
 
  private:
@@ -79,16 +74,13 @@ class Pictures {
     return png([&](std::size_t i) { return pixel_colour(seen, i); });
   }
 
-  Json ends(const Scenario& scenario, const Scene& scene, const JsonReader& request) {
-    ActionVector action;
-    const std::vector<JsonReader> numbers = request.at("action").elements();
-    if (numbers.size() != action.size()) request.at("action").fail("12 numbers");
-    for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+  Json ends(const Scenario& scenario, const Scene& scene, const PictureRequest& request) {
     Json pictures = Json::array();
-    for (const JsonReader& name : request.at("engines").elements()) {
-      Environment* const environment = on(name.string(), scenario);
+    for (const std::string& name : request.engines) {
+      Environment* const environment = on(name, scenario);
       if (environment) environment->reset(scene);
-      pictures.push_back(environment ? Json(picture_of(environment->step(from_vector(action)).observation)) : Json());
+      pictures.push_back(environment ? Json(picture_of(environment->step(from_vector(*request.action)).observation))
+                                     : Json());
     }
     return pictures;
   }
@@ -134,7 +126,7 @@ void add_pictures(CLI::App& app, int&) {
     for (const JsonReader& request : JsonReader(requests, "pictures").elements()) {
       Json line;
       try {
-        line = pictures.draw(request);
+        line = pictures.draw(read_picture_request(request));
       } catch (const Error& e) {
         line = {{"problem", e.what()}};
       }

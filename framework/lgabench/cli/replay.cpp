@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 
+#include <lgabench/cell/environments.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
 #include <lgabench/cli/help.hpp>
@@ -13,8 +14,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/cell.hpp>
-#include <lgabench/harness/environments.hpp>
+#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <thread>
 
+#include <lgabench/abstraction/cassette.hpp>
 #include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/recorded.hpp>
@@ -116,7 +117,7 @@ Json participant_hashes(const std::vector<Participant>& participants) {
 }
 
 // The server's model that --answers openai asks; none for other answers, which need no server.
-std::optional<LiveModel> live_model(const Arguments& a) {
+std::optional<LiveModel> live_model(const Arguments& a, Json& about) {
   if (a.answers != "openai") {
     if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0)
       throw InputError("--model, --cassette and --max-queries: expected --answers openai with them");
@@ -125,12 +126,9 @@ std::optional<LiveModel> live_model(const Arguments& a) {
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
     throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
   const Cassette readable(a.cassette);
-  LiveModel live;
-  live.cassette = a.cassette;
-  live.max_queries = a.max_queries;
-  live.about = {
+  about = {
       {"model", a.model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
-  return live;
+  return LiveModel{a.cassette, true, a.max_queries};
 }
 
 // The command that takes this run up again, wherever its default directory was.
@@ -190,11 +188,11 @@ int run(Arguments a) {
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan plan;
-  plan.live = live_model(a);
+  plan.live = live_model(a, plan.live_about);
   if (plan.live) {
     variation.answers = live_prefix + a.model;
-  } else if (const std::string prefix = cassette_prefix; a.answers.rfind(prefix, 0) == 0) {
-    CassetteAnswers cassette = check_cassette(a.answers.substr(prefix.size()), grid.scenarios);
+  } else if (const std::string file = cassette_of(a.answers); !file.empty()) {
+    CassetteAnswers cassette = check_cassette(file, grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
   } else if (a.answers != no_answers) {
@@ -301,17 +299,8 @@ void add_run(CLI::App& app, int& exit) {
                    "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
                    "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
                    "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run; "
-                   "none: nobody, for "
-                   "methods that ask no language model")
-      ->check([](const std::string& word) {
-        const std::vector<std::string> sources = recorded_sources();
-        const bool known = word == "recorded" || word == "openai" || word == no_answers ||
-                           word.rfind(cassette_prefix, 0) == 0 ||
-                           std::find(sources.begin(), sources.end(), word) != sources.end();
-        return known ? ""
-                     : fmt::format("expected recorded, {}, openai, none or cassette:FILE, got {}",
-                                   fmt::join(sources, ", "), word);
-      })
+                   "none: nobody, for methods that ask no language model")
+      ->check([](const std::string& word) { return answers_complaint(word, {no_answers}); })
       ->capture_default_str();
   verb->add_option("--model", a->model, "With --answers openai: the server's model");
   verb->add_option(

@@ -44,16 +44,17 @@ struct Answerer {
 
 Answerer make_answerer(const Arguments& a) {
   Answerer answerer;
-  if (a.answers != "openai" && a.answers != "cassette") return answerer;
   const bool live = a.answers == "openai";
-  if (a.cassette.empty()) throw InputError(fmt::format("--answers {}: expected --cassette FILE too", a.answers));
-  answerer.cassette = std::make_unique<Cassette>(a.cassette);
+  const std::string file = live ? a.cassette : cassette_of(a.answers);
+  if (live && file.empty()) throw InputError("--answers openai: expected --cassette FILE too");
+  if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
+  if (file.empty()) return answerer;
+  answerer.cassette = std::make_unique<Cassette>(file);
   ChatOptions options{a.model, a.concurrency, a.max_queries, {}};
   if (options.model.empty()) {
     const auto models = answerer.cassette->models();
     if (live || models.size() != 1)
-      throw InputError(
-          fmt::format("--model: expected one; {} holds replies of: {}", a.cassette, fmt::join(models, ", ")));
+      throw InputError(fmt::format("--model: expected one; {} holds replies of: {}", file, fmt::join(models, ", ")));
     options.model = *models.begin();
   }
   if (live) {
@@ -188,14 +189,8 @@ void add_select(CLI::App& app, int&) {
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
   verb->add_option("--answers", arguments->answers,
                    "recorded: the scenario's own; gpt4_released, gpt4_study, claude: theirs; openai: ask a server now; "
-                   "cassette: "
-                   "what it said before")
-      ->check(one_of("answers",
-                     [] {
-                       std::vector<std::string> words = recorded_sources();
-                       words.insert(words.end(), {"recorded", "openai", "cassette"});
-                       return words;
-                     }()))
+                   "cassette:FILE: what it said before")
+      ->check([](const std::string& word) { return answers_complaint(word); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
                    "What the Selection is compared with, where released and printed differ")
@@ -206,7 +201,8 @@ void add_select(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "The feature space, where the command is not one of a scenario")
       ->capture_default_str();
-  verb->add_option("--cassette", arguments->cassette, "File of a server's replies; grows as it is asked");
+  verb->add_option("--cassette", arguments->cassette,
+                   "With --answers openai: file of the server's replies, which grows");
   verb->add_option("--model", arguments->model, "The server's model; of a cassette, by default its only one");
   verb->add_option("--concurrency", arguments->concurrency, "Questions under way at once")
       ->check(CLI::Range(1, 64))

@@ -50,20 +50,6 @@ struct Inventory {
   int failed = 0, not_played = 0;
 };
 
-// Why the cell is not what its worker wrote; empty if it is.
-std::string edited(const Recorded& cell) {
-  expect_plain_entries(cell.directory);
-  const Json& files = cell.status.at("files");
-  for (const char* name : {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json"}) {
-    std::error_code error;
-    if (!fs::exists(cell.directory / name, error)) return fmt::format("{} is missing", name);
-    if (files.value(name, Json()) != sha256_file(cell.directory / name))
-      return fmt::format("{} differs from its checksum in status.json", name);
-  }
-  if (key(cell.cell) != cell.directory.filename()) return "cell.json does not hash to the directory's name";
-  return "";
-}
-
 Inventory take_stock(const fs::path& run, const Json& record) {
   const std::vector<std::string> listed = read_cell_keys(JsonReader(record, (run / "run.json").string()));
   expect_plain_run(run);
@@ -74,23 +60,16 @@ Inventory take_stock(const fs::path& run, const Json& record) {
       ++inventory.not_played;
       continue;
     }
+    const CellState state = cell_state(directory, name, Json::object());  // of whatever build
+    if (state.failed) {
+      ++inventory.failed;
+      continue;
+    }
     try {
-      const std::string status_file = (directory / "status.json").string();
-      Recorded cell;
-      cell.directory = directory;
-      cell.status = read_json(status_file, Links::refused);
-      const JsonReader status(cell.status, status_file);
-      if (status.at("state").string() == "failed") {
-        ++inventory.failed;
-        continue;
-      }
-      if (!status.at("files").json().is_object()) status.at("files").fail("an object");
-      if (!status.at("build").json().is_object()) status.at("build").fail("an object");
+      if (!state.complete) throw InputError(state.why);
+      Recorded cell{directory, {}, read_json(directory / "status.json", Links::refused)};
       cell.cell = read_cell(read_json(directory / "cell.json", Links::refused), (directory / "cell.json").string());
-      if (const std::string why = edited(cell); why.empty())
-        inventory.cells.push_back(std::move(cell));
-      else
-        inventory.edited.push_back(fmt::format("{}: {}", directory.string(), why));
+      inventory.cells.push_back(std::move(cell));
     } catch (const InputError& e) {
       inventory.edited.emplace_back(e.what());
     }

@@ -5,6 +5,8 @@
 
 namespace lgabench {
 
+const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "learn", "evaluate"};
+
 const std::vector<std::string> cell_files{"cell.json",      "selection.json", "training.jsonl",
                                           "episodes.jsonl", "timing.json",    "log.txt"};
 

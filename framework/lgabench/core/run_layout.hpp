@@ -7,6 +7,9 @@
 
 namespace lgabench {
 
+/// What a cell does, one after the other; timing.json has the seconds of each, as "select_s".
+extern const std::vector<std::string> cell_phases;
+
 /// The files of a finished cell, status.json, which is written last, excepted.
 extern const std::vector<std::string> cell_files;
 

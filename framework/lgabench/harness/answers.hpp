@@ -1,15 +1,13 @@
-// Who answers for a cell: recorded answers, files that people bring along, or a model that is asked now. A run keeps
-// files and replies beside its cells, named by their SHA-256, so that it can be checked anywhere.
+// Whose answers a run uses: recorded ones, files that people bring along, or a model that is asked now. It keeps files
+// and replies beside its cells, named by their SHA-256, so that it can be checked anywhere.
 #pragma once
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <lgabench/abstraction/chat_model.hpp>
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/abstraction/participant.hpp>
+#include <lgabench/core/json.hpp>
 
 namespace lgabench {
 
@@ -25,10 +23,7 @@ std::vector<AnswerFile> kept_answers(const std::filesystem::path& run);
 /// Writes what is not there yet. @throws InputError for a file that is not what its name says.
 void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::path& run);
 
-/// What Cell::answers begins with where they are a cassette's; its SHA-256 follows.
-constexpr const char* cassette_prefix = "cassette:";
-constexpr const char* no_answers = "none";  // a method that asks fails the cell
-/// Such a cell's answers, and the file that they are in.
+/// Cell::answers of cells that read a cassette, and the file that they are in.
 struct CassetteAnswers {
   std::string answers;
   AnswerFile file;
@@ -37,26 +32,14 @@ struct CassetteAnswers {
 /// scenarios: names the first that is missing, and the command line that asks it.
 CassetteAnswers check_cassette(const std::filesystem::path& cassette, const std::vector<std::string>& scenarios);
 
-/// A server's model that cells ask through Services::lm as they run: each question that the cassette does not answer,
-/// once. Runs may share a cassette.
-struct LiveModel {
-  std::filesystem::path cassette;
-  bool asks = true;              // false: the cassette must hold every reply
-  int max_queries = -1;          // of a cell to the server; -1: no limit
-  Json about = Json::object();   // {"model", "provider", "prompt"}: who was asked, for run.json
-  ChatClient* server = nullptr;  // in the worker, where it asks; borrowed
-};
-/// {"cassette", "asks", "max_queries"}: as a job tells the worker.
-Json to_json(const LiveModel& live);
-LiveModel read_live_model(const JsonReader& reader);
-
 /// The replies that a run with a live model keeps, if it does; of several, left by one that was killed, the longest.
 std::optional<AnswerFile> kept_replies(const std::filesystem::path& run);
 /// Whether every line of one file stands in the other. @throws InputError where one cannot be read.
 bool holds_lines(const std::filesystem::path& all, const std::filesystem::path& some);
 /// Copies the whole lines of the cassette into the run's answers/. The older ones are to be dropped once run.json names
 /// the new ones. None where nothing was asked yet.
-std::optional<AnswerFile> keep_replies(const LiveModel& live, const std::filesystem::path& run);
+std::optional<AnswerFile> keep_replies(const std::filesystem::path& cassette, const Json& about,
+                                       const std::filesystem::path& run);
 void drop_other_replies(const std::string& but, const std::filesystem::path& run);
 
 /// @throws InputError where `answers` (recorded, or one of recorded_sources()) has none for a command of the scenarios:
@@ -66,17 +49,5 @@ void check_recorded(const std::string& answers, const std::vector<std::string>& 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant.
 std::vector<AnswerFile> read_participants(const std::filesystem::path& directory, std::vector<Participant>& all);
-
-/// Who answers for one cell.
-struct Answers {
-  std::unique_ptr<Cassette> cassette;  // behind the language model
-  std::unique_ptr<LanguageModel> lm;
-  std::unique_ptr<HumanAnswers> human;
-  std::function<Selection(const Command&)> truth;
-};
-/// `kept`: the run directory's answers/; `live` where the cell asks a model. @throws InputError for a file that is
-/// missing or has other bytes.
-Answers answers_for(const Cell& cell, const Scenario& scenario, const std::filesystem::path& kept,
-                    const LiveModel& live);
 
 }  // namespace lgabench

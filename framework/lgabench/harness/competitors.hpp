@@ -5,21 +5,10 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
-
-/// A method, or a row of the table that a method is measured against.
-struct Competitor {
-  std::string kind = "method";  // or "reference": constant_action, random_object, oracle
-  std::string id;
-  std::string name;  // its row's: the id, and what tells it from the run's other rows of that id (see competitors())
-  std::string version;
-  Json options = Json::object();  // every option, defaults included
-  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
-
-  bool is_reference() const { return kind == "reference"; }
-};
 
 /// The grid's methods, in its order. An option's value is the first that is given by: the row itself, `settings` for
 /// its id, `settings` for "*", the grid for its id, the grid for "*", the plugin's default. A row is named by its id,

@@ -1,46 +1,58 @@
 #include <lgabench/harness/costs.hpp>
 
 #include <algorithm>
-#include <array>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
 
 namespace lgabench {
 namespace {
 
-// Milliseconds of training for each demonstration and pass, with two workers on two cores of an AMD EPYC (Zen 4). The
-// first entry that fits a cell counts: that of its method, or of any, with that option.
-struct Entry {
-  const char *method, *option, *value;
-  double learn_ms;
-};
-constexpr std::array<Entry, 15> table{{
-    {"constant_action", "", "", 0},
-    {"random_object", "", "", 0},
-    {"oracle", "", "", 0},
-    {"*", "policy", "centroid", 0},
-    {"*", "picture", "rgb", .155},
-    {"factorial", "input", "rgb", .155},
-    {"gcbc_dart", "dart", "none", .155},
-    {"gcbc_dart", "", "", .48},
-    {"gcbc_seg", "", "", .155},
-    {"lga_s", "", "", .145},
-    {"lga_l", "", "", .085},
-    {"lga", "", "", .065},
-    {"lga_hill", "", "", .065},
-    {"human", "", "", .065},
-    {"factorial", "", "", .065},
-}};
-constexpr double other_learn_ms = .065;   // of a method that the table lacks
 constexpr double network_plain = .83;     // beside batch normalisation (docs/performance.md)
 constexpr double heat_map_s = .22;        // of a sample of its batches, of which there are as many for any data
 constexpr double start_s = .1;            // processes, plugins, files
 constexpr double demonstration_s = .001;  // clean; from the cache
 constexpr double episode_s = .005;        // with the second try on the true mask
 
+// Milliseconds of training for each demonstration and pass, of a method, or of any, with that value of an option.
+struct Entry {
+  std::string method, option;
+  Json value;
+  double learn_ms;
+};
+struct Table {
+  std::vector<Entry> entries;  // the first that fits a cell counts
+  Entry others;                // of the method that others are taken for
+};
+
+const Table& measured() {
+  static const Table table = [] {
+    const fs::path file = data_directory() / "measured" / "costs.json";
+    const Json json = read_json(file);
+    const JsonReader reader(json, file.string());
+    Table all;
+    for (const JsonReader& entry : reader.at("entries").elements())
+      all.entries.push_back({entry.at("method").string(), entry.has("option") ? entry.at("option").string() : "",
+                             entry.has("value") ? entry.at("value").json() : Json(), entry.at("learn_ms").number()});
+    const JsonReader others = reader.at("others");
+    all.others = {others.at("taken_for").string(), "", Json(), others.at("learn_ms").number()};
+    return all;
+  }();
+  return table;
+}
+
 bool fits(const Entry& entry, const Cell& cell) {
-  const std::string method = entry.method, option = entry.option;
   const Json& options = cell.method.options;
-  return (method == "*" || method == cell.method.id) &&
-         (option.empty() || (options.contains(option) && options.at(option) == entry.value));
+  return (entry.method == "*" || entry.method == cell.method.id) &&
+         (entry.option.empty() || (options.contains(entry.option) && options.at(entry.option) == entry.value));
+}
+
+// The entry that counts for a method's cell; none for a method that was not measured.
+const Entry* entry_of(const Cell& cell) {
+  const std::vector<Entry>& all = measured().entries;
+  const auto entry = std::find_if(all.begin(), all.end(), [&](const Entry& e) { return fits(e, cell); });
+  return entry == all.end() ? nullptr : &*entry;
 }
 
 // Elements of a scenario's list; 1 where a test's scenario has none.
@@ -51,11 +63,14 @@ double count(const Json& scenario, const char* list, bool (*counts)(const Json&)
 
 }  // namespace
 
-double usual_seconds(const Cell& cell, bool* of_its_own) {
-  const auto entry = std::find_if(table.begin(), table.end(), [&](const Entry& e) { return fits(e, cell); });
-  if (of_its_own) *of_its_own = entry != table.end();
+std::string measured_on(const Cell& cell) {
+  return cell.method.is_reference() || entry_of(cell) ? "" : measured().others.method;
+}
+
+double usual_seconds(const Cell& cell) {
+  const Entry* const entry = entry_of(cell);
   const Json& options = cell.method.options;
-  double learn_ms = entry == table.end() ? other_learn_ms : entry->learn_ms;
+  double learn_ms = cell.method.is_reference() ? 0 : (entry ? *entry : measured().others).learn_ms;
   if (options.value("network", Json()) == "plain") learn_ms *= network_plain;
   const Json epochs = options.value("epochs", Json(750));
   const double passes = epochs.is_number() ? epochs.get<double>() : 750;

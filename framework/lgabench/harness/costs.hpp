@@ -3,14 +3,15 @@
 #include <map>
 #include <string>
 
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/job/cell.hpp>
 
 namespace lgabench {
 
-/// Seconds of a cell by a table of measured costs (costs.cpp): of its method and network for each demonstration and
-/// pass over it, and of each demonstration and episode. `of_its_own` is set to whether the method has an entry; one
-/// that has none is taken for LGA.
-double usual_seconds(const Cell& cell, bool* of_its_own = nullptr);
+/// Seconds of a cell by what was measured once (the data directory's measured/costs.json): of its method and network
+/// for each demonstration and pass over it, and of each demonstration and episode. @throws InputError
+double usual_seconds(const Cell& cell);
+/// The method that a cell's is taken for, as it was not measured; "" where it was.
+std::string measured_on(const Cell& cell);
 
 /// Learns, row by row, how much longer or shorter cells take here than they usually do.
 class Costs {

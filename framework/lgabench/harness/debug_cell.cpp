@@ -63,13 +63,14 @@ int debug_cell(RunPlan plan, const Catalogue& catalogue, const std::string& key)
   for (const char* name : {"cell", "method"}) fs::create_directory(scratch.path / name);
   keep_answers(plan.answers, scratch.path);
   plan.confined = false;
-  Json job = cell_job(plan, catalogue, cell, scratch.path / "cell", scratch.path / "answers", scratch.path / "method");
-  job["limits"] = {{"cpu_s", 1LL << 40}, {"data_bytes", 1LL << 60}};  // a person has time
-  job["debugger"] = debugger;
+  CellJob job =
+      cell_job(plan, catalogue, cell, scratch.path / "cell", scratch.path / "answers", scratch.path / "method");
+  job.limits = Limits();  // a person has time
+  job.debugger = debugger;
   to_stderr("{}\n{}; nothing is kept\n", cell.title(),
             python ? "breakpoint() in the file stops there"
                    : "set breakpoints (break MyMethod::select), then run; quit ends the cell");
-  return run_in_foreground(job);
+  return run_in_foreground(to_json(job));
 }
 
 }  // namespace lgabench

@@ -54,9 +54,11 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
     row.there += there;
     all.there += there;
     if (there) return;
-    bool of_its_own = false;
-    const double seconds = costs.expected_seconds(row.name, usual_seconds(cell, &of_its_own));
-    row.based_on = costs.knows(row.name) ? "this run's cells" : of_its_own ? "cells measured elsewhere" : "LGA's cells";
+    const double seconds = costs.expected_seconds(cell);
+    const std::string other = measured_on(cell);
+    row.based_on = costs.knows(row.name) ? "this run's cells"
+                   : other.empty()       ? "cells measured elsewhere"
+                                         : other + "'s cells";
     row.seconds += seconds;
     work_s += seconds;
     longest_s = std::max(longest_s, seconds);

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/job/cell.hpp>
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
 

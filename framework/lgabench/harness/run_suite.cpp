@@ -14,6 +14,7 @@
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -58,7 +59,7 @@ void expect_replies_of(const RunPlan& plan) {
 // What the model said until now goes with the run. A full disk costs the copy, not the cells.
 void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
   try {
-    const std::optional<AnswerFile> replies = keep_replies(*plan.live, plan.out);
+    const std::optional<AnswerFile> replies = keep_replies(plan.live->cassette, plan.live_about, plan.out);
     if (!replies) return;
     std::vector<AnswerFile> files = plan.answers;
     files.push_back(*replies);
@@ -115,7 +116,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
 // status.json of a worker that left none.
 Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
   const auto [reason, fault] = why_it_ended(end, timeout_s);
-  const int signal = end.signal ? end.signal : end.host_signal;
+  const int signal = end.signal ? end.signal : end.complaint ? end.complaint->signal : 0;
   return {{"state", "failed"},        {"reason", reason}, {"signal", signal ? Json(signal) : Json(nullptr)},
           {"fault", fault},           {"build", build},   {"files", Json::object()},
           {"log_tail", log_tail(log)}};
@@ -219,8 +220,8 @@ std::string TimeSpent::text(int jobs) const {
   double all = 0;
   for (const auto& phase : phase_s) all += phase.second;
   std::string text;
-  for (const char* phase : {"select", "sample", "demonstrate", "learn", "evaluate"}) {
-    const auto spent = phase_s.find(phase + std::string("_s"));
+  for (const std::string& phase : cell_phases) {
+    const auto spent = phase_s.find(phase + "_s");
     const double share = spent == phase_s.end() || all <= 0 ? 0 : spent->second / all;
     text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", phase, 100 * share);
   }
@@ -241,19 +242,15 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
   return forecast(complete, missing, costs, plan.pool.jobs);
 }
 
-Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
-              const fs::path& answers, const fs::path& scratch) {
-  Json job{{"cell", to_json(cell)},
-           {"directory", fs::absolute(directory).string()},
-           {"cache", fs::absolute(plan.cache).string()},
-           {"answers", fs::absolute(answers).string()},
-           {"scratch", scratch.string()},
-           {"confined", plan.confined},
-           {"build", build_of(cell, catalogue)},
-           {"limits", worker_limits(plan.pool)},
-           {"engine", plugin_json(catalogue.find("engine", cell.engine))}};
-  if (const PluginInfo* method = method_plugin(cell, catalogue)) job["method"] = plugin_json(*method);
-  if (plan.live) job["live"] = to_json(*plan.live);
+CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
+                 const fs::path& answers, const fs::path& scratch) {
+  CellJob job{cell,          catalogue.find("engine", cell.engine),
+              std::nullopt,  directory,
+              plan.cache,    answers,
+              scratch,       build_of(cell, catalogue),
+              plan.confined, worker_limits(plan.pool),
+              plan.live};
+  if (const PluginInfo* method = method_plugin(cell, catalogue)) job.method = *method;
   return job;
 }
 
@@ -286,7 +283,8 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     scratch[i] = directory.scratch(key(cell));
     const fs::path own = hosts.path / std::to_string(i);
     fs::create_directory(own);
-    return WorkerTask{cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own), scratch[i] / "log.txt"};
+    return WorkerTask{to_json(cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own)),
+                      scratch[i] / "log.txt"};
   };
   std::set<std::string> failed;
   PoolEvents events;
@@ -321,7 +319,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
       schedule.learn(cell, end.seconds);
     } else {
       outcome.failed.push_back({cell.title(), reason, kept / "log.txt"});
-      outcome.plugin_refused |= end.exit_code == refused && end.plugin_refused;
+      outcome.plugin_refused |= end.exit_code == refused && end.complaint && end.complaint->refused;
       failed.insert(key(cell));
     }
     progress.ended(i, reason.empty() ? "" : "failed: " + reason);

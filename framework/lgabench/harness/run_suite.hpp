@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <lgabench/harness/answers.hpp>
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/forecast.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/schedule.hpp>
@@ -24,6 +24,7 @@ struct RunPlan {
   std::filesystem::path cache;
   std::vector<AnswerFile> answers{};  // that the cells name
   std::optional<LiveModel> live{};    // that the cells ask
+  Json live_about{};                  // {"model", "provider", "prompt"}: who that is, for run.json
   Existing existing = Existing::same;
   PoolOptions pool;
   bool confined = true;  // methods' processes, see host/confine.hpp
@@ -57,8 +58,9 @@ struct RunOutcome {
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
 
 /// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
-Json cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const std::filesystem::path& directory,
-              const std::filesystem::path& answers, const std::filesystem::path& scratch);
+CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,
+                 const std::filesystem::path& directory, const std::filesystem::path& answers,
+                 const std::filesystem::path& scratch);
 
 /// Computes those of the shard's cells that the directory lacks, long ones first. A cell that fails is recorded as
 /// failed and costs no other; it is tried again by the next run in this directory. Progress goes to stderr.

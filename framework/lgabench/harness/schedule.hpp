@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/harness/cell.hpp>
 #include <lgabench/harness/costs.hpp>
+#include <lgabench/job/cell.hpp>
 
 namespace lgabench {
 

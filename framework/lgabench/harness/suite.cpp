@@ -48,7 +48,7 @@ const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options"};
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
-  for (const std::string& method : methods) known.push_back(method.substr(0, method.find('+')));
+  for (const std::string& method : methods) known.push_back(row_words(method).front());
   options.only(known);
   for (const auto& method : options.json().items()) {
     const JsonReader values = options.at(method.key());
@@ -132,6 +132,19 @@ Suite load_suite(const std::string& id) {
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_grid(suite, preset.key());
   return suite;
+}
+
+const PluginInfo& usual_engine(const Catalogue& catalogue) {
+  std::vector<const PluginInfo*> there;
+  for (const PluginInfo& plugin : catalogue.plugins)
+    if (plugin.kind == "engine") there.push_back(&plugin);
+  if (there.empty()) throw InputError("no engine is there (lgabench list)");
+  std::error_code none_to_list;
+  for (const std::string& suite : json_names(data_directory() / "suites", none_to_list))
+    for (const std::string& id : load_suite(suite).grid.engines)
+      for (const PluginInfo* engine : there)
+        if (engine->id == id) return *engine;
+  return *there.front();
 }
 
 Grid preset_grid(const Suite& suite, const std::string& preset) {

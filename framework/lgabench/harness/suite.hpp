@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
 
@@ -44,6 +45,10 @@ struct Suite {
 /// file are then found too. Every preset is checked. @throws InputError with file and place; for an unknown id it lists
 /// the known ones.
 Suite load_suite(const std::string& id);
+
+/// The engine where nobody names one: the first that a shipped suite is played on and that is there, else the first
+/// that is there. @throws InputError where there is none.
+const PluginInfo& usual_engine(const Catalogue& catalogue);
 
 /// The grid of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
 Grid preset_grid(const Suite& suite, const std::string& preset);

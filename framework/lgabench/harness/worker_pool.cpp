@@ -20,6 +20,7 @@
 #include <utility>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/process.hpp>
 #include <lgabench/host/host_process.hpp>
 
 namespace lgabench {
@@ -91,24 +92,22 @@ Descriptor job_file(const Json& job) {
   return file;
 }
 
+std::string worker_program() { return (program_directory() / "lgabench-worker").string(); }
+
 // One thread of numerics a worker, wherever LibTorch or BLAS look for it: workers, not threads, fill the cores.
 std::vector<std::string> worker_environment(const Json& job) {
   // A secret of the person's stays here, but for a worker that asks a server with it.
-  constexpr std::array<const char*, 2> secret{"OPENAI_API_KEY=", "OPENAI_BASE_URL="};
+  const auto secret = [](const std::string& variable) {
+    return variable.rfind("OPENAI_API_KEY=", 0) == 0 || variable.rfind("OPENAI_BASE_URL=", 0) == 0;
+  };
+  std::vector<std::string> all = environment_with({"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
+                                                   "LGABENCH_DATA=" + fs::absolute(data_directory()).string()});
   const bool asks = job.contains("live") && job["live"].at("asks") == true;
-  std::vector<std::string> all{"OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1",
-                               "LGABENCH_DATA=" + fs::absolute(data_directory()).string()};
-  for (char** variable = environ; *variable; ++variable) {
-    const std::string text = *variable, name = text.substr(0, text.find('=') + 1);
-    if (!asks && std::find(secret.begin(), secret.end(), name) != secret.end()) continue;
-    if (std::none_of(all.begin(), all.begin() + 4, [&](const auto& ours) { return ours.rfind(name, 0) == 0; }))
-      all.push_back(text);
-  }
+  if (!asks) all.erase(std::remove_if(all.begin(), all.end(), secret), all.end());
   return all;
 }
 
 Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& options, const Signals& signals) {
-  const std::string program = (program_directory() / "lgabench-worker").string();
   const Descriptor job = job_file(what.job);
   const Descriptor log(
       ::open(what.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_NOFOLLOW | O_CLOEXEC, 0644));
@@ -118,29 +117,15 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   Descriptor reading(ends[0]);
   const Descriptor writing(ends[1]);
   ::fcntl(reading.fd, F_SETFL, O_NONBLOCK);
-  const std::vector<std::string> variables =
-      worker_environment(what.job);  // nothing is allocated between fork and exec
-  const std::vector<char*> environment = pointers(variables);
-  char* const arguments[] = {const_cast<char*>(program.c_str()), const_cast<char*>(what.verb.c_str()), nullptr};
-  const pid_t parent = ::getpid();
-
-  const pid_t pid = ::fork();
-  if (pid < 0) fail("fork");
-  if (pid == 0) {
+  const auto apart = [&signals] {
     ::setpgid(0, 0);  // its own group: what it starts is stopped with it, and a terminal's Ctrl-C asks us alone
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(127);  // we died before that took effect
-    ::sigprocmask(SIG_SETMASK, &signals.before(), nullptr);
-    // All descriptors here are above 3 (0 to 2 are open), except that one may be 3 itself: dup2 would keep CLOEXEC.
-    const int spare = ::fcntl(writing.fd, F_DUPFD, 10);
-    ::dup2(job.fd, 0);
-    ::dup2(log.fd, 1);
-    ::dup2(log.fd, 2);
-    ::dup2(spare, 3);
-    ::close(spare);
-    ::execve(program.c_str(), arguments, environment.data());
-    ::_exit(127);
-  }
+    return ::sigprocmask(SIG_SETMASK, &signals.before(), nullptr) == 0;
+  };
+  const pid_t pid = start_process({{worker_program(), what.verb},
+                                   worker_environment(what.job),
+                                   {{job.fd, 0}, {log.fd, 1}, {log.fd, 2}, {writing.fd, 3}},
+                                   {},
+                                   apart});
   ::setpgid(pid, pid);  // whoever comes first
   Worker worker{task, pid, std::move(reading), "", Clock::now(), {}, {}};
   worker.deadline =
@@ -148,25 +133,14 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
   return worker;
 }
 
-// A line of fd 3: {"phase", "count"} or {"reason", "fault"}. A plugin could write there too: what is no such line is
-// dropped.
+// A line of fd 3; what is none of a worker's is dropped.
 void take_line(const std::string& line, Worker& worker, const PoolEvents& events) {
   const Json message = json_or_null(line);
-  if (!message.is_object()) return;
-  const auto text = [&message](const char* name) {
-    return message.contains(name) && message[name].is_string() ? message[name].get<std::string>() : std::string();
-  };
-  if (message.contains("reason")) {
-    worker.end.complaint = {{"reason", text("reason")}, {"fault", text("fault")}};
-    const Json signal = message.value("signal", Json(0));
-    if (signal.is_number_integer()) worker.end.host_signal = signal.get<int>();
-    worker.end.plugin_refused = message.value("refused", Json()) == true;
-  }
-  if (!message.contains("phase")) return;
-  worker.end.phase = text("phase");
-  const auto count = message.find("count");
-  events.progress(worker.task, worker.end.phase,
-                  count != message.end() && count->is_number_integer() ? count->get<long long>() : 0);
+  if (auto complaint = read_complaint(message)) worker.end.complaint = std::move(complaint);
+  const auto at = read_phase_count(message);
+  if (!at) return;
+  worker.end.phase = at->phase;
+  events.progress(worker.task, at->phase, at->count);
 }
 
 // A full pipe at most: a plugin that writes there without end shall not hold up the others.
@@ -245,10 +219,10 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
       try {
         crew.workers.push_back(start(next, make(next), options, signals));
       } catch (const InputError& e) {  // no process, or no place on the disk
-        not_begun.complaint = {{"reason", e.what()}, {"fault", "host"}};
+        not_begun.complaint = Complaint{e.what()};
       }
       events.started(next);
-      if (!not_begun.complaint.is_null()) events.ended(next, not_begun);
+      if (not_begun.complaint) events.ended(next, not_begun);
       ++next;
     }
     std::vector<pollfd> watched{{signals.fd(), POLLIN, 0}};
@@ -281,33 +255,12 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 }
 
 int run_in_foreground(const Json& job) {
-  const std::string program = (program_directory() / "lgabench-worker").string();
   const Descriptor file = job_file(job);
-  const std::vector<std::string> variables = worker_environment(job);
-  const std::vector<char*> environment = pointers(variables);
-  char cell[] = "cell";
-  char* const arguments[] = {const_cast<char*>(program.c_str()), cell, nullptr};
   ::signal(SIGINT, SIG_IGN);
-  const pid_t pid = ::fork();
-  if (pid < 0) fail("fork");
-  if (pid == 0) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const int spare = ::fcntl(file.fd, F_DUPFD_CLOEXEC, 10);
-    ::dup2(0, persons_input);
-    ::dup2(spare, 0);
-    ::execve(program.c_str(), arguments, environment.data());
-    ::_exit(127);
-  }
-  int status = 0;
-  ::waitpid(pid, &status, 0);
+  const int status = wait_for(start_process(
+      {{worker_program(), "cell"}, worker_environment(job), {{file.fd, 0}, {STDIN_FILENO, persons_input}}}));
   ::signal(SIGINT, SIG_DFL);
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-Json plugin_json(const PluginInfo& plugin) {
-  Json json{{"file", fs::absolute(plugin.file).string()}, {"sha256", plugin.sha256}};
-  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"asks", plugin.asks}, {"python", plugin.python}});
-  return json;
 }
 
 double machine_bytes() {
@@ -315,11 +268,11 @@ double machine_bytes() {
 }
 
 // A worker that leaks meets its own limit before the machine's.
-Json worker_limits(const PoolOptions& options) {
+Limits worker_limits(const PoolOptions& options) {
   constexpr double gib = 1 << 30, least = 4 * gib;
   const double memory =
       options.memory_gib > 0 ? options.memory_gib * gib : std::max(least, machine_bytes() / options.jobs);
-  return {{"cpu_s", static_cast<long long>(options.timeout_s) + 60}, {"data_bytes", static_cast<long long>(memory)}};
+  return {static_cast<long long>(options.timeout_s) + 60, static_cast<long long>(memory)};
 }
 
 WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
@@ -329,8 +282,7 @@ WorkerFault why_it_ended(const WorkerEnd& end, double timeout_s) {
     const bool outside = end.signal == SIGKILL || end.signal == SIGTERM;  // a person, or memory ran out
     return {fmt::format("signal {} ({}) {}", end.signal, ::strsignal(end.signal), where), outside ? "host" : "plugin"};
   }
-  if (!end.complaint.is_null())
-    return {end.complaint.at("reason"), end.complaint.at("fault") == "plugin" ? "plugin" : "host"};
+  if (end.complaint) return {end.complaint->reason, end.complaint->by_plugin ? "plugin" : "host"};
   return {fmt::format("exited with {} {}", end.exit_code, where), "plugin"};
 }
 

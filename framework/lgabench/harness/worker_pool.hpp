@@ -2,11 +2,12 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/json.hpp>
-#include <lgabench/plugin/loader.hpp>
+#include <lgabench/job/job.hpp>
 
 namespace lgabench {
 
@@ -20,12 +21,10 @@ struct WorkerTask {
 struct WorkerEnd {
   double seconds = 0;  // of wall time
   int exit_code = 0;
-  int signal = 0;               // that ended it, or 0
-  bool timed_out = false;       // it was stopped after the limit
-  std::string phase;            // the last one it reported
-  Json complaint;               // {"reason", "fault"} if it said why it failed, else null
-  int host_signal = 0;          // that ended the method's process, or 0
-  bool plugin_refused = false;  // it said that a plugin could not be loaded
+  int signal = 0;          // that ended it, or 0
+  bool timed_out = false;  // it was stopped after the limit
+  std::string phase;       // the last one it reported
+  std::optional<Complaint> complaint{};
 };
 
 struct PoolOptions {
@@ -55,14 +54,11 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 /// interrupt too. Returns the worker's exit status.
 int run_in_foreground(const Json& job);
 
-/// {"file", "sha256"}, for a method in Python also {"id", "asks", "python"}: a plugin, as a job names it to the worker.
-Json plugin_json(const PluginInfo& plugin);
-
 /// Of this machine's memory.
 double machine_bytes();
 
-/// {"cpu_s", "data_bytes"}: the limits that a job's "limits" holds, which the worker sets before it loads a plugin.
-Json worker_limits(const PoolOptions& options);
+/// What each of the workers may take.
+Limits worker_limits(const PoolOptions& options);
 
 /// "signal 11 (Segmentation fault) in phase learn": why a worker that did not finish ended, and that the plugin is at
 /// fault ("plugin") or what came from outside ("host").

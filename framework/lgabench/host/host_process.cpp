@@ -5,7 +5,6 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +20,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/process.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
@@ -33,13 +33,6 @@ std::vector<pid_t> children_of(pid_t parent) {
     std::ifstream file(thread.path() / "children");
     for (pid_t pid = 0; file >> pid;) all.push_back(pid);
   }
-  return all;
-}
-
-std::vector<char*> pointers(const std::vector<std::string>& words) {
-  std::vector<char*> all;
-  for (const std::string& word : words) all.push_back(const_cast<char*>(word.c_str()));
-  all.push_back(nullptr);
   return all;
 }
 
@@ -98,32 +91,19 @@ HostProcess::HostProcess(const HostCommand& command)
   const Descriptor printing(output[1]);
   ::fcntl(output_.fd, F_SETFL, O_NONBLOCK);
   const Descriptor nothing(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-  const std::vector<std::string> variables = environment_of(command);
-  const std::vector<char*> environment = pointers(variables), arguments = pointers(command.words);
-  const std::string directory = command.scratch.string();
-  const pid_t parent = ::getpid();
-
-  pid_ = ::fork();
-  if (pid_ < 0) fail("fork");
-  if (pid_ == 0) {
-    if (!in_foreground_) ::setsid();
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent || ::chdir(directory.c_str()) != 0) ::_exit(127);
-    if (command.confinement && !command.confinement->apply()) ::_exit(126);
-    // Above those that are replaced: dup2 onto itself would keep CLOEXEC.
-    const int spare = ::fcntl(theirs.fd, F_DUPFD_CLOEXEC, 10);
-    ::dup2(in_foreground_ ? persons_input : nothing.fd, 0);
-    if (in_foreground_) {
+  ProcessStart start{command.words, environment_of(command), {{theirs.fd, 3}}, command.scratch};
+  if (in_foreground_)
+    start.descriptors.emplace_back(persons_input, 0);
+  else
+    start.descriptors.insert(start.descriptors.end(), {{nothing.fd, 0}, {printing.fd, 1}, {printing.fd, 2}});
+  start.in_child = [&command] {
+    if (command.in_foreground)
       ::signal(SIGINT, SIG_DFL);
-    } else {
-      ::dup2(printing.fd, 1);
-      ::dup2(printing.fd, 2);
-    }
-    ::dup2(spare, 3);
-    ::syscall(SYS_close_range, 4u, ~0u, 0u);
-    ::execve(arguments[0], arguments.data(), environment.data());
-    ::_exit(127);
-  }
+    else
+      ::setsid();
+    return !command.confinement || command.confinement->apply();
+  };
+  pid_ = start_process(start);
 }
 
 HostProcess::~HostProcess() {

@@ -14,9 +14,6 @@ namespace lgabench {
 /// Processes that a process started, and, if it is a subreaper, those below it whose own parent is gone.
 std::vector<pid_t> children_of(pid_t parent);
 
-/// As exec takes words and variables: pointers into them, and a null pointer at the end.
-std::vector<char*> pointers(const std::vector<std::string>& words);
-
 /// What is started, and with what.
 struct HostCommand {
   std::vector<std::string> words;            // an absolute path, and its arguments
@@ -35,7 +32,7 @@ constexpr int persons_input = 4;
 /// for.
 class HostProcess {
  public:
-  /// @throws EngineError where no process can be started.
+  /// @throws EngineError, InputError where no process can be started.
   explicit HostProcess(const HostCommand& command);
   ~HostProcess();
   HostProcess(const HostProcess&) = delete;

@@ -6,12 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/process.hpp>
 #include <lgabench/core/scratch.hpp>
+#include <lgabench/host/descriptor.hpp>
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
@@ -27,22 +26,15 @@ Output output_of(const std::string& interpreter, const std::string& written) {
   const Scratch scratch("python");
   const std::string out = (scratch.path / "out").string(), error = (scratch.path / "error").string();
   const std::string package = fs::weakly_canonical(data_directory() / "python").string();
-  const char* const arguments[] = {interpreter.c_str(), "-m", "lgabench_method", written.c_str(), nullptr};
-  const pid_t pid = ::fork();
-  if (pid < 0) throw EngineError(fmt::format("fork: {}", std::strerror(errno)));
-  if (pid == 0) {
-    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), 1);
-    ::dup2(::open(error.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), 2);
-    ::setenv("PYTHONPATH", package.c_str(), 1);
-    ::setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
-    ::execvp(arguments[0], const_cast<char* const*>(arguments));
-    ::_exit(127);
-  }
-  Output output;
-  ::waitpid(pid, &output.status, 0);
-  output.out = read_file(out);
-  output.error = read_file(error);
-  return output;
+  const auto made = [](const std::string& file) {
+    return Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
+  };
+  const Descriptor to_out = made(out), to_error = made(error);
+  const pid_t pid = start_process({{interpreter, "-m", "lgabench_method", written},
+                                   environment_with({"PYTHONPATH=" + package, "PYTHONDONTWRITEBYTECODE=1"}),
+                                   {{to_out.fd, 1}, {to_error.fd, 2}}});
+  const int status = wait_for(pid);
+  return {read_file(out), read_file(error), status};
 }
 
 // The last line: a traceback's has the error.
@@ -53,13 +45,11 @@ std::string last_line(std::string text) {
 
 }  // namespace
 
-bool is_python_method(const std::string& word) {
-  return word.substr(0, word.find('+')).find(".py:") != std::string::npos;
-}
+bool is_python_method(const std::string& word) { return row_words(word).front().find(".py:") != std::string::npos; }
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
   const auto [out, error, status] = output_of(interpreter, written);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started)
     throw PluginError(fmt::format("{}: cannot be started; --python names the interpreter", interpreter));
   if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
   PluginInfo plugin;
@@ -94,8 +84,8 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
 
 std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue) {
   if (!is_python_method(row)) return row;
-  const std::size_t options = std::min(row.find('+'), row.size());
-  const PluginInfo plugin = describe_python(row.substr(0, options), interpreter);
+  const std::string written = row_words(row).front();
+  const PluginInfo plugin = describe_python(written, interpreter);
   const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; };
   const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
   if (known == catalogue.plugins.end())
@@ -103,7 +93,7 @@ std::string with_python_method(const std::string& row, const std::string& interp
   else if (known->file != plugin.file || known->python != plugin.python)
     throw PluginError(
         fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
-  return plugin.id + row.substr(options);
+  return plugin.id + row.substr(written.size());
 }
 
 }  // namespace lgabench

@@ -1,7 +1,6 @@
 #include <lgabench/report/pictures.hpp>
 
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,14 +11,17 @@
 #include <memory>
 #include <vector>
 
+#include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/process.hpp>
 #include <lgabench/core/selection.hpp>
+#include <lgabench/job/job.hpp>
 
 namespace lgabench::report {
 namespace {
 
 struct Request {
-  Json json;                        // as lgabench-worker reads it
+  PictureRequest scene;
   std::vector<std::string> masks;   // mask_key of each of its selections
   std::vector<std::string> ends{};  // end_key of the scene itself, then of each engine that is asked for
 };
@@ -42,24 +44,27 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         if (episode.success) continue;
         const auto [known, is_new] = place.emplace(episode.scene, all.size());
         if (is_new)
-          all.push_back({{{"cell", (run / "cells" / cell.key / "cell.json").string()},
-                          {"arm", arm},
-                          {"index", i},
-                          {"scene", episode.scene},
-                          {"selections", Json::array()}},
-                         {}});
+          all.push_back({{run / "cells" / cell.key / "cell.json", arm, static_cast<int>(i), episode.scene}, {}});
         const CommandResult& command = cell.commands[episode.command];
         if (command.quality.is_null()) continue;
         Request& request = all[known->second];
         const std::string key = mask_key(episode.scene, cell, command.selection);
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
-        request.json["selections"].push_back(what_is_kept(cell, command.selection));
+        request.scene.selections.push_back(what_is_kept(cell, command.selection));
       }
   }
   std::stable_sort(all.begin(), all.end(),
-                   [](const Request& a, const Request& b) { return a.json.at("index") < b.json.at("index"); });
+                   [](const Request& a, const Request& b) { return a.scene.index < b.scene.index; });
   return all;
+}
+
+std::optional<ActionVector> action_of(const PlayedEpisode& episode) {
+  ActionVector action{};
+  if (episode.action.size() != action.size()) return std::nullopt;
+  std::transform(episode.action.begin(), episode.action.end(), action.begin(),
+                 [](double number) { return static_cast<float>(number); });
+  return action;
 }
 
 void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreements, std::vector<Request>& requests) {
@@ -67,13 +72,13 @@ void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreement
   for (const EngineAgreement& agreement : agreements)
     for (const Disagreement& d : agreement.disagreements) {
       if (added++ == most_ends) return;
-      requests.push_back({{{"cell", (run / "cells" / d.cell->key / "cell.json").string()},
-                           {"arm", d.arm},
-                           {"index", d.index},
-                           {"scene", d.episode().scene},
-                           {"selections", Json::array()},
-                           {"engines", {agreement.first, agreement.second}},
-                           {"action", d.episode().action}},
+      requests.push_back({{run / "cells" / d.cell->key / "cell.json",
+                           d.arm,
+                           static_cast<int>(d.index),
+                           d.episode().scene,
+                           {},
+                           {agreement.first, agreement.second},
+                           action_of(d.episode())},
                           {},
                           {end_key(d, ""), end_key(d, agreement.first), end_key(d, agreement.second)}});
     }
@@ -88,19 +93,12 @@ std::string run_worker(const std::string& input, std::string& output) {
     return fmt::format("no temporary file could be written: {}", std::strerror(errno));
   std::rewind(in.get());
 
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(in.get()), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), STDOUT_FILENO);
-  std::string program = (program_directory() / "lgabench-worker").string(), verb = "pictures";
-  char* arguments[] = {program.data(), verb.data(), nullptr};
-  pid_t child = 0;
-  const int error = ::posix_spawn(&child, program.c_str(), &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return fmt::format("lgabench-worker could not be started: {}", std::strerror(error));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const std::string program = (program_directory() / "lgabench-worker").string();
+  const int status =
+      wait_for(start_process({{program, "pictures"},
+                              environment_with({}),
+                              {{::fileno(in.get()), STDIN_FILENO}, {::fileno(out.get()), STDOUT_FILENO}}}));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started) return "lgabench-worker could not be started";
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "lgabench-worker failed";
 
   std::rewind(out.get());
@@ -128,7 +126,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
   if (requests.empty()) return pictures;
 
   Json asked = Json::array();
-  for (const Request& request : requests) asked.push_back(request.json);
+  for (const Request& request : requests) asked.push_back(to_json(request.scene));
   std::string lines;
   pictures.problem = run_worker(canonical(asked), lines);
   std::size_t begin = 0;
@@ -146,8 +144,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
         if (const Json& png = drawn.at("ends").at(i - 1); png.is_string()) pictures.ends[request.ends[i]] = png;
       continue;
     }
-    const std::string scene = request.json.at("scene");
-    pictures.scenes[scene] = drawn.at("picture");
+    pictures.scenes[request.scene.scene] = drawn.at("picture");
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
   }
   return pictures;

@@ -1,8 +1,7 @@
-#include <lgabench/harness/cell.hpp>
+#include <lgabench/job/cell.hpp>
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <limits>
 
 #include <lgabench/abstraction/prompt.hpp>
@@ -23,37 +22,6 @@ std::string folder_hash(const fs::path& folder) {
 
 std::uint64_t seed_at(const JsonReader& reader) {
   return static_cast<std::uint64_t>(reader.integer(0, std::numeric_limits<std::int64_t>::max()));
-}
-
-// Those whose answers the method is based on in this scenario; one that is nobody where it asks no people, or where the
-// truth stands in for them.
-using Answering = std::vector<std::optional<CellParticipant>>;
-Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {
-  if (all.empty() || (method.asks != "specify" && method.asks != "edit")) return {std::nullopt};
-  const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
-  Answering some;
-  for (const Participant& one : all)
-    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
-  return some;
-}
-
-// A method that people answer for shall not vanish from the table because they were asked about other scenarios.
-void expect_each_method(const std::vector<Competitor>& methods, const std::vector<Cell>& cells) {
-  for (const Competitor& method : methods)
-    if (std::none_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.method.name == method.name; }))
-      throw InputError(
-          fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
-}
-
-// The suite's own arms come after the scenario's.
-Scenario with_arms(const Scenario& scenario, const Suite& suite) {
-  Json json = scenario.json;
-  const Json first = json["tests"].front();
-  for (const Json& arm : suite.arms) {
-    json["tests"].push_back(first);
-    json["tests"].back().update(arm);
-  }
-  return read_scenario(json, fmt::format("{}: scenario {} with /arms", suite.file, scenario.id));
 }
 
 }  // namespace
@@ -141,56 +109,5 @@ Json data_hashes(const Scenario& scenario, const std::string& answers) {
 }
 
 bool is_live(const std::string& answers) { return answers.rfind(live_prefix, 0) == 0; }
-
-std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
-  const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
-  for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
-
-  std::vector<Cell> cells;
-  for (const std::string& id : grid.scenarios) {
-    const Scenario scenario = with_arms(load_scenario(id, variation.truth), suite);
-    if (scenario.environment != suite.environment)
-      throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
-                                   scenario.environment, suite.environment));
-    Cell cell;
-    cell.suite = suite.id;
-    cell.environment = suite.environment;
-    cell.scenario = scenario.json;
-    cell.scene_seed = grid.scene_seed;
-    cell.test_scenes = grid.test_scenes;
-    cell.episodes = grid.episodes;
-    cell.answers = variation.answers;
-    cell.data = data_hashes(scenario, cell.answers);
-    cell.smoke = grid.smoke;
-    const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
-      cell.method = method;
-      cell.demonstrations = demonstrations;
-      cell.training_seed = seed;
-      for (const auto& participant : participants(method, scenario, variation.participants)) {
-        cell.participant = participant;
-        cells.push_back(cell);
-      }
-    };
-    // One that learns nothing plays each set of test scenes once.
-    const std::vector<std::uint64_t> scene_sets = cell.scenes_of_seed() ? grid.seeds : std::vector<std::uint64_t>{0};
-    const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
-    for (const std::string& layout : grid.layouts) {
-      for (const std::string& engine : grid.engines) {
-        cell.layout = layout;
-        cell.engine = engine;
-        for (const int n : grid.demonstrations)
-          for (const std::uint64_t seed : grid.seeds) {
-            for (const Competitor& method : methods) add(method, n, seed);
-            if (variation.references) add(reference("constant_action"), n, seed);
-          }
-        if (variation.references)
-          for (const char* row : {"random_object", "oracle"})
-            for (const std::uint64_t seed : scene_sets) add(reference(row), 0, seed);
-      }
-    }
-  }
-  expect_each_method(methods, cells);
-  return cells;
-}
 
 }  // namespace lgabench

@@ -1,4 +1,4 @@
-#include <lgabench/harness/environments.hpp>
+#include <lgabench/cell/environments.hpp>
 
 #include <lgabench/core/environments.hpp>
 

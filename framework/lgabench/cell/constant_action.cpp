@@ -1,4 +1,4 @@
-#include <lgabench/harness/constant_action.hpp>
+#include <lgabench/cell/constant_action.hpp>
 
 #include <cmath>
 #include <limits>

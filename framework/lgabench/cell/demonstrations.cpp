@@ -1,4 +1,4 @@
-#include <lgabench/harness/demonstrations.hpp>
+#include <lgabench/cell/demonstrations.hpp>
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <iterator>
 #include <string_view>
 
+#include <lgabench/cell/hdf5.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/hdf5.hpp>
 
 namespace lgabench {
 namespace {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/cell/check.hpp>
+#include <lgabench/cell/environments.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/harness/check.hpp>
-#include <lgabench/harness/environments.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {

@@ -1,4 +1,4 @@
-#include <lgabench/harness/hdf5.hpp>
+#include <lgabench/cell/hdf5.hpp>
 
 #include <fmt/format.h>
 #include <hdf5.h>

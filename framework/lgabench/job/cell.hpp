@@ -5,14 +5,22 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/harness/competitors.hpp>
-#include <lgabench/harness/suite.hpp>
-#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
+
+/// A method, or a row of the table that a method is measured against.
+struct Competitor {
+  std::string kind = "method";  // or "reference": constant_action, random_object, oracle
+  std::string id;
+  std::string name;  // its row's: the id, and what tells it from other rows of that id (harness/competitors.hpp)
+  std::string version;
+  Json options = Json::object();  // every option, defaults included
+  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
+
+  bool is_reference() const { return kind == "reference"; }
+};
 
 /// A person whose answers a cell is based on.
 struct CellParticipant {
@@ -55,20 +63,5 @@ std::string key(const Cell& cell);
 /// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings; where a
 /// model is asked live (see `answers` of Cell) the prompt too.
 Json data_hashes(const Scenario& scenario, const std::string& answers);
-
-/// What is not on the grid.
-struct Variation {
-  std::string answers = "recorded";  // as Cell::answers
-  Json options = Json::object();     // as Grid::options, before which they go
-  bool references = true;            // add the reference rows
-  Truth truth = Truth::released;
-  std::vector<Participant> participants{};  // none: the truth stands in for people
-};
-
-/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
-/// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
-/// @throws as competitors(); PluginError for an unknown engine, InputError for a method that no participant answered at
-/// all.
-std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

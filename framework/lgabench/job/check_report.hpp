@@ -1,13 +1,9 @@
-// What `lgabench check-plugin` looks at. A method runs in a process of its own, as in a run; an engine in this one.
+// What `lgabench check-plugin` finds.
 #pragma once
-#include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/json.hpp>
-#include <lgabench/host/hosted_method.hpp>
-#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
 
@@ -36,21 +32,5 @@ struct CheckReport {
 };
 Json to_json(const CheckReport& report);
 CheckReport read_check_report(const Json& json, const std::string& file);
-
-/// Told before each step, so that whoever waits knows where a crash happened.
-using CheckPhase = std::function<void(const std::string& phase)>;
-
-/// Uses the method twice from loading to acting, on small but real cells (heart, q3_fruit; sweep is selected for only),
-/// with the same seed, which is not the job's. Returns all findings; one thread.
-/// @throws PluginError if it cannot be loaded, MethodGone where its process ends; whatever else it throws is a finding.
-/// EngineError for the engine's fault.
-CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase);
-
-/// Lets the oracle play scenes of every task on the engine, forwards and backwards, likewise.
-CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase);
-
-/// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came. Threads are
-/// given half a second to end.
-void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now);
 
 }  // namespace lgabench

@@ -1,4 +1,4 @@
-#include <lgabench/harness/evaluator.hpp>
+#include <lgabench/cell/evaluator.hpp>
 
 #include <fmt/format.h>
 

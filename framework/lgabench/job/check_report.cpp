@@ -1,10 +1,4 @@
-#include <lgabench/harness/check.hpp>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <chrono>
-#include <thread>
+#include <lgabench/job/check_report.hpp>
 
 namespace lgabench {
 
@@ -52,21 +46,6 @@ CheckReport read_check_report(const Json& json, const std::string& file) {
   for (const JsonReader& finding : reader.at("findings").elements()) report.findings.push_back(read_finding(finding));
   report.hashes = reader.at("hashes").json();
   return report;
-}
-
-void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now) {
-  ProcessState left = now();
-  for (int wait = 0; wait < 50 && !left.threads.empty(); ++wait) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    left = now();
-  }
-  report.judge("threads", left.threads.empty() ? "" : fmt::format("left running: {}", fmt::join(left.threads, ", ")),
-               "none left behind",
-               "join every thread before the call that started it returns, or in the destructor; a library's own pool "
-               "is kept small by its settings (one thread)");
-  const auto& files = left.descriptors;
-  report.judge("descriptors", files.empty() ? "" : fmt::format("left open: {}", fmt::join(files, ", ")),
-               "none left open", "close every file and socket, or hold it in an object that does");
 }
 
 }  // namespace lgabench

@@ -2,20 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
-#include <utility>
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/cell/check.hpp>
+#include <lgabench/cell/demonstrations.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
-#include <lgabench/harness/check.hpp>
-#include <lgabench/harness/demonstrations.hpp>
-#include <lgabench/harness/environments.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -70,27 +70,17 @@ class TruthfulModel : public LanguageModel {
   TruthAsHuman truth_;
 };
 
-class Lines : public TrainingLog {
- public:
-  void epoch(int epochs, long long steps, double loss) override {
-    if (!std::isfinite(loss)) throw MethodError(fmt::format("the loss of epoch {} is {}", epochs, loss));
-    text += fmt::format("{} {} {:a}\n", epochs, steps, loss);
-  }
-  std::string text;
-};
-
-struct TestSight {
+struct Sight {
+  Scene scene;
   Observation observation;
-  int command = 0;
-  bool seen = true;
 };
 
-// A cell's worth of everything that the method is given.
+// A scenario, and the scenes that the method acts in.
 struct Bench {
   Scenario scenario;
   std::string layout;
   std::unique_ptr<Environment> environment;
-  std::vector<TestSight> sights;
+  std::vector<Sight> sights;
 
   Bench(const std::string& id, const PluginInfo& engine)
       : scenario(load_scenario(id)),
@@ -99,9 +89,35 @@ struct Bench {
     for (const Arm& arm : scenario.tests)
       for (int i = 0; i < scenes_an_arm; ++i) {
         const Scene scene = test_scene(scenario, layout, arm.id, seed, i);
-        const auto command = static_cast<std::size_t>(scene.command);
-        sights.push_back({environment->reset(scene), scene.command, scenario.commands[command].seen});
+        sights.push_back({scene, environment->reset(scene)});
       }
+  }
+  bool is_seen(const Sight& sight) const {
+    return scenario.commands[static_cast<std::size_t>(sight.scene.command)].seen;
+  }
+};
+
+// Whom the method may ask, as in a cell without people and with recorded answers, where there are any.
+struct Answering {
+  Answering(const Scenario& scenario, const HostJob& job, bool always_no = false)
+      : recorded(scenario, recorded_source(scenario, "recorded", job.method.asks == "edit")),
+        truthful(scenario.commands),
+        model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
+        human(std::make_unique<TruthAsHuman>(scenario.commands), job.method.asks),
+        services{model, human, job.options, seed, log, declared_truth(scenario.commands, job.method.asks)} {}
+
+  RecordedLanguageModel recorded;
+  TruthfulModel truthful;
+  CountingModel model;
+  DeclaredHuman human;
+  TrainingLines log;
+  Services services;
+
+ private:
+  bool knows_all(const Scenario& scenario) const {
+    for (std::size_t c = 0; c < scenario.commands.size(); ++c)
+      if (!recorded.knows(scenario.command(static_cast<int>(c)))) return false;
+    return true;
   }
 };
 
@@ -113,8 +129,7 @@ struct Use {
 // The method runs in one process from first to last, confined as in a run.
 class MethodCheck {
  public:
-  MethodCheck(const HostJob& job, const CheckPhase& phase)
-      : plugin_(job.method), options_(job.options), phase_(phase), method_(job) {}
+  MethodCheck(const HostJob& job, const CheckPhase& phase) : job_(job), phase_(phase), method_(job) {}
 
   CheckReport run(const std::vector<std::unique_ptr<Bench>>& benches) {
     try {
@@ -131,26 +146,26 @@ class MethodCheck {
     } catch (const std::exception& e) {
       report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
     }
-    if (plugin_.python.is_null()) judge_process();
-    report_.ok("time", fmt::format("select {:.3f} s a command, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
+    if (is_library()) judge_process();
+    report_.ok("time", fmt::format("select {:.3f} s, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
                                    seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
     return std::move(report_);
   }
 
  private:
-  // Says what comes, does it guarded, notes how long it took.
+  // A library can be looked at in its process. Python's has threads, files and a heap of the interpreter's.
+  bool is_library() const { return job_.method.python.is_null(); }
+
+  // Says what comes, does it, notes how long it took.
   template <class Call>
-  auto call(const std::string& what, Call&& c) {
+  auto timed(const std::string& what, Call&& c) {
     phase_(doing_ = what);
     const auto start = std::chrono::steady_clock::now();
-    return guarded(plugin_.id, [&] {
-      auto result = c();
-      seconds_[what] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-      return result;
-    });
+    auto result = c();
+    seconds_[what] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
   }
 
-  // What a library does to its process. Python's has threads, files and a heap of the interpreter's.
   void judge_process() {
     phase_(doing_ = "destroy policy and method");  // which a call that threw left there
     method_.drop_policy();
@@ -161,7 +176,7 @@ class MethodCheck {
                   "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
   }
 
-  long long heap_bytes() const { return plugin_.python.is_null() ? method_.state().heap_bytes : 0; }
+  long long heap_bytes() const { return is_library() ? method_.state().heap_bytes : 0; }
 
   // One line of what the call throws; "" if nothing.
   std::string thrown(const std::function<void()>& c) {
@@ -173,92 +188,62 @@ class MethodCheck {
     return "";
   }
 
+  // The steps of a cell, but for the record.
   Use use(const std::vector<std::unique_ptr<Bench>>& benches, bool judged) {
     Use use;
     for (const auto& bench : benches) {
-      const bool first = bench == benches.front();
-      const Needs needs = call("needs", [&] { return method_.needs(options_); });
-      std::vector<Instruction> instructions;
-      for (std::size_t c = 0; c < bench->scenario.commands.size(); ++c) {
-        const Command command = bench->scenario.command(static_cast<int>(c));
-        auto [selection, asked] = select("select", bench->scenario, command, false);
-        if (judged && first) judge_selection(needs, selection, asked, bench->scenario);
-        use.selections += canonical(distribution_json(selection)) + '\n';
-        instructions.push_back({command.utterance, std::move(selection)});
-      }
-      if (judged && first) judge_other_commands(needs, bench->scenario);
-      auto policy = learn(needs, *bench, instructions, judged && first, use);
+      const bool first = judged && bench == benches.front();
+      Answering asked(bench->scenario, job_);
+      Selected selected = select_all(bench->scenario, asked, "select");
+      if (first) judge_selection(selected, asked.model.asked, bench->scenario);
+      for (const Instruction& instruction : selected.instructions)
+        use.selections += canonical(distribution_json(instruction.selection)) + '\n';
+      if (first) judge_other_commands(selected.needs, *bench);
+      const auto policy = learn_from(*bench, asked, selected);
+      if (first && asked.log.lines.empty())
+        report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
+      use.training += asked.log.lines;
       phase_(doing_ = "destroy the method");
       method_.drop_method();  // a policy may outlive it
+      const Actor actor = policy_actor(*policy, selected.instructions, job_.method.id);
       std::vector<std::string> actions;
-      for (const TestSight& sight : bench->sights)
-        actions.push_back(act(sight.seen ? "act" : "act on an unseen command", *policy, sight, instructions));
+      for (const Sight& sight : bench->sights)
+        actions.push_back(act(bench->is_seen(sight) ? "act" : "act on an unseen command", actor, *bench, sight));
       for (const std::string& action : actions) use.actions += action + '\n';
-      if (judged) judge_policy(*policy, *bench, instructions, actions, first);
-      if (judged && first && needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
+      if (judged) judge_policy(actor, *bench, actions, first);
+      if (first && selected.needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
       phase_(doing_ = "destroy the policy");
       method_.drop_policy();
     }
     return use;
   }
 
-  // The Selection, and how many questions were asked of services.lm.
-  std::pair<Selection, int> select(const std::string& what, const Scenario& scenario, const Command& command,
-                                   bool always_no) {
-    RecordedLanguageModel recorded(scenario, recorded_source(scenario, "recorded", plugin_.asks == "edit"));
-    TruthfulModel truthful(scenario.commands);
-    CountingModel lm(recorded.knows(command) ? static_cast<LanguageModel&>(recorded) : truthful, always_no);
-    DeclaredHuman human(std::make_unique<TruthAsHuman>(scenario.commands), plugin_.asks);
-    Lines log;
-    Services services{lm, human, options_, seed, log, declared_truth(scenario.commands, plugin_.asks)};
-    Selection selection = call(what, [&] { return method_.select(command, scenario.space, services); });
-    return {std::move(selection), lm.asked};
+  Selected select_all(const Scenario& scenario, Answering& asked, const std::string& what) {
+    return timed(what, [&] { return select(&method_, job_.method.id, scenario, asked.services); });
   }
 
-  std::unique_ptr<Policy> learn(const Needs& needs, const Bench& bench, const std::vector<Instruction>& instructions,
-                                bool judged, Use& use) {
+  std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected) {
     phase_(doing_ = "demonstrations that needs() asks for");
-    std::vector<Selection> selections;
-    if (needs.targets == Needs::Targets::selected)
-      for (const Instruction& instruction : instructions) selections.push_back(instruction.selection);
-    std::vector<Scene> scenes;
-    for (int i = 0; i < demonstrations; ++i)
-      scenes.push_back(training_scene(bench.scenario, bench.layout, selections, seed, i));
-    std::vector<Demonstration> shown = demonstrate(*bench.environment, scenes, needs, bench.scenario.utterances());
-    for (std::size_t i = 0; i < shown.size(); ++i)
-      shown[i].instruction = instructions[static_cast<std::size_t>(scenes[i].command)];
-
-    RecordedLanguageModel lm(bench.scenario, recorded_source(bench.scenario, "recorded", plugin_.asks == "edit"));
-    DeclaredHuman human(std::make_unique<TruthAsHuman>(bench.scenario.commands), plugin_.asks);
-    Lines log;
-    Services services{lm, human, options_, seed, log, declared_truth(bench.scenario.commands, plugin_.asks)};
-    auto policy = call("learn", [&] { return method_.learn(shown, services); });
-    use.training += log.text;
-    if (judged && log.text.empty())
-      report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
-    return policy;
+    const std::vector<Scene> scenes = sample(bench.scenario, bench.layout, selected, seed, demonstrations);
+    const std::vector<Demonstration> shown = instructed(
+        demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
+    return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
   }
 
   // The action's 12 numbers as text. @throws MethodError where it cannot be carried out.
-  std::string act(const std::string& what, Policy& policy, const TestSight& sight,
-                  const std::vector<Instruction>& instructions) {
-    const Action action = call(what, [&] {
-      policy.reset();
-      return policy.act(sight.observation, instructions[static_cast<std::size_t>(sight.command)]);
-    });
-    executable(action);
+  std::string act(const std::string& what, const Actor& actor, const Bench& bench, const Sight& sight) {
+    const Move move = timed(what, [&] { return actor(*bench.environment, sight.scene, sight.observation); });
+    executable(move.action);
     std::string text;
-    for (const float value : to_vector(action)) text += fmt::format("{:a} ", value);
+    for (const float value : to_vector(move.action)) text += fmt::format("{:a} ", value);
     return text;
   }
 
-  void judge_selection(const Needs& needs, const Selection& selection, int asked, const Scenario& scenario) {
+  void judge_selection(const Selected& selected, int asked, const Scenario& scenario) {
+    const Selection& selection = selected.instructions.front().selection;
     const bool selects = selection.provenance != Provenance::none;
-    std::string fault = thrown([&] {
-      const Json json = distribution_json(selection);
-      read_distribution(JsonReader(json, "select()"), scenario.space, scenario.second);
-    });
-    if (fault.empty() && !selects && needs.targets == Needs::Targets::selected)
+    std::string fault = thrown([&] { expect_usable(selection, scenario); });
+    if (fault.empty() && !selects && selected.needs.targets == Needs::Targets::selected)
       fault = "needs() asks for scenes of the method's own Selection, and select() returns none";
     report_.judge("Selection", fault,
                   selects ? "names of the space, provenance " + to_string(selection.provenance)
@@ -269,8 +254,9 @@ class MethodCheck {
   }
 
   // Commands of other kinds than the first: nothing fits, and those that speak of a second set.
-  void judge_other_commands(const Needs& needs, const Scenario& scenario) {
-    std::string fault = thrown([&] { select("select with every answer no", scenario, scenario.command(0), true); });
+  void judge_other_commands(const Needs& needs, const Bench& bench) {
+    Answering nobody(bench.scenario, job_, true);
+    std::string fault = thrown([&] { select_all(bench.scenario, nobody, "select with every answer no"); });
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
                   "select() bears a language model that answers no to everything",
                   "return the empty Selection: the host counts such a cell as failed by the abstraction");
@@ -280,9 +266,10 @@ class MethodCheck {
 
   void judge_second_set(const Needs& needs, const TaskInfo& task) {
     const Scenario scenario = load_scenario(task.example);
+    Answering asked(scenario, job_);
     Selection both;
     const std::string fault =
-        thrown([&] { both = select("select for " + task.id, scenario, scenario.command(0), false).first; });
+        thrown([&] { both = select_all(scenario, asked, "select for " + task.id).instructions.front().selection; });
     const bool half = needs.targets == Needs::Targets::selected && !both.second;
     if (fault.empty() && half)
       report_.note(task.id,
@@ -298,32 +285,31 @@ class MethodCheck {
   // A cell with nothing selected for a command that is only tested.
   void judge_without_selection(Policy& policy, const Bench& bench) {
     const std::vector<Instruction> nothing(bench.scenario.commands.size(), {bench.scenario.command(0).utterance, {}});
-    const std::string fault =
-        thrown([&] { act("act with an empty Selection", policy, bench.sights.front(), nothing); });
+    const Actor actor = policy_actor(policy, nothing, job_.method.id);
+    const std::string fault = thrown([&] { act("act with an empty Selection", actor, bench, bench.sights.front()); });
     report_.judge("act with an empty Selection", fault, "a finite action", "the host may give an empty Selection");
   }
 
   // Each action depends on its scene alone; commands that were not demonstrated; memory.
-  void judge_policy(Policy& policy, const Bench& bench, const std::vector<Instruction>& instructions,
-                    const std::vector<std::string>& actions, bool first) {
+  void judge_policy(const Actor& actor, const Bench& bench, const std::vector<std::string>& actions, bool first) {
     if (!first) {  // the scenario that has commands which are only tested
       const auto unseen =
-          std::count_if(bench.sights.begin(), bench.sights.end(), [](const auto& s) { return !s.seen; });
+          std::count_if(bench.sights.begin(), bench.sights.end(), [&](const Sight& s) { return !bench.is_seen(s); });
       report_.ok("unseen commands", fmt::format("{} scenes with a command that was not demonstrated: acted", unseen));
       return;
     }
     std::string differs;
     for (std::size_t i = bench.sights.size(); i-- > 0;)
-      if (act("act", policy, bench.sights[i], instructions) != actions[i]) differs = "act() gave another action";
+      if (act("act", actor, bench, bench.sights[i]) != actions[i]) differs = "act() gave another action";
     report_.judge("order of scenes", differs.empty() ? "" : differs + " when scenes came in reverse order",
                   "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
     report_.ok("actions", "finite, 12 numbers each");
 
-    if (!plugin_.python.is_null()) return;      // the interpreter's memory
+    if (!is_library()) return;
     constexpr int calls = 200, bearable = 256;  // bytes a call
     const auto act_all = [&](int n) {
       for (int i = 0; i < n; ++i)
-        act("act", policy, bench.sights[static_cast<std::size_t>(i) % bench.sights.size()], instructions);
+        act("act", actor, bench, bench.sights[static_cast<std::size_t>(i) % bench.sights.size()]);
     };
     act_all(20);
     const long long before = heap_bytes();
@@ -344,13 +330,12 @@ class MethodCheck {
     same("Selections", first.selections, second.selections);
     same("training", first.training, second.training);
     same("actions", first.actions, second.actions);
-    if (!plugin_.python.is_null()) return;
+    if (!is_library()) return;
     report_.judge("memory of a use", grown > (1 << 20) ? fmt::format("{} KiB are not given back", grown / 1024) : "",
                   "given back", "the second use must end with as much memory as the first");
   }
 
-  const PluginInfo& plugin_;
-  const Json& options_;
+  const HostJob& job_;
   const CheckPhase& phase_;
   std::string doing_;
   std::map<std::string, double> seconds_;  // of the last call of each kind

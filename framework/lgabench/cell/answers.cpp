@@ -1,0 +1,86 @@
+#include <lgabench/cell/answers.hpp>
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/participant.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench {
+namespace {
+
+// The file of that hash, if it still has it.
+fs::path kept_file(const fs::path& kept, const std::string& hash, const char* ending) {
+  const fs::path file = kept / (hash + ending);
+  if (sha256_file(file) != hash) throw InputError(file.string() + ": does not have the bytes that its name says");
+  return file;
+}
+
+// The model of a run. Its answers are live whichever cell was the first to ask, and a server that fails is not the
+// method's fault.
+class AskedByCells : public ChatLanguageModel {
+ public:
+  using ChatLanguageModel::ChatLanguageModel;
+  std::vector<bool> answer(const Command& command, const FeatureSpace& space,
+                           const std::vector<Question>& questions) override {
+    try {
+      return ChatLanguageModel::answer(command, space, questions);
+    } catch (const MethodError& e) {
+      throw InputError(e.what());
+    }
+  }
+  Provenance provenance() const override { return Provenance::live; }
+};
+
+// Of a run in which nobody is asked.
+class NobodyAnswers : public LanguageModel {
+ public:
+  std::vector<bool> answer(const Command& command, const FeatureSpace&, const std::vector<Question>&) override {
+    throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers {} has none",
+                                 command.utterance, no_answers));
+  }
+  std::string model() const override { return no_answers; }
+  Provenance provenance() const override { return Provenance::none; }
+  SelectionCost cost() const override { return {}; }
+};
+
+}  // namespace
+
+Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server) {
+  const Cell& cell = job.cell;
+  Answers answers;
+  if (is_live(cell.answers)) {
+    ChatOptions options{cell.answers.substr(std::string_view(live_prefix).size())};
+    const LiveModel live = job.live.value_or(LiveModel());
+    options.max_queries = live.max_queries;
+    options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
+    answers.cassette = std::make_unique<Cassette>(live.cassette);
+    answers.lm = std::make_unique<AskedByCells>(*answers.cassette, server, options);
+  } else if (const std::string hash = cassette_of(cell.answers); !hash.empty()) {
+    const fs::path file = kept_file(job.answers, hash, ".jsonl");
+    answers.cassette = std::make_unique<Cassette>(file);
+    answers.lm =
+        std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr, ChatOptions{answers.cassette->only_model()});
+  } else if (cell.answers == no_answers) {
+    answers.lm = std::make_unique<NobodyAnswers>();
+  } else {
+    answers.lm = std::make_unique<RecordedLanguageModel>(
+        scenario, recorded_source(scenario, cell.answers, cell.method.asks == "edit"));
+  }
+  std::unique_ptr<HumanAnswers> human;
+  if (cell.participant)
+    human = std::make_unique<ParticipantAsHuman>(
+        read_participant(kept_file(job.answers, cell.participant->sha256, ".json")), scenario);
+  else
+    human = std::make_unique<TruthAsHuman>(scenario.commands);
+  answers.human = std::make_unique<DeclaredHuman>(std::move(human), cell.method.asks);
+  answers.truth = declared_truth(scenario.commands, cell.method.asks);
+  return answers;
+}
+
+}  // namespace lgabench

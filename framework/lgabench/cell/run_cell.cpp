@@ -1,0 +1,227 @@
+#include <lgabench/cell/run_cell.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include <lgabench/abstraction/quality.hpp>
+#include <lgabench/cell/answers.hpp>
+#include <lgabench/cell/constant_action.hpp>
+#include <lgabench/cell/demonstrations.hpp>
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/steps.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/host/hosted_method.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+namespace {
+
+// Seconds of each phase; a phase ends when the next begins.
+class Phases {
+ public:
+  explicit Phases(const PhaseReport& report) : report_(report) {
+    for (const std::string& phase : cell_phases) seconds_[phase + "_s"] = 0.0;
+  }
+  void begin(const std::string& phase) {
+    end();
+    phase_ = phase;
+    start_ = Clock::now();
+    report_(phase, 0);
+  }
+  void count(long long n) const { report_(phase_, n); }
+  Json seconds() {
+    end();
+    return seconds_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void end() {
+    if (phase_.empty()) return;
+    const double s = std::chrono::duration<double>(Clock::now() - start_).count();
+    seconds_[phase_ + "_s"] = s;
+    seconds_["total_s"] = seconds_["total_s"].get<double>() + s;
+    phase_.clear();
+  }
+
+  const PhaseReport& report_;
+  std::string phase_;
+  Clock::time_point start_;
+  Json seconds_{{"total_s", 0.0}};
+};
+
+// The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
+std::unique_ptr<Method> make_method(const CellJob& job) {
+  if (job.method) {
+    HostJob host{*job.method,
+                 job.cell.method.options,
+                 job.cell.training_seed,
+                 job.scratch,
+                 job.confined,
+                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
+                 job.limits.data_bytes};
+    if (job.live) host.hidden.push_back(job.live->cassette);
+    host.debugger = job.debugger;
+    return std::make_unique<HostedMethod>(host);
+  }
+  if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
+  return nullptr;
+}
+
+DemonstrationCache demonstration_cache(const CellJob& job) {
+  const std::vector<std::string> take_part{"engine", "lgabench-worker", "liblgabench_core.so",
+                                           fmt::format("liblgabench_env_{}.so", job.cell.environment)};
+  Json builds = Json::object();
+  for (const std::string& name : take_part) builds[name] = JsonReader(job.build, "build").at(name).json();
+  return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
+}
+
+// What a row does with the scenes.
+enum class Row { learns, abstraction_empty, reference };
+Row row_of(const Method* method, const Selected& selected, const Scenario& scenario) {
+  if (!method) return Row::reference;
+  const std::vector<int> shown = scenario.commands_of("train");
+  const bool nothing = std::any_of(shown.begin(), shown.end(), [&](int c) { return selected.nothing_for(c); });
+  return nothing ? Row::abstraction_empty : Row::learns;
+}
+
+std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
+  std::vector<TestScene> scenes;
+  for (const Arm& arm : scenario.tests)
+    for (int i = 0; i < cell.episodes; ++i) {
+      Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
+      const bool empty = row == Row::abstraction_empty || selected.nothing_for(scene.command);
+      scenes.push_back({std::move(scene), {arm.label_noise, arm.missed_segment}, empty});
+    }
+  return scenes;
+}
+
+// Whether there is an abstraction that a failure can be attributed to.
+bool selects(const Selected& selected) {
+  return std::all_of(selected.instructions.begin(), selected.instructions.end(),
+                     [](const Instruction& i) { return i.selection.provenance != Provenance::none; });
+}
+
+std::vector<Instruction> true_instructions(const Scenario& scenario) {
+  std::vector<Instruction> all;
+  for (const ScenarioCommand& command : scenario.commands) all.push_back({command.utterance, command.truth});
+  return all;
+}
+
+using Files = std::vector<std::pair<std::string, std::string>>;  // names and bytes
+
+// What the first act() that failed threw, "" where none did.
+std::string first_error(const std::vector<Episode>& episodes) {
+  constexpr std::size_t longest = 2000;
+  for (const Episode& episode : episodes)
+    if (episode.failure == failure::method_error) return one_line(episode.error.substr(0, longest));
+  return "";
+}
+
+std::string selection_text(const Scenario& scenario, const Selected& selected) {
+  Json commands = Json::array();
+  for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
+    const auto& [utterance, selection] = selected.instructions[c];
+    commands.push_back({{"utterance", utterance},
+                        {"selection", to_json(selection)},
+                        {"quality", quality(selection, scenario.commands[c].truth)}});
+  }
+  return canonical({{"commands", commands}}) + '\n';
+}
+
+std::string episodes_text(const std::vector<Episode>& episodes) {
+  std::string lines;
+  for (const Episode& episode : episodes) lines += canonical(to_json(episode)) + '\n';
+  return lines;
+}
+
+// Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
+// `self` does: a plugin may have forked another one that came here as well.
+void record(const CellJob& job, pid_t self, const Files& files, const Files& of_method, const std::string& error) {
+  if (::getpid() != self) ::_exit(1);
+  for (const auto& [name, bytes] : of_method) write_file(job.directory / "files" / name, bytes);
+  Json hashes = Json::object();
+  for (const auto& [name, bytes] : files) {
+    write_file(job.directory / name, bytes);
+    hashes[name] = sha256(bytes);
+  }
+  sync_directory(job.directory);
+  Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
+  if (!error.empty()) status["method_error"] = error;
+  write_file(job.directory / "status.json", canonical(status) + '\n');
+  sync_directory(job.directory);
+}
+
+}  // namespace
+
+void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report) {
+  const pid_t self = ::getpid();
+  const Cell& cell = job.cell;
+  const std::string& id = cell.method.id;
+  const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
+  if (data_hashes(scenario, cell.answers) != cell.data)
+    throw InputError("cell: /data: the data directory changed since the run began");
+  Phases phases(report);
+  const auto count = [&phases](int n) { phases.count(n); };
+
+  // 1 select: which features does each command make matter?
+  phases.begin("select");
+  const std::unique_ptr<Method> method = make_method(job);
+  const Answers answers = answers_for(job, scenario, server);
+  TrainingLines training(count);
+  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
+  Selected selected = select(method.get(), id, scenario, services);
+  for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
+  const Row row = row_of(method.get(), selected, scenario);
+
+  // 2 sample: what will be shown, with targets from the Selection or from the truth?
+  phases.begin("sample");
+  const int wanted = row == Row::learns ? scenario.training_scenes(cell.demonstrations) : 0;
+  const std::vector<Scene> scenes = sample(scenario, cell.layout, selected, cell.training_seed, wanted);
+
+  // 3 demonstrate: the oracle shows it.
+  phases.begin("demonstrate");
+  const auto environment = make_environment(scenario, load_engine(job.engine));
+  auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job), *environment, scenes, selected.needs,
+                                                         scenario.utterances(), count),
+                                   scenes, selected);
+
+  // 4 learn: from observations and labels to a policy.
+  phases.begin("learn");
+  std::unique_ptr<Policy> policy;
+  if (row == Row::learns) policy = learn(*method, id, demonstrations, services, selected);
+  demonstrations.clear();
+
+  // 5 evaluate: the same test scenes for everyone.
+  phases.begin("evaluate");
+  const std::vector<TestScene> tests = test_scenes(scenario, cell, row, selected);
+  const Actor actor = policy                  ? policy_actor(*policy, selected.instructions, id)
+                      : row == Row::reference ? reference_actor(id)
+                                              : Actor();
+  std::vector<Episode> episodes = evaluate(*environment, scenario.space, tests, actor, count);
+  auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
+  const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
+  const std::vector<Instruction> truth = true_instructions(scenario);
+  const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
+  if (selects(selected)) attribute_failures(*environment, scenario.space, tests, with_truth, episodes);
+  if (hosted) guarded(id, [&] { hosted->end(); });
+
+  // 6 record: no clock but in timing.json.
+  record(job, self,
+         {{"cell.json", canonical(to_json(cell)) + '\n'},
+          {"selection.json", selection_text(scenario, selected)},
+          {"training.jsonl", training.lines},
+          {"episodes.jsonl", episodes_text(episodes)},
+          {"timing.json", canonical(phases.seconds()) + '\n'}},
+         of_method, first_error(episodes));
+}
+
+}  // namespace lgabench

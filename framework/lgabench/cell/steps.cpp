@@ -1,0 +1,86 @@
+#include <lgabench/cell/steps.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/plugin/guarded.hpp>
+
+namespace lgabench {
+
+bool Selected::nothing_for(int command) const {
+  return needs.targets == Needs::Targets::selected &&
+         instructions.at(static_cast<std::size_t>(command)).selection.empty();
+}
+
+void TrainingLines::epoch(int epochs, long long steps, double loss) {
+  if (!std::isfinite(loss))
+    throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epochs, loss));
+  lines += canonical({{"epoch", epochs}, {"steps", steps}, {"loss", loss}}) + '\n';
+  if (counted_) counted_(epochs);
+}
+
+Selected select(Method* method, const std::string& id, const Scenario& scenario, Services& services) {
+  Selected selected;
+  selected.needs.targets = Needs::Targets::truth;
+  if (method) selected.needs = guarded(id, [&] { return method->needs(services.options); });
+  for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
+    const Command command = scenario.command(static_cast<int>(c));
+    Selection selection;
+    if (method) selection = guarded(id, [&] { return method->select(command, scenario.space, services); });
+    selected.instructions.push_back({command.utterance, std::move(selection)});
+  }
+  return selected;
+}
+
+void expect_usable(const Selection& selection, const Scenario& scenario) {
+  constexpr std::size_t longest = 2000;
+  const auto& [queries, tokens, lm_seconds, human_seconds] = selection.cost;
+  if (queries < 0 || tokens < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
+      !std::isfinite(lm_seconds + human_seconds))
+    throw MethodError(
+        fmt::format("selection: /cost: expected finite numbers, none below 0, got {} queries, {} tokens, "
+                    "{} s of a model and {} s of people",
+                    queries, tokens, lm_seconds, human_seconds));
+  for (const std::string* words : {&selection.source, &selection.asked_as})
+    if (words->size() > longest || one_line(*words) != *words)
+      throw MethodError(fmt::format("selection: /source and /asked_as: expected a line of at most {} bytes", longest));
+  try {
+    const Json json = distribution_json(selection);
+    read_distribution(JsonReader(json, "selection"), scenario.space, scenario.second);
+  } catch (const InputError& e) {
+    throw MethodError(e.what());
+  }
+}
+
+std::vector<Scene> sample(const Scenario& scenario, const std::string& layout, const Selected& selected,
+                          std::uint64_t training_seed, int count) {
+  std::vector<Selection> selections;
+  if (selected.needs.targets == Needs::Targets::selected)
+    for (const Instruction& instruction : selected.instructions) selections.push_back(instruction.selection);
+  std::vector<Scene> scenes;
+  for (int i = 0; i < count; ++i) scenes.push_back(training_scene(scenario, layout, selections, training_seed, i));
+  return scenes;
+}
+
+std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const std::vector<Scene>& scenes,
+                                      const Selected& selected) {
+  for (std::size_t i = 0; i < showed.size(); ++i)
+    showed[i].instruction = selected.instructions.at(static_cast<std::size_t>(scenes[i].command));
+  return showed;
+}
+
+std::unique_ptr<Policy> learn(Method& method, const std::string& id, const std::vector<Demonstration>& demonstrations,
+                              Services& services, Selected& selected) {
+  const SelectionCost before = services.lm.cost();
+  auto policy = guarded(id, [&] { return method.learn(demonstrations, services); });
+  selected.instructions.front().selection.cost += services.lm.cost() - before;
+  if (!policy) throw MethodError(fmt::format("plugin {}: learn returned no policy", id));
+  return policy;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,166 @@
+#include <lgabench/job/job.hpp>
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/hash.hpp>
+
+namespace lgabench {
+namespace {
+
+std::string full_path(const fs::path& path) { return fs::absolute(path).string(); }
+
+Json to_json(const Limits& limits) { return {{"cpu_s", limits.cpu_s}, {"data_bytes", limits.data_bytes}}; }
+
+// A method in Python cannot be read again without its interpreter: what was read of it goes along.
+Json plugin_json(const PluginInfo& plugin) {
+  Json json{{"file", full_path(plugin.file)}, {"sha256", plugin.sha256}};
+  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"asks", plugin.asks}, {"python", plugin.python}});
+  return json;
+}
+
+PluginInfo plugin_of(const JsonReader& reader) {
+  PluginInfo info;
+  if (reader.has("python")) {
+    info.file = reader.at("file").string();
+    info.kind = "method";
+    info.id = reader.at("id").string();
+    info.asks = reader.at("asks").string();
+    info.sha256 = sha256_file(info.file);
+    info.python = reader.at("python").json();
+  } else {
+    info = read_plugin(reader.at("file").string());
+  }
+  if (info.sha256 != reader.at("sha256").string())
+    throw PluginError(fmt::format("{}: changed since the run began", info.file.string()));
+  return info;
+}
+
+Json to_json(const LiveModel& live) {
+  return {{"cassette", full_path(live.cassette)}, {"asks", live.asks}, {"max_queries", live.max_queries}};
+}
+
+LiveModel live_of(const JsonReader& reader) {
+  return {reader.at("cassette").string(), reader.at("asks").boolean(),
+          static_cast<int>(reader.at("max_queries").integer(-1, 1 << 30))};
+}
+
+std::string text(const Json& line, const char* member) {
+  return line.contains(member) && line[member].is_string() ? line[member].get<std::string>() : std::string();
+}
+
+long long number(const Json& line, const char* member) {
+  return line.contains(member) && line[member].is_number_integer() ? line[member].get<long long>() : 0;
+}
+
+}  // namespace
+
+Limits read_limits(const JsonReader& job) {
+  const JsonReader limits = job.at("limits");
+  return {limits.at("cpu_s").integer(1, 1LL << 40), limits.at("data_bytes").integer(1, 1LL << 60)};
+}
+
+Json to_json(const CellJob& job) {
+  Json json{{"cell", to_json(job.cell)},
+            {"engine", plugin_json(job.engine)},
+            {"directory", full_path(job.directory)},
+            {"cache", full_path(job.cache)},
+            {"answers", full_path(job.answers)},
+            {"scratch", job.scratch.string()},
+            {"build", job.build},
+            {"confined", job.confined},
+            {"limits", to_json(job.limits)}};
+  if (job.method) json["method"] = plugin_json(*job.method);
+  if (job.live) json["live"] = to_json(*job.live);
+  if (job.debugger) json["debugger"] = *job.debugger;
+  return json;
+}
+
+CellJob read_cell_job(const JsonReader& reader) {
+  CellJob job{read_cell(reader.at("cell").json(), reader.file() + ": /cell"),
+              plugin_of(reader.at("engine")),
+              std::nullopt,
+              reader.at("directory").string(),
+              reader.at("cache").string(),
+              reader.at("answers").string(),
+              reader.at("scratch").string(),
+              reader.at("build").json(),
+              reader.at("confined").boolean(),
+              read_limits(reader)};
+  if (reader.has("method")) job.method = plugin_of(reader.at("method"));
+  if (job.cell.method.is_reference() == job.method.has_value())
+    reader.at("cell").fail("a plugin for a method, and only there");
+  if (reader.has("live")) job.live = live_of(reader.at("live"));
+  if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
+  return job;
+}
+
+Json to_json(const CheckJob& job) {
+  Json json{{"engine", plugin_json(job.engine)}, {"options", job.options},
+            {"scratch", job.scratch.string()},   {"perturb", job.perturb},
+            {"report", job.report.string()},     {"limits", to_json(job.limits)}};
+  if (job.method) json["method"] = plugin_json(*job.method);
+  return json;
+}
+
+CheckJob read_check_job(const JsonReader& reader) {
+  CheckJob job{plugin_of(reader.at("engine")),
+               std::nullopt,
+               reader.at("options").json(),
+               reader.at("scratch").string(),
+               static_cast<int>(reader.at("perturb").integer(0, 255)),
+               reader.at("report").string(),
+               read_limits(reader)};
+  if (reader.has("method")) job.method = plugin_of(reader.at("method"));
+  return job;
+}
+
+Json to_json(const PictureRequest& request) {
+  Json json{{"cell", request.cell.string()},
+            {"arm", request.arm},
+            {"index", request.index},
+            {"scene", request.scene},
+            {"selections", request.selections}};
+  if (!request.engines.empty()) json["engines"] = request.engines;
+  if (request.action) json["action"] = *request.action;
+  return json;
+}
+
+PictureRequest read_picture_request(const JsonReader& reader) {
+  PictureRequest request{reader.at("cell").string(), reader.at("arm").string(),
+                         static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
+                         reader.at("scene").string()};
+  for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
+  if (!reader.has("engines")) return request;
+  request.engines = reader.at("engines").strings();
+  ActionVector& action = request.action.emplace();
+  const std::vector<JsonReader> numbers = reader.at("action").elements();
+  if (numbers.size() != action.size()) reader.at("action").fail("12 numbers");
+  for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+  return request;
+}
+
+Json to_json(const PhaseCount& message) { return {{"phase", message.phase}, {"count", message.count}}; }
+
+Json to_json(const Complaint& message) {
+  return {{"reason", message.reason},
+          {"fault", message.by_plugin ? "plugin" : "host"},
+          {"signal", message.signal},
+          {"refused", message.refused}};
+}
+
+std::optional<PhaseCount> read_phase_count(const Json& line) {
+  if (!line.is_object() || !line.contains("phase")) return std::nullopt;
+  return PhaseCount{text(line, "phase"), number(line, "count")};
+}
+
+std::optional<Complaint> read_complaint(const Json& line) {
+  if (!line.is_object() || !line.contains("reason")) return std::nullopt;
+  return Complaint{text(line, "reason"), text(line, "fault") == "plugin", static_cast<int>(number(line, "signal")),
+                   line.value("refused", Json()) == true};
+}
+
+}  // namespace lgabench

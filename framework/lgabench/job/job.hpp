@@ -1,0 +1,97 @@
+// What `lgabench` tells the workers that it starts, and what they tell it: each form is written and read here alone. A
+// job is a JSON object on a worker's standard input.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/action.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/job/cell.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+
+/// Set by a worker before it loads a plugin.
+struct Limits {
+  long long cpu_s = 1LL << 40, data_bytes = 1LL << 60;
+};
+/// A job's "limits". @throws InputError
+Limits read_limits(const JsonReader& job);
+
+/// A server's model that cells ask through Services::lm as they run: each question that the cassette does not answer,
+/// once. Runs may share a cassette.
+struct LiveModel {
+  std::filesystem::path cassette;
+  bool asks = true;      // false: the cassette must hold every reply
+  int max_queries = -1;  // of a cell to the server; -1: no limit
+};
+
+/// lgabench-worker cell
+struct CellJob {
+  Cell cell;
+  PluginInfo engine;
+  std::optional<PluginInfo> method;                    // none for a reference row
+  std::filesystem::path directory;                     // gets the cell's files
+  std::filesystem::path cache;                         // of demonstrations
+  std::filesystem::path answers;                       // files of answers that the cell names (harness/answers.hpp)
+  std::filesystem::path scratch;                       // empty, of the method's process
+  Json build;                                          // of build_hashes()
+  bool confined = true;                                // the method's process, see host/confine.hpp
+  Limits limits{};                                     // of the worker; of the method's process likewise
+  std::optional<LiveModel> live{};                     // that the cell asks
+  std::optional<std::vector<std::string>> debugger{};  // of HostJob
+};
+Json to_json(const CellJob& job);
+/// @throws InputError; PluginError where a plugin is refused, or another one by now.
+CellJob read_cell_job(const JsonReader& reader);
+
+/// lgabench-worker check-job
+struct CheckJob {
+  PluginInfo engine;
+  std::optional<PluginInfo> method;  // that is checked; none: the engine is
+  Json options = Json::object();     // of the method, every one
+  std::filesystem::path scratch;     // empty, of the method's process
+  int perturb = 0;                   // as perturb_heap()
+  std::filesystem::path report;      // gets a CheckReport
+  Limits limits{};
+};
+Json to_json(const CheckJob& job);
+/// Likewise.
+CheckJob read_check_job(const JsonReader& reader);
+
+/// One scene for `lgabench-worker pictures`, which is told a list of them and answers with a line of JSON each.
+struct PictureRequest {
+  std::filesystem::path cell;  // a cell.json
+  std::string arm;
+  int index = 0;
+  std::string scene;  // its hash, as in episodes.jsonl
+  /// A goal mask is drawn of each: {"distribution", "instances": "all" or "first"}.
+  std::vector<Json> selections{};
+  std::vector<std::string> engines{};    // the scene after `action` is drawn on each
+  std::optional<ActionVector> action{};  // where there are engines
+};
+Json to_json(const PictureRequest& request);
+/// @throws InputError
+PictureRequest read_picture_request(const JsonReader& reader);
+
+/// What a worker does, and how far it is: a line of JSON on its descriptor 3.
+struct PhaseCount {
+  std::string phase;
+  long long count = 0;
+};
+/// Why it gave up, in its own words: likewise.
+struct Complaint {
+  std::string reason;
+  bool by_plugin = false;  // else the host is at fault
+  int signal = 0;          // that ended the method's process
+  bool refused = false;    // a plugin could not be loaded
+};
+Json to_json(const PhaseCount& message);
+Json to_json(const Complaint& message);
+/// None where the line is something else: a plugin could write there too.
+std::optional<PhaseCount> read_phase_count(const Json& line);
+std::optional<Complaint> read_complaint(const Json& line);
+
+}  // namespace lgabench
