@@ -1,7 +1,6 @@
 // A task: what is placed, what an action does, what the expert would do, and what counts as success. One file of
 // tasks/ each.
 #pragma once
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +36,7 @@ class Task {
   virtual std::optional<SecondObjects> second() const { return std::nullopt; }
   /// Failure words of judge() and carry_out(), beside those that every task has (failures.hpp).
   virtual std::vector<std::string> failures() const = 0;
-  /// A shipped scenario: TaskInfo::example, which is also the first of this task in a gallery.
+  /// A shipped scenario: TaskInfo::example, what checks play.
   virtual std::string example() const = 0;
 
   /// Members of the task's own in a scenario's file, and in its "train" and "tests"; read() puts what they say into
@@ -76,7 +75,7 @@ const Task& find_task(const std::string& id);
 /// The task's layout of that name. @throws InputError that lists its layouts.
 Layout find_layout(const Task& task, const std::string& id);
 
-/// What several tasks build on. The four fixed places of pick-and-place ("cells").
+/// The four fixed places of pick-and-place ("cells").
 std::vector<Vec2> four_places();
 /// The five places of the authors' released code: targets in the first two, distractors in the second and third.
 Layout released_layout(std::optional<Vec2> pallet = {});

@@ -265,6 +265,17 @@ class Recorded(Case):
                           self.call(*run, source, expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
+    def test_a_scenario_without_answers_is_played_by_methods_that_ask_no_model(self):
+        run = ["run", "q1", "--scenarios", "stack_small_block_on_hexagon", "--demos", "10", "--seeds", "0", "--episodes", "2",
+               "--set", "*.epochs=2", "--out"]
+        self.call(*run, "out", "--methods", "human", "--answers", "none")
+        self.assert_matches_schemas("out")
+        (selection,) = {(self.dir / "out/cells" / key / "selection.json").read_text()
+                        for key, (cell, _) in self.cells("out").items() if cell["method"]["id"] == "human"}
+        self.assertEqual(json.loads(selection)["commands"][0]["selection"]["onto"]["object_types"], ["hexagon"])
+        self.assertIn("expected answers for stack_small_block_on_hexagon",
+                      self.call(*run, "refused", "--methods", "lga", expect=2).stderr)
+
     def selections(self, *more):
         """Method -> the one Selection of its one cell."""
         run = ["run", "q1", "--scenarios", "red_heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference",
