@@ -52,7 +52,8 @@ class TwoLayers : public Learner {
  private:
   // A view of `values`, so many a row.
   static torch::Tensor tensor(const std::vector<float>& values, std::int64_t a_row) {
-    return torch::from_blob(const_cast<float*>(values.data()), {-1, a_row});
+    const auto rows = static_cast<std::int64_t>(values.size()) / a_row;
+    return torch::from_blob(const_cast<float*>(values.data()), {rows, a_row});
   }
   torch::Tensor pictures(const Samples& samples) const { return tensor(samples.pictures[0], numbers_); }
 

@@ -173,6 +173,18 @@ TEST(Network, StaysFiniteWhereABatchHasNoVariance) {
   }
 }
 
+// What training pictures share makes training faster, and is nothing to an action.
+TEST(Network, ActsWithTheSameBitsWhateverTrainingPicturesShare) {
+  const NetworkShape shape{{3}};
+  Samples alike(shape.samples(), 4);
+  for (std::size_t i = 0; i < alike.pictures[0].size(); ++i)
+    alike.pictures[0][i] = i / 4 % 97 == 0 ? 1.f / static_cast<float>(1 + i % 13) : .3f;
+  Network one(shape, 1), other(shape, 1);
+  other.begin(alike);
+  const std::vector<float> expected = one.predict(alike);
+  EXPECT_EQ(other.predict(alike), expected);
+}
+
 TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
   Samples samples(NetworkShape{{1, 3}}.samples(), 7);
   RandomStream random("usual");

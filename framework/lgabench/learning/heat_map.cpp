@@ -92,22 +92,16 @@ struct HeatMap::Impl {
     int number = 0;
     for (std::size_t i = 0; i < shape.pictures.size(); ++i) {
       const float* const picture = samples.picture(i, row);
+      const int channels = shape.pictures[i].channels;
       if (is_mask(shape.pictures[i])) {
         look_at_mask(picture, number, view);
+        if (i == mask) view.mask = picture, set_prior(number, view);
         number += 2;
-      } else {
-        const int channels = shape.pictures[i].channels;
-        for (int at = 0; at < cells * channels; ++at)
-          *plane(view, at / channels, number + at % channels) = picture[at] - usual[i][size(at)];
-        number += channels;
+        continue;
       }
-    }
-    if (mask) {
-      view.mask = samples.picture(*mask, row);
-      int of_mask = 0;
-      for (std::size_t i = 0; i < *mask; ++i) of_mask += shape.pictures[i].channels;
-      for (int cell = 0; cell < cells; ++cell)
-        view.prior[size(cell)] = std::log(std::max(*plane(view, cell, of_mask), least_prior));
+      for (int at = 0; at < cells * channels; ++at)
+        *plane(view, at / channels, number + at % channels) = picture[at] - usual[i][size(at)];
+      number += channels;
     }
     if (shape.text) view.text = samples.text.data() + std::ptrdiff_t{row} * text_size;
   }
@@ -127,6 +121,11 @@ struct HeatMap::Impl {
       *plane(view, cell, number) = static_cast<float>(target) / (side * side);
       *plane(view, cell, number + 1) = static_cast<float>(avoid) / (side * side);
     }
+  }
+
+  void set_prior(int target, View& view) const {
+    for (int cell = 0; cell < cells; ++cell)
+      view.prior[size(cell)] = std::log(std::max(*plane(view, cell, target), least_prior));
   }
 
   // A Gaussian about the taken point, within the mask.

@@ -27,7 +27,8 @@ class Learner {
 
   /// What it makes of the options that a run gives, for so many samples: a learner with a schedule of its own says so.
   virtual TrainingOptions schedule(const TrainingOptions& asked, int /*samples*/) const { return asked; }
-  /// Called once, before the first backward(), with all samples (at least one): means and frames are found here.
+  /// Called once, before the first backward(), with all samples (at least one), which stay as long as it is trained:
+  /// means and frames are found here.
   /// @throws MethodError for samples that it cannot learn from.
   virtual void begin(const Samples&) {}
   /// Actions as to_vector() has them, rows x 12, valid until the next call. Labels are not read.

@@ -5,8 +5,8 @@
 
 #include <lgabench/learning/batch_norm.hpp>
 #include <lgabench/learning/first_convolution.hpp>
-#include <lgabench/learning/parameters.hpp>
 #include <lgabench/learning/network_shape.hpp>
+#include <lgabench/learning/parameters.hpp>
 #include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
