@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 
 #include <lgabench/report/claims.hpp>
@@ -377,6 +378,35 @@ TEST(Claims, OfOneSeedSaySo) {
   add_row(run, "lga", 18, 50);
   add_row(run, "gcbc_seg", 9, 50);
   EXPECT_SAYS(text_of(claim_of(run, "C1")), "6 policies, 2 scenarios, 40 scenes\n");
+}
+
+// Another file of claims, another verdict: none of them is in the program.
+TEST(Claims, AreWhatTheirFileSays) {
+  TemporaryDirectory data;
+  fs::copy(data_directory() / "paper", data.path / "paper", fs::copy_options::recursive);
+  Json file = read_json(data.path / "paper/claims.json");
+  file["claims"] = {{{"id", "X"},
+                     {"statement", "my method above LGA"},
+                     {"test", "ordering"},
+                     {"arms", "all"},
+                     {"above", {"my_method+size=2"}},
+                     {"below", {"lga"}}}};
+  write_file(data.path / "paper/claims.json", canonical(file));
+  FabricatedRun run;
+  add_row(run, "lga", 2);
+  add_row(run, "my_method+size=2", 18);
+  run.save();
+  ::setenv("LGABENCH_DATA", data.path.c_str(), 1);
+  const std::vector<Claim> claims = report::test_claims(report::read_run(run.path));
+  file["claims"][0]["test"] = "guess";
+  write_file(data.path / "paper/claims.json", canonical(file));
+  const std::string refused = message_of<InputError>([&] { report::test_claims(report::read_run(run.path)); });
+  ::unsetenv("LGABENCH_DATA");
+  ASSERT_EQ(claims.size(), 1u);
+  EXPECT_EQ(claims[0].id, "X");
+  EXPECT_EQ(claims[0].verdict, Verdict::held);
+  EXPECT_NEAR(between(claims[0], "my_method+size=2", "lga").these.change->difference, .8, 1e-12);
+  EXPECT_SAYS(refused, "claims.json: /claims/0/test: expected ordering, equivalence, seconds");
 }
 
 TEST(Claims, StandInTheReportAndInClaimsJson) {

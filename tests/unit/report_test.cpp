@@ -331,6 +331,22 @@ TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
   EXPECT_EQ(numbers(read_file(run.path / "report.md")), known);
 }
 
+TEST(Report, EpisodesHaveALineEach) {
+  FabricatedRun run;
+  FabricatedRun::Spec lga{"lga", 15};
+  lga.attribution = "policy";
+  lga.inputs_seen = 3;
+  const fs::path cell = run.add(lga);
+  run.add({"oracle", 20, "heart", 0, 0, "reference"});
+  run.add_failed({"lga", 0, "letter"}, "host");
+  summary_of(run);
+  const std::string csv = read_file(run.path / "episodes.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 20 + 20);
+  EXPECT_SAYS(csv, "\n" + cell.filename().string() +
+                       ",heart,cells,mujoco,lga,method,20,0,,test,19,Bring me the heart.," + hex(19) +
+                       ",false,missed_object,policy,false\n");
+}
+
 TEST(Report, AnIdCannotLeaveItsTextOrDirectory) {
   FabricatedRun run;
   run.add({"a</text><script>", 15, "heart", 20, 0, "method", "../../up"});
