@@ -120,10 +120,10 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   const JsonReader reader(json, file.string());
   const JsonReader scenario = reader.at("scenario"), method = reader.at("method");
   cell.scenario = shown(scenario.at("id"));
-  cell.space = shown(scenario.at("feature_space"));
+  if (scenario.has("feature_space")) cell.space = shown(scenario.at("feature_space"));
   for (const JsonReader& command : scenario.at("commands").elements()) {
     cell.commands.push_back({shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(),
-                             command.at("truth").json(), Json(), Json()});
+                             command.has("truth") ? command.at("truth").json() : Json::object(), Json(), Json()});
     if (!cell.commands.back().truth.is_object()) command.at("truth").fail("an object");
   }
   cell.demonstrated_commands = static_cast<int>(
