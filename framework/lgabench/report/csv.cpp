@@ -1,13 +1,21 @@
 // Tables as CSV (RFC 4180).
+#include <cstdlib>
+
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
 namespace {
 
+bool is_number(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return end == text.c_str() + text.size();
+}
+
 std::string quoted(const std::string& words) {
   std::string text = one_line(words);
-  if (text.find_first_not_of("0123456789.eE+-") != std::string::npos && text.find_first_of("=+-@") == 0)
+  if (!is_number(text) && text.find_first_of("=+-@") == 0)
     text.insert(0, 1, '\'');  // no spreadsheet takes it for a formula
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
