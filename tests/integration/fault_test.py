@@ -247,7 +247,7 @@ class Stopped(Faults):
                 self.assertIn(run.returncode, (0, 3), said)
                 failed = [status for _, status in self.cells(out).values() if status["state"] == "failed"]
             self.assertEqual([status["fault"] for status in failed], ["plugin"])
-            self.assertRegex(failed[0]["reason"], r"stopped after 8 s")
+            self.assertRegex(failed[0]["reason"], r"stopped after 4 s")
             self.assert_nothing_left_behind()
             self.call(*self.run_of_class, "--out", out)
             self.assert_as_undisturbed(out)
