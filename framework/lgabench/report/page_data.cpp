@@ -25,7 +25,8 @@ Json pixel(double x_m, double y_m) {
 
 std::string title_of(const Table& table, const Row& row) {
   return fmt::format("{}, {}, {}, arm {}, {}", display_name(row.method), table.title(row.scenario),
-                     table.demonstrations_text(row.demonstrations), row.arm, table.title());
+                     row.demonstrations ? table.demonstrations_text(row.demonstrations) : "no demonstrations", row.arm,
+                     table.title());
 }
 
 // The rows that each (cell, arm) counts in: its scenario's and the mean's.
@@ -77,7 +78,7 @@ Json page_data(const Material& material) {
         blamed += e.attribution.empty() ? '.' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);
-        if (!e.success && !e.action.empty() && pictures.scenes.count(e.scene) != 0)
+        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
           actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;

@@ -47,14 +47,17 @@ std::vector<Note> all_notes(const Material& material) {
   return all;
 }
 
-// "Mean over 13 scenarios, 50 demonstrations: LGA 0.57, ...; random visible object 0.43. C1: undecided." Of the last
-// column of the first table: the most demonstrations, or the last arm.
+// "Mean over 13 scenarios, 50 demonstrations: LGA 0.57, ...; random visible object 0.43. C1: undecided." Of the first
+// table: the most demonstrations, or the last arm that all scenarios have.
 Spans headline(const Material& material) {
   if (material.summary.tables.empty()) return {};
   const Table& table = material.summary.tables.front();
   const std::vector<View> all = views(table);
   if (all.empty() || all.back().columns.empty()) return {};
-  const Column& column = all.back().columns.back();
+  const std::vector<Column>& columns = all.back().columns;
+  const auto of_all_scenarios = [&](const Column& c) { return table.arm_title(c.arm) == c.arm; };
+  const auto last = std::find_if(columns.rbegin(), columns.rend(), of_all_scenarios);
+  const Column& column = last == columns.rend() ? columns.back() : *last;
   Spans spans{
       {fmt::format("Success, {}, {}{}: ", table.title(mean_scenario), table.demonstrations_text(column.demonstrations),
                    table.arms.size() > 1 ? ", arm " + table.arm_title(column.arm) : "")}};

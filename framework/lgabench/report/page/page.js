@@ -95,12 +95,12 @@ const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`
 
 function card(e) {
   const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
-  const told = `<b>${e.failure}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
+  const told = `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
   const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
     (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
     `</div><figcaption>${told}<br>${escaped(e.command)}${chips(e)}` +
-    `<small>${escaped(where)}</small><br><code>lgabench replay RUN ${e.cell.cell}/${escaped(e.arm)}/${e.index} --out episode.gif</code>` +
+    `<br><small>${escaped(where)}</small><br><code>lgabench replay RUN ${e.cell.cell}/${escaped(e.arm)}/${e.index} --out episode.gif</code>` +
     `</figcaption></figure>`;
 }
 
