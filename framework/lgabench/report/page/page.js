@@ -100,7 +100,7 @@ function card(e) {
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
     (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
     `</div><figcaption>${told}<br>${escaped(e.command)}${chips(e)}` +
-    `<br><small>${escaped(where)}</small><br><code>lgabench replay RUN ${e.cell.cell}/${escaped(e.arm)}/${e.index} --out episode.gif</code>` +
+    `<small>${escaped(where)}</small><code>lgabench replay RUN ${e.cell.cell}/${escaped(e.arm)}/${e.index} --out episode.gif</code>` +
     `</figcaption></figure>`;
 }
 
