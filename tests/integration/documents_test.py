@@ -2,6 +2,7 @@
 
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 documents_test.py DocumentedCommands
 """
+import json
 import pathlib
 import re
 import shlex
@@ -37,6 +38,10 @@ class DocumentedCommands(Case):
         shutil.copy(self.dir / "python/my_method.py", self.dir)
         suite = (SOURCE / "envs/tabletop/suites/q2.json").read_text()
         (self.dir / "my_suite.json").write_text(suite.replace('"id": "q2"', '"id": "my_suite"'))
+
+        q1 = json.loads((SOURCE / "envs/tabletop/suites/q1.json").read_text())
+        q1.update(id="q1_4711", scene_seed=4711, scenarios=[s for s in q1["scenarios"] if s != "letter"])
+        (self.dir / "q1_4711.json").write_text(json.dumps(q1))
 
     def here(self, words):
         """With what stands for a reader's own things."""
