@@ -118,7 +118,10 @@ TEST_F(ParticipantFile, StandsInForThePerson) {
               "participant made-up-01, \"Bring me the red heart.\": edited another proposal");
 
   ParticipantAsHuman elsewhere(read(invented()), load_scenario("heart"));
-  EXPECT_SAYS(message_of<InputError>([&] { elsewhere.specify({"Bring me the heart.", "pick_and_place"}); }), "expected an answer");
+  EXPECT_SAYS(message_of<InputError>([&] {
+                elsewhere.specify({"Bring me the heart.", "pick_and_place"});
+              }),
+              "expected an answer");
 }
 
 TEST_F(ParticipantFile, EveryParticipantHasOne) {
