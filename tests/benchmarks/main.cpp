@@ -1,6 +1,7 @@
 // lgabench-benchmarks [--summary] and Google Benchmark's own options.
 #include <benchmark/benchmark.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 
@@ -10,6 +11,7 @@
 #include "summary.hpp"
 
 int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a child without PyTorch ends before it has read what it is given
   // What a ratio on a noisy machine needs; options given afterwards win.
   std::vector<char*> arguments{argv[0]};
   char interleaved[] = "--benchmark_enable_random_interleaving=true", repetitions[] = "--benchmark_repetitions=9",
