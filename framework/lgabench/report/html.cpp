@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <map>
 
+#include <lgabench/core/filled.hpp>
 #include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
@@ -135,18 +135,6 @@ std::string notes_html(const Document& document) {
       errors ? " open" : "", document.notes.size(), errors ? fmt::format(", {} of them errors", errors) : "", text);
 }
 
-// Every {{name}} of the template. Values are not searched again.
-std::string filled(const std::string& page, const std::map<std::string, std::string>& values) {
-  std::string out;
-  std::size_t at = 0;
-  for (std::size_t open; (open = page.find("{{", at)) != std::string::npos;) {
-    const std::size_t close = page.find("}}", open);
-    out += page.substr(at, open - at) + values.at(page.substr(open + 2, close - open - 2));
-    at = close + 2;
-  }
-  return out + page.substr(at);
-}
-
 // JSON inside a script element: no text of it may end the element.
 std::string embedded(const Json& json) {
   std::string text = canonical(json);
@@ -182,11 +170,11 @@ std::string html(const Document& document, const Json& data) {
                     section.id, escaped(section.title), blocks);
   }
   const fs::path installed = data_directory() / "page";
-  return filled(read_file(installed / "page.html"), {{"title", escaped(document.title)},
-                                                     {"style", read_file(installed / "page.css")},
-                                                     {"body", body},
-                                                     {"data", embedded(data)},
-                                                     {"script", read_file(installed / "page.js")}});
+  return filled(read_file(installed / "page.html"), {{"{{title}}", escaped(document.title)},
+                                                     {"{{style}}", read_file(installed / "page.css")},
+                                                     {"{{body}}", body},
+                                                     {"{{data}}", embedded(data)},
+                                                     {"{{script}}", read_file(installed / "page.js")}});
 }
 
 }  // namespace lgabench::report

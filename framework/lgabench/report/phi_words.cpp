@@ -3,12 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <tuple>
 
 #include <lgabench/core/feature_space.hpp>
 
 namespace lgabench::report {
 namespace {
+
+// Read once: a report asks for every command of every cell. None where it is not installed.
+const std::optional<FeatureSpace>& space_of(const std::string& id) {
+  static std::map<std::string, std::optional<FeatureSpace>> known;
+  const auto [space, is_new] = known.try_emplace(id);
+  try {
+    if (is_new) space->second = load_feature_space(id);
+  } catch (const InputError&) {
+  }
+  return space->second;
+}
 
 // Whether a set, as JSON writes it, holds the name; what is no such set holds none.
 bool holds(const Json& set, const char* group, const std::string& name) {
@@ -21,12 +34,9 @@ bool holds(const Json& set, const char* group, const std::string& name) {
 
 std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& command) {
   if (command.quality.is_null()) return {};
-  FeatureSpace space;
-  try {
-    space = load_feature_space(cell.space);
-  } catch (const InputError&) {
-    return {};
-  }
+  const std::optional<FeatureSpace>& found = space_of(cell.space);
+  if (!found) return {};
+  const FeatureSpace& space = *found;
   std::vector<PhiWords> all;
   for (const auto& [about, quality] : command.quality.items()) {
     if (quality.is_null() || !command.selection.contains(about) || !command.truth.contains(about)) continue;
