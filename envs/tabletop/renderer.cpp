@@ -353,7 +353,7 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
   }
 
   const Table& empty = table(ground);
-  Observation seen{empty.in_light, std::vector<std::uint8_t>(pixels), {}};
+  Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};
   for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);
   for (const Placed& object : placed) impl_->shade_table(object, empty, seen);

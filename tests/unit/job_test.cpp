@@ -52,7 +52,7 @@ TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
   request.engines = {"mujoco", "bullet"};
-  request.action = ActionVector{.1f, .2f};
+  request.action = Action{.1, .2};
   const Json json = to_json(request);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }

@@ -30,11 +30,10 @@ std::string base64(const std::string& bytes) {
 }
 
 template <class ColourAt>
-std::string png(ColourAt colour_at) {
-  Picture picture(Observation::columns, Observation::rows);
-  picture.paste(0, 0, Observation::columns, Observation::rows, 1, [&](int column, int row) {
-    return colour_at(static_cast<std::size_t>(row * Observation::columns + column));
-  });
+std::string png(PictureSize size, ColourAt colour_at) {
+  Picture picture(size.columns, size.rows);
+  picture.paste(0, 0, size.columns, size.rows, 1,
+                [&](int column, int row) { return colour_at(static_cast<std::size_t>(row * size.columns + column)); });
   return base64(picture.png());
 }
 
@@ -64,14 +63,14 @@ class Pictures {
       const auto mask = goal_mask(
           perceived, read_distribution(selection.at("distribution"), played.scenario.space, played.scenario.second),
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
-      masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
+      masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     return {{"picture", picture_of(seen)}, {"masks", masks}, {"ends", ends(played.scenario, scene, request)}};
   }
 
  private:
   static std::string picture_of(const Observation& seen) {
-    return png([&](std::size_t i) { return pixel_colour(seen, i); });
+    return png(seen.size, [&](std::size_t i) { return pixel_colour(seen, i); });
   }
 
   Json ends(const Scenario& scenario, const Scene& scene, const PictureRequest& request) {
@@ -79,8 +78,7 @@ class Pictures {
     for (const std::string& name : request.engines) {
       Environment* const environment = on(name, scenario);
       if (environment) environment->reset(scene);
-      pictures.push_back(environment ? Json(picture_of(environment->step(from_vector(*request.action)).observation))
-                                     : Json());
+      pictures.push_back(environment ? Json(picture_of(environment->step(request.action).observation)) : Json());
     }
     return pictures;
   }

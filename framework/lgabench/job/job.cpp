@@ -125,7 +125,7 @@ Json to_json(const PictureRequest& request) {
             {"scene", request.scene},
             {"selections", request.selections}};
   if (!request.engines.empty()) json["engines"] = request.engines;
-  if (request.action) json["action"] = *request.action;
+  if (!request.action.empty()) json["action"] = request.action;
   return json;
 }
 
@@ -136,10 +136,7 @@ PictureRequest read_picture_request(const JsonReader& reader) {
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
   if (!reader.has("engines")) return request;
   request.engines = reader.at("engines").strings();
-  ActionVector& action = request.action.emplace();
-  const std::vector<JsonReader> numbers = reader.at("action").elements();
-  if (numbers.size() != action.size()) reader.at("action").fail("12 numbers");
-  for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+  for (const JsonReader& number : reader.at("action").elements()) request.action.push_back(number.number());
   return request;
 }
 

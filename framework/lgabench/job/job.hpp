@@ -69,8 +69,8 @@ struct PictureRequest {
   std::string scene;  // its hash, as in episodes.jsonl
   /// A goal mask is drawn of each: {"distribution", "instances": "all" or "first"}.
   std::vector<Json> selections{};
-  std::vector<std::string> engines{};    // the scene after `action` is drawn on each
-  std::optional<ActionVector> action{};  // where there are engines
+  std::vector<std::string> engines{};  // the scene after `action` is drawn on each
+  Action action{};                     // where there are engines
 };
 Json to_json(const PictureRequest& request);
 /// @throws InputError

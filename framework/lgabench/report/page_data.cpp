@@ -7,20 +7,26 @@
 #include <tuple>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/core/geometry.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
 namespace {
 
-// Column and row of the picture where the action's pose lies; positions are carried out clipped to the workspace.
-Json pixel(double x_m, double y_m) {
+// Columns and rows of the picture where the action's places lie, to a tenth of a pixel; none for another environment's.
+Json places_of(const CellResult& cell, const Action& action) {
+  static const std::vector<std::string> installed = environment_ids();
+  Json all = Json::array();
+  if (std::find(installed.begin(), installed.end(), cell.environment) == installed.end()) return all;
+  const EnvironmentType& environment = find_environment(cell.environment);
+  const ActionSpace& space = environment.action_space();
+  if (action.size() != space.size()) return all;
   const auto tenths = [](double value) { return std::round(value * 10) / 10; };
-  const double x = std::clamp(x_m, Workspace::x_min, Workspace::x_max),
-               y = std::clamp(y_m, Workspace::y_min, Workspace::y_max);
-  return {tenths((y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min) * Workspace::columns),
-          tenths((x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min) * Workspace::rows)};
+  for (const PicturePlace& place : space.places) {
+    const Vec2 at = in_picture(space, place, action, environment.picture_size());
+    all.push_back({tenths(at.x), tenths(at.y)});
+  }
+  return all;
 }
 
 std::string title_of(const Table& table, const Row& row) {
@@ -79,7 +85,7 @@ Json page_data(const Material& material) {
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
-          actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
+          actions[std::to_string(i)] = places_of(cell, e.action);
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
       const auto row = [&](const std::string& scenario) {

@@ -59,14 +59,6 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   return all;
 }
 
-std::optional<ActionVector> action_of(const PlayedEpisode& episode) {
-  ActionVector action{};
-  if (episode.action.size() != action.size()) return std::nullopt;
-  std::transform(episode.action.begin(), episode.action.end(), action.begin(),
-                 [](double number) { return static_cast<float>(number); });
-  return action;
-}
-
 void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreements, std::vector<Request>& requests) {
   std::size_t added = 0;
   for (const EngineAgreement& agreement : agreements)
@@ -78,7 +70,7 @@ void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreement
                            d.episode().scene,
                            {},
                            {agreement.first, agreement.second},
-                           action_of(d.episode())},
+                           d.episode().action},
                           {},
                           {end_key(d, ""), end_key(d, agreement.first), end_key(d, agreement.second)}});
     }

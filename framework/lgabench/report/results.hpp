@@ -29,13 +29,14 @@ struct PlayedEpisode {
   bool success = false;
   std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
   std::string scene;           // the scene's hash, 16 hexadecimal digits
-  std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
+  std::vector<double> action;  // the policy's numbers; empty where it gave none
   std::optional<bool> input_seen;  // its input stood in training; none where the policy does not tell
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string environment;                                  // whose scenario it is; may be one that is not installed
   std::string space;                                        // the scenario's feature space
   std::string id;                                           // of the plugin, or of the reference row
   Json options = Json::object();                            // of the method, all of them
