@@ -1,11 +1,13 @@
-// lgabench-worker pictures: test scenes and goal masks for report.html, as a request on stdin lists them.
+// lgabench-worker pictures: what report.html shows of test scenes, as a request on stdin lists them.
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/cell/environments.hpp>
@@ -38,6 +40,36 @@ std::string png(ColourAt colour_at) {
   return base64(picture.png());
 }
 
+// The edges of all pixels that are `inside`, as an SVG path in pixels.
+std::string outline(const std::function<bool(int column, int row)>& inside) {
+  std::string path;
+  const auto edges = [&path](int lines, int length, const auto& is_edge, const auto& step) {
+    for (int line = 0; line <= lines; ++line)
+      for (int begin = 0, end = 0; begin < length; begin = end + 1) {
+        for (end = begin; end < length && is_edge(line, end);) ++end;
+        if (end > begin) path += step(line, begin, end - begin);
+      }
+  };
+  edges(
+      Observation::rows, Observation::columns, [&](int y, int x) { return inside(x, y) != inside(x, y - 1); },
+      [](int y, int x, int n) { return fmt::format("M{} {}h{}", x, y, n); });
+  edges(
+      Observation::columns, Observation::rows, [&](int x, int y) { return inside(x, y) != inside(x - 1, y); },
+      [](int x, int y, int n) { return fmt::format("M{} {}v{}", x, y, n); });
+  return path;
+}
+
+// The targets' outline, as far as they are in view.
+std::string targets(const Scene& scene, const Observation& seen) {
+  std::set<std::uint8_t> ids;
+  for (const SceneObject& object : scene.objects)
+    if (object.role == role::target) ids.insert(object.instance_id);
+  return outline([&](int column, int row) {
+    if (column < 0 || row < 0 || column >= Observation::columns || row >= Observation::rows) return false;
+    return ids.count(seen.ids[static_cast<std::size_t>(row * Observation::columns + column)]) != 0;
+  });
+}
+
 struct Played {
   Cell cell;
   Scenario scenario;
@@ -45,9 +77,10 @@ struct Played {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...]}, in base64: the scene, goal masks of the request's
-  // Selections, and the scene after its action on each of its engines (null for one that is not there). @throws
-  // InputError where the scene is not the one asked for.
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action}, pictures in base64:
+  // the scene, goal masks of the request's Selections, the scene after each of its actions (null where the engine is
+  // not there, "" where nothing moved), the targets' outline, and what the oracle would do (null without the cell's
+  // engine). @throws InputError where the scene is not the one asked for.
   Json draw(const PictureRequest& request) {
     const Played& played = cell(request.cell.string());
     const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
@@ -66,23 +99,26 @@ class Pictures {
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    return {{"picture", picture_of(seen)}, {"masks", masks}, {"ends", ends(played.scenario, scene, request)}};
+    const std::string picture = picture_of(seen);
+    Json ends = Json::array();
+    for (const PictureRequest::End& end : request.ends) {
+      Environment* const environment = on(end.engine, played.scenario);
+      if (environment) environment->reset(scene);
+      const std::string after = environment ? picture_of(environment->step(from_vector(end.action)).observation) : "";
+      ends.push_back(!environment ? Json() : Json(after == picture ? "" : after));
+    }
+    Environment* const environment = on(played.cell.engine, played.scenario);
+    if (environment) environment->reset(scene);
+    return {{"picture", picture},
+            {"masks", masks},
+            {"ends", ends},
+            {"targets", targets(scene, seen)},
+            {"oracle", environment ? Json(to_vector(environment->expert_action())) : Json()}};
   }
 
  private:
   static std::string picture_of(const Observation& seen) {
     return png([&](std::size_t i) { return pixel_colour(seen, i); });
-  }
-
-  Json ends(const Scenario& scenario, const Scene& scene, const PictureRequest& request) {
-    Json pictures = Json::array();
-    for (const std::string& name : request.engines) {
-      Environment* const environment = on(name, scenario);
-      if (environment) environment->reset(scene);
-      pictures.push_back(environment ? Json(picture_of(environment->step(from_vector(*request.action)).observation))
-                                     : Json());
-    }
-    return pictures;
   }
 
   // Null for an engine that is not there.

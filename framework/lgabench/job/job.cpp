@@ -119,13 +119,11 @@ CheckJob read_check_job(const JsonReader& reader) {
 }
 
 Json to_json(const PictureRequest& request) {
-  Json json{{"cell", request.cell.string()},
-            {"arm", request.arm},
-            {"index", request.index},
-            {"scene", request.scene},
-            {"selections", request.selections}};
-  if (!request.engines.empty()) json["engines"] = request.engines;
-  if (request.action) json["action"] = *request.action;
+  Json json{{"cell", request.cell.string()},    {"arm", request.arm},
+            {"index", request.index},           {"scene", request.scene},
+            {"selections", request.selections}, {"ends", Json::array()}};
+  for (const PictureRequest::End& end : request.ends)
+    json["ends"].push_back({{"engine", end.engine}, {"action", end.action}});
   return json;
 }
 
@@ -134,12 +132,13 @@ PictureRequest read_picture_request(const JsonReader& reader) {
                          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
                          reader.at("scene").string()};
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
-  if (!reader.has("engines")) return request;
-  request.engines = reader.at("engines").strings();
-  ActionVector& action = request.action.emplace();
-  const std::vector<JsonReader> numbers = reader.at("action").elements();
-  if (numbers.size() != action.size()) reader.at("action").fail("12 numbers");
-  for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+  if (!reader.has("ends")) return request;
+  for (const JsonReader& end : reader.at("ends").elements()) {
+    ActionVector& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;
+    const std::vector<JsonReader> numbers = end.at("action").elements();
+    if (numbers.size() != action.size()) end.at("action").fail("12 numbers");
+    for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+  }
   return request;
 }
 

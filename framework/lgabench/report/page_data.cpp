@@ -14,13 +14,18 @@
 namespace lgabench::report {
 namespace {
 
-// Column and row of the picture where the action's pose lies; positions are carried out clipped to the workspace.
+// Column and row of the picture where a pose lies; positions are carried out clipped to the workspace.
 Json pixel(double x_m, double y_m) {
   const auto tenths = [](double value) { return std::round(value * 10) / 10; };
   const double x = std::clamp(x_m, Workspace::x_min, Workspace::x_max),
                y = std::clamp(y_m, Workspace::y_min, Workspace::y_max);
   return {tenths((y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min) * Workspace::columns),
           tenths((x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min) * Workspace::rows)};
+}
+
+// From where the action takes hold to where it lets go.
+Json way(const std::vector<double>& action) {
+  return {pixel(action.at(0), action.at(1)), pixel(action.at(6), action.at(7))};
 }
 
 std::string title_of(const Table& table, const Row& row) {
@@ -69,7 +74,7 @@ Json page_data(const Material& material) {
     for (const std::string& arm : cell.arms) {
       std::string outcomes, blamed;  // a character an episode
       std::vector<std::string> hashes;
-      Json given = Json::array(), actions = Json::object();
+      Json given = Json::array(), actions = Json::object(), ends = Json::object();
       const std::vector<PlayedEpisode>& all = cell.episodes.at(arm);
       for (std::size_t i = 0; i < all.size(); ++i) {
         const PlayedEpisode& e = all[i];
@@ -78,8 +83,9 @@ Json page_data(const Material& material) {
         blamed += e.attribution.empty() ? '.' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);
-        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
-          actions[std::to_string(i)] = {pixel(e.action.at(0), e.action.at(1)), pixel(e.action.at(6), e.action.at(7))};
+        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0) actions[std::to_string(i)] = way(e.action);
+        if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
+          ends[std::to_string(i)] = end->second;
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
       const auto row = [&](const std::string& scenario) {
@@ -91,7 +97,8 @@ Json page_data(const Material& material) {
                         {"commands", given},
                         {"outcomes", outcomes},
                         {"attribution", blamed},
-                        {"actions", actions}});
+                        {"actions", actions},
+                        {"ends", ends}});
     }
     cells.push_back({{"cell", cell.key},
                      {"scenario", cell.scenario},
@@ -106,8 +113,11 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  return {{"failures", words}, {"phi", selections},           {"titles", titles},       {"cells", cells},
-          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}};
+  Json oracle = Json::object();
+  for (const auto& [scene, action] : pictures.oracle) oracle[scene] = way(action);
+  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
+          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
+          {"oracle", oracle}};
 }
 
 }  // namespace lgabench::report
