@@ -12,7 +12,6 @@ function(lgabench_library target)
                                              CXX_VISIBILITY_PRESET default VISIBILITY_INLINES_HIDDEN OFF)
   target_compile_features(${target} PUBLIC cxx_std_17)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/framework>
-                                              $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/envs>
                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   lgabench_target(${target})
 endfunction()
@@ -22,11 +21,22 @@ function(lgabench_environment name)
   lgabench_library(lgabench_${name} ${ARGN})
   set_target_properties(lgabench_${name} PROPERTIES OUTPUT_NAME lgabench_env_${name})
   target_link_libraries(lgabench_${name} PUBLIC lgabench_core)
+  target_include_directories(lgabench_${name} PUBLIC ${PROJECT_SOURCE_DIR}/envs)  # it is not installed for others to link
   install(TARGETS lgabench_${name})
   foreach(program lgabench lgabench-worker lgabench_pages)
     add_dependencies(${program} lgabench_${name})
   endforeach()
 endfunction()
+
+# What plugins include: it is installed, and has pages (docs/Doxyfile.in). Of learning/ what docs/add-a-method.md and
+# docs/add-a-network.md name; the rest of it is private.
+file(GLOB lgabench_public_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/framework/lgabench
+     ${PROJECT_SOURCE_DIR}/framework/lgabench/core/*.hpp ${PROJECT_SOURCE_DIR}/framework/lgabench/plugin/*.hpp
+     ${PROJECT_SOURCE_DIR}/framework/lgabench/abstraction/*.hpp)
+list(REMOVE_ITEM lgabench_public_headers plugin/reader.hpp)
+foreach(header cloning_method featurizer inputs learner noisy_copies samples)
+  list(APPEND lgabench_public_headers learning/${header}.hpp)
+endforeach()
 
 # What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().
 function(lgabench_install_package)
@@ -37,14 +47,10 @@ function(lgabench_install_package)
     install(TARGETS lgabench_encoder)  # the programs need it, plugins do not
   endif()
   install(EXPORT lgabenchTargets NAMESPACE lgabench:: DESTINATION ${package})
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/framework/lgabench DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-          FILES_MATCHING REGEX "/(core|plugin|abstraction|learning)/[a-z_]+\\.hpp$"
-          PATTERN reader.hpp EXCLUDE PATTERN batch_norm.hpp EXCLUDE PATTERN head.hpp EXCLUDE PATTERN linear.hpp EXCLUDE
-          PATTERN tower.hpp EXCLUDE PATTERN kernels_simd.hpp EXCLUDE PATTERN heat_map_network.hpp EXCLUDE
-          PATTERN motion.hpp EXCLUDE PATTERN places.hpp EXCLUDE PATTERN policies.hpp EXCLUDE
-          PATTERN cli EXCLUDE PATTERN host EXCLUDE PATTERN job EXCLUDE PATTERN cell EXCLUDE
-          PATTERN harness EXCLUDE PATTERN report EXCLUDE
-          PATTERN answers EXCLUDE PATTERN prompts EXCLUDE PATTERN embeddings EXCLUDE)
+  foreach(header ${lgabench_public_headers})
+    cmake_path(GET header PARENT_PATH folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/framework/lgabench/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lgabench/${folder})
+  endforeach()
   # An SDK of another version is refused when a plugin is read; CMake may say so first.
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake COMPATIBILITY ExactVersion)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/lgabenchConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/LgabenchPlugin.cmake
@@ -55,8 +61,21 @@ endfunction()
 function(lgabench_link_data)
   set(share ${PROJECT_BINARY_DIR}/share/lgabench)
   file(MAKE_DIRECTORY ${share})
-  foreach(pair scenarios:envs/tabletop/scenarios suites:envs/tabletop/suites spaces:envs/tabletop/spaces
-               answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
+  # Of all environments together: ids are the files' names.
+  foreach(kind scenarios suites spaces)
+    file(REMOVE_RECURSE ${share}/${kind})
+    file(MAKE_DIRECTORY ${share}/${kind})
+    file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/envs/*/${kind}/*.json)
+    foreach(file ${files})
+      cmake_path(GET file FILENAME name)
+      if(EXISTS ${share}/${kind}/${name})
+        message(FATAL_ERROR "${file}: another environment has ${kind}/${name}")
+      endif()
+      file(CREATE_LINK ${file} ${share}/${kind}/${name} SYMBOLIC)
+    endforeach()
+    install(FILES ${files} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${kind})
+  endforeach()
+  foreach(pair answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                python:python)

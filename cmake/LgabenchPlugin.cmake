@@ -23,6 +23,9 @@ function(lgabench_add_plugin name)
                                            CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                            INSTALL_RPATH "$ORIGIN/../..;$ORIGIN/..")
   target_link_libraries(${name} PRIVATE lgabench::core)
+  # Which LibTorch it is linked with, for its descriptor: a process can hold one, so lgabench refuses it beside another.
+  target_compile_definitions(${name} PRIVATE
+    $<$<IN_LIST:torch,$<TARGET_PROPERTY:${name},LINK_LIBRARIES>>:LGABENCH_TORCH_VERSION="${Torch_VERSION}">)
   # Without a build type CMake would not optimise at all.
   target_compile_options(${name} PRIVATE $<$<CONFIG:>:-O2>)
   lgabench_target(${name})

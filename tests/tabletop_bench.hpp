@@ -9,6 +9,7 @@
 #include <lgabench/core/environment.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "engine_under_test.hpp"
 #include "forwarding_world.hpp"
@@ -67,11 +68,11 @@ inline SceneObject object(const std::string& type, const std::string& texture, c
   return o;
 }
 
-inline Action from_to(Vec2 from, Vec2 to) { return {{from, {}}, {to, {}}}; }
+inline TwoPoses from_to(Vec2 from, Vec2 to) { return {{from, {}}, {to, {}}}; }
 
 struct Episode {
   Observation first;
-  Action action;
+  TwoPoses action;
   StepResult result;
 };
 inline Episode play(Environment& env, const Scene& scene) {

@@ -101,7 +101,7 @@ int under_suction(const PhysicsWorld& world, Vec2 point, double& height_m) {
   return body;
 }
 
-Motion pick_and_place(const Bodies& bodies, const Action& action) {
+Motion pick_and_place(const Bodies& bodies, const TwoPoses& action) {
   PhysicsWorld& world = bodies.world;
   Clock clock(world);
   double height = 0;

@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include <lgabench/core/action.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <tabletop/failures.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench::tabletop {
 
@@ -70,7 +70,7 @@ int under_suction(const PhysicsWorld& world, Vec2 point, double& height_m);
 
 /// Takes the topmost body under the disc at pose0, lifts it by .1 m, carries it to pose1 while turning it by the yaw of
 /// pose1's rotation, lowers it until it touches something, lets go and waits until all bodies rest. Takes nothing,
-/// and moves nothing, where no body or a fixed one is under the disc. @pre `action` is executable.
-Motion pick_and_place(const Bodies& bodies, const Action& action);
+/// and moves nothing, where no body or a fixed one is under the disc. @pre `action` is executable().
+Motion pick_and_place(const Bodies& bodies, const TwoPoses& action);
 
 }  // namespace lgabench::tabletop

@@ -33,8 +33,8 @@ Vec2 centre_of(const SceneObject& object, const Pose& pose) {
   return {centre.x, centre.y};
 }
 
-Action bring(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world, std::size_t object,
-             Vec2 goal, double turn_rad) {
+TwoPoses bring(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world, std::size_t object,
+               Vec2 goal, double turn_rad) {
   const SceneObject& target = scene.objects[object];
   const Vec2 centre = centre_of(target, poses[object]);
   const Vec2 grasp = reachable_grasp(target, poses[object], world, static_cast<int>(object));

@@ -6,6 +6,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/objects.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
 namespace {

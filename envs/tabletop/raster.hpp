@@ -4,13 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include <lgabench/core/geometry.hpp>
-#include <lgabench/core/observation.hpp>
 #include <tabletop/outline.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
 
-constexpr int rows = Observation::rows, columns = Observation::columns, pixels = rows * columns;
+constexpr int rows = Workspace::rows, columns = Workspace::columns, pixels = rows * columns;
 constexpr double row_m = (Workspace::x_max - Workspace::x_min) / rows;
 constexpr double column_m = (Workspace::y_max - Workspace::y_min) / columns;
 

@@ -54,15 +54,15 @@ struct Look {
 };
 
 // An object type, ready to be drawn.
-struct Shape {
+struct Solid {
   const Mesh* mesh;
   std::vector<Vec3> normals;  // of the triangles, unit, in the body's frame
   RTCScene scene;             // the mesh, for shadow rays in the body's frame
 };
 
-// A shape in this picture.
+// A solid in this picture.
 struct Placed {
-  const Shape* shape;
+  const Solid* solid;
   const Texture* texture;
   std::uint8_t id;
   Vec3 position;
@@ -115,7 +115,7 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
 
 struct Renderer::Impl {
   RTCDevice device;
-  std::map<std::string, Shape> shapes;  // by object type, made at first use
+  std::map<std::string, Solid> solids;  // by object type, made at first use
   // Of the picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
   std::vector<double> heights_m;
   std::vector<Look> looks;
@@ -133,18 +133,18 @@ struct Renderer::Impl {
   }
 
   ~Impl() {
-    for (const auto& [type, shape] : shapes) rtcReleaseScene(shape.scene);
+    for (const auto& [type, solid] : solids) rtcReleaseScene(solid.scene);
     rtcReleaseDevice(device);
   }
 
-  const Shape& shape_of(const std::string& type) {
-    const auto known = shapes.find(type);
-    if (known != shapes.end()) return known->second;
+  const Solid& solid_of(const std::string& type) {
+    const auto known = solids.find(type);
+    if (known != solids.end()) return known->second;
     const Mesh& mesh = object_model(type).mesh;
-    Shape shape{&mesh, {}, rtcNewScene(device)};
+    Solid solid{&mesh, {}, rtcNewScene(device)};
     for (const auto& [a, b, c] : mesh.triangles) {
       const Vec3 normal = cross(mesh.vertices_m[b] - mesh.vertices_m[a], mesh.vertices_m[c] - mesh.vertices_m[a]);
-      shape.normals.push_back((1 / std::sqrt(dot(normal, normal))) * normal);
+      solid.normals.push_back((1 / std::sqrt(dot(normal, normal))) * normal);
     }
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -156,12 +156,12 @@ struct Renderer::Impl {
       for (const double number : {v.x, v.y, v.z}) *vertices++ = static_cast<float>(number);
     for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(shape.scene, geometry);
+    rtcAttachGeometry(solid.scene, geometry);
     rtcReleaseGeometry(geometry);
-    rtcSetSceneFlags(shape.scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
-    rtcCommitScene(shape.scene);
+    rtcSetSceneFlags(solid.scene, RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+    rtcCommitScene(solid.scene);
     if (const RTCError error = rtcGetDeviceError(device)) fail(fmt::format("the mesh of \"{}\"", type), error);
-    return shapes.emplace(type, std::move(shape)).first->second;
+    return solids.emplace(type, std::move(solid)).first->second;
   }
 
   Placed place(const VisibleObject& object) {
@@ -170,13 +170,13 @@ struct Renderer::Impl {
       if (!std::isfinite(number))
         throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
     Placed placed;
-    placed.shape = &shape_of(object.object_type);
+    placed.solid = &solid_of(object.object_type);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
     placed.position = p;
     placed.axes = {rotated({1, 0, 0}, q), rotated({0, 1, 0}, q), rotated({0, 0, 1}, q)};
     placed.light = placed.to_body(light);
-    const std::vector<Vec3>& locals = placed.shape->mesh->vertices_m;
+    const std::vector<Vec3>& locals = placed.solid->mesh->vertices_m;
     placed.vertices.reserve(locals.size());
     placed.seen_at.reserve(locals.size());
     placed.shadow_at.reserve(locals.size());
@@ -204,11 +204,11 @@ struct Renderer::Impl {
 
   // Ids of the pixels where this object is the highest so far, and what of it is seen there.
   void draw(const Placed& object, Observation& seen) {
-    for (std::uint32_t i = 0; i < object.shape->normals.size(); ++i) {
-      const auto [ia, ib, ic] = object.shape->mesh->triangles[i];
+    for (std::uint32_t i = 0; i < object.solid->normals.size(); ++i) {
+      const auto [ia, ib, ic] = object.solid->mesh->triangles[i];
       const Vec2 at_a = object.seen_at[ia], at_b = object.seen_at[ib], at_c = object.seen_at[ic];
       if (doubled_area(at_a, at_b, at_c) < least_area) continue;
-      const Vec3 normal = object.shape->normals[i];
+      const Vec3 normal = object.solid->normals[i];
       const double cosine = dot(normal, object.light);
       const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;
       const Look look{static_cast<std::uint16_t>(ambient + light_here), plane_of(normal)};
@@ -239,7 +239,7 @@ struct Renderer::Impl {
   // Darkens the table where the object keeps the light from it.
   void shade_table(const Placed& object, const Table& table, Observation& seen) {
     std::uint8_t* const dark = shadow.data();
-    for (const auto& [a, b, c] : object.shape->mesh->triangles)
+    for (const auto& [a, b, c] : object.solid->mesh->triangles)
       fill(object.shadow_at[a], object.shadow_at[b], object.shadow_at[c], [dark](int row, int begin, int end) {
         std::memset(dark + row * columns + begin, 1, static_cast<std::size_t>(end - begin));
       });
@@ -274,7 +274,7 @@ struct Renderer::Impl {
     ray.mask = ~0u;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded1(object.shape->scene, &context, &ray);
+    rtcOccluded1(object.solid->scene, &context, &ray);
     return ray.tfar < 0;  // Embree's mark of a hit
   }
 
@@ -353,7 +353,7 @@ Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground g
   }
 
   const Table& empty = table(ground);
-  Observation seen{empty.in_light, std::vector<std::uint8_t>(pixels), {}};
+  Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};
   for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);
   for (const Placed& object : placed) impl_->shade_table(object, empty, seen);

@@ -212,8 +212,8 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
                                     request.seed, own, index, purpose));
   };
 
-  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, 0, request.seed, index, 0, {}};
-  scene.angle_rad = task.angle_rad(content);
+  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, {}, request.seed, index, 0, {}};
+  set_asked_turn(scene, task.turn_rad(content));
   scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
   task.place(layout, content, scene.objects, stream);

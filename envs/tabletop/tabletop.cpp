@@ -9,6 +9,7 @@
 #include <tabletop/content.hpp>
 #include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
+#include <tabletop/raster.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
@@ -29,6 +30,8 @@ class Tabletop final : public Environment {
     add(goal_type, true);
     world_->load(models, most_bodies);
   }
+
+  const ActionSpace& action_space() const override { return two_poses(); }
 
   Observation reset(const Scene& scene) override {
     std::vector<VisibleObject> objects = visible_objects(scene);
@@ -52,7 +55,7 @@ class Tabletop final : public Environment {
   }
 
   StepResult step(const Action& action) override {
-    Motion motion = task_->carry_out(scene_, {*world_, fixed_}, executable(action));
+    Motion motion = task_->carry_out(scene_, {*world_, fixed_}, executable(two_poses(), action));
     if (went_wrong_ == failure::none) went_wrong_ = motion.failure;
     motion.failure = went_wrong_;
     const std::vector<Pose> reached = poses();
@@ -118,6 +121,12 @@ class TabletopType final : public EnvironmentType {
   const std::vector<TaskInfo>& tasks() const override { return tasks_; }
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return two_poses(); }
+  PictureSize picture_size() const override { return Workspace::picture; }
+  // The corner of the first pixel is half a pixel before its centre.
+  Vec2 in_picture(Vec3 point_m) const override {
+    const Vec2 at = tabletop::in_picture(point_m.x, point_m.y);
+    return {at.y + .5, at.x + .5};
+  }
   std::vector<std::string> scenario_members(const TaskInfo& task) const override {
     return tabletop::scenario_members(find_task(task.id));
   }

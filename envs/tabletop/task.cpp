@@ -30,7 +30,7 @@ void Task::place(const Layout& layout, const Content&, std::vector<SceneObject>&
 
 std::vector<Polygon> Task::room(const Layout&, const SceneObject&) const { return {}; }
 
-Motion Task::carry_out(const Scene&, const Bodies& bodies, const Action& action) const {
+Motion Task::carry_out(const Scene&, const Bodies& bodies, const TwoPoses& action) const {
   return pick_and_place(bodies, action);
 }
 
@@ -42,6 +42,13 @@ Layout find_layout(const Task& task, const std::string& id) {
   return named(fmt::format("layout of {}", task.id()).c_str(), task.layouts(), id,
                [](const Layout& layout) { return layout.id; });
 }
+
+constexpr const char* turn = "angle_rad";
+double asked_turn_rad(const Scene& scene) {
+  const auto found = scene.parameters.find(turn);
+  return found == scene.parameters.end() ? 0 : found->second;
+}
+void set_asked_turn(Scene& scene, double turn_rad) { scene.parameters[turn] = turn_rad; }
 
 std::vector<Vec2> four_places() { return {{.375, -.36}, {.625, -.36}, {.375, -.06}, {.625, -.06}}; }
 

@@ -44,8 +44,8 @@ class Task {
   virtual std::vector<std::string> scenario_members() const { return {}; }
   virtual std::vector<std::string> scene_members() const { return {}; }
   virtual void read(const JsonReader& /*file*/, const JsonReader* /*scenes*/, Content& /*content*/) const {}
-  /// Scene::angle_rad.
-  virtual double angle_rad(const Content&) const { return 0; }
+  /// The turn that it asks for, in radians; 0 where it asks for none.
+  virtual double turn_rad(const Content&) const { return 0; }
 
   /// Sets position and yaw of every object but the goal. objects[0] is a target and takes its place first, from a
   /// stream of its own, so that scenes with other distractors share it. A distractor that finds no place is left out
@@ -57,12 +57,12 @@ class Task {
   /// What is painted on the table.
   virtual Ground ground() const { return Ground::plain; }
 
-  /// Carries out what the action means in this task. @pre `action` is executable.
-  virtual Motion carry_out(const Scene& scene, const Bodies& bodies, const Action& action) const;
+  /// Carries out what the action means in this task. @pre `action` is executable().
+  virtual Motion carry_out(const Scene& scene, const Bodies& bodies, const TwoPoses& action) const;
   /// What does the task in the present state, with objects[object] as the target. `poses` in the order of
   /// scene.objects; the world is only looked at. @throws InputError where the scene lacks an object that this needs.
-  virtual Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
-                               std::size_t object) const = 0;
+  virtual TwoPoses expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
+                                 std::size_t object) const = 0;
   /// Did that target end as the task asks? All bodies rest, within the workspace. Pure. `finals` in the order of
   /// scene.objects. @returns failure::none or one of failures(). @throws InputError where the scene lacks an object.
   virtual Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const = 0;
@@ -75,6 +75,9 @@ const Task& find_task(const std::string& id);
 /// The task's layout of that name. @throws InputError that lists its layouts.
 Layout find_layout(const Task& task, const std::string& id);
 
+/// The turn that the scene's task asks for, which is part of the scene; 0 where it asks for none.
+double asked_turn_rad(const Scene& scene);
+void set_asked_turn(Scene& scene, double turn_rad);
 /// The four fixed places of pick-and-place ("cells").
 std::vector<Vec2> four_places();
 /// The five places of the authors' released code: targets in the first two, distractors in the second and third.

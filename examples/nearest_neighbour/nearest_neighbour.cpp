@@ -12,7 +12,7 @@ namespace {
 using namespace lgabench;
 
 struct Example {
-  std::vector<std::uint8_t> mask;  // Observation::rows x columns of 0 and 1
+  std::vector<std::uint8_t> mask;  // of the observation's size, 0 and 1
   Action action;
 };
 

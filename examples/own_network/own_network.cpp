@@ -13,11 +13,12 @@ using namespace lgabench;
 
 class TwoLayers : public Learner {
  public:
-  TwoLayers(const SampleShape& shape, int hidden, std::uint64_t seed) : numbers_(shape.pictures[0].numbers()) {
+  TwoLayers(const SampleShape& shape, int hidden, std::uint64_t seed)
+      : numbers_(shape.pictures[0].numbers()), actions_(static_cast<int>(shape.actions.size())) {
     torch::set_num_threads(1);  // a sum that is split among threads has another last bit
     torch::manual_seed(seed);   // of the initial weights
-    network_ =
-        torch::nn::Sequential(torch::nn::Linear(numbers_, hidden), torch::nn::ReLU(), torch::nn::Linear(hidden, 12));
+    network_ = torch::nn::Sequential(torch::nn::Linear(numbers_, hidden), torch::nn::ReLU(),
+                                     torch::nn::Linear(hidden, actions_));
     optimizer_ = std::make_unique<torch::optim::Adam>(network_->parameters());
   }
 
@@ -30,7 +31,7 @@ class TwoLayers : public Learner {
 
   double backward(const Samples& samples, const std::vector<int>& batch) override {
     const torch::Tensor rows = torch::tensor(at::ArrayRef<int>(batch));
-    const torch::Tensor labels = tensor(samples.labels, 12).index_select(0, rows);
+    const torch::Tensor labels = tensor(samples.labels, actions_).index_select(0, rows);
     optimizer_->zero_grad();
     const torch::Tensor loss = (network_->forward(pictures(samples).index_select(0, rows)) - labels).norm(2, 1).mean();
     loss.backward();
@@ -57,7 +58,7 @@ class TwoLayers : public Learner {
   }
   torch::Tensor pictures(const Samples& samples) const { return tensor(samples.pictures[0], numbers_); }
 
-  std::int64_t numbers_;  // of a picture
+  std::int64_t numbers_, actions_;  // of a picture, of an action
   torch::nn::Sequential network_;
   std::unique_ptr<torch::optim::Adam> optimizer_;
   std::vector<float> predicted_;

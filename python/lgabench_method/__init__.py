@@ -100,10 +100,7 @@ class Instance:
 
 @dataclass(frozen=True)
 class Observation:
-    """The view from above: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
-
-    Row 0 is at the smallest x, column 0 at the smallest y.
-    """
+    """The camera's picture: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object."""
     rgb: numpy.ndarray
     ids: numpy.ndarray
     instances: list
@@ -111,7 +108,7 @@ class Observation:
 
 @dataclass(frozen=True)
 class Step:
-    """An observation with the oracle's action for it: 12 doubles, two poses (x, y, quaternion x, y, z, w), in metres."""
+    """An observation with the oracle's action for it: a double for each of layout["action"]["numbers"]."""
     observation: Observation
     label: numpy.ndarray
 
@@ -140,7 +137,7 @@ class Services:
     seed: int        # governs all that is random
     log: object      # epoch(epochs, steps, loss), after each pass over the data
     files: str       # a directory for pictures and curves of the method's own; kept with the cell
-    layout: dict     # "observation" and "action" of the protocol: rows, columns, bounds, units
+    layout: dict     # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places
 
 
 def select_features(command, space, lm):

@@ -146,7 +146,8 @@ class Host:
         if header["reset"] and hasattr(self.policy, "reset"):
             self.policy.reset()
         observation = self.observation.read(header["instances"])
-        action = values.action_bytes(self.policy.act(observation, values.instruction(header["instruction"])))
+        action = values.action_bytes(self.policy.act(observation, values.instruction(header["instruction"])),
+                                     len(self.services.layout["action"]["numbers"]))
         reply = {"type": "action"}
         if getattr(self.policy, "seen_in_training", None) is not None:
             reply["seen_in_training"] = bool(self.policy.seen_in_training)

@@ -63,10 +63,10 @@ def needs_json(value):
     return {"targets": value.targets, "noisy_per_clean": int(value.noisy_per_clean), "noise_max": float(value.noise_max)}
 
 
-def action_bytes(value):
+def action_bytes(value, count):
     numbers = numpy.asarray(value, dtype="<f8")
-    if numbers.shape != (12,):
-        raise ValueError(f"act() returned an array of shape {numbers.shape}, expected 12 numbers")
+    if numbers.shape != (count,):
+        raise ValueError(f"act() returned an array of shape {numbers.shape}, expected {count} numbers")
     return numbers.tobytes()
 
 

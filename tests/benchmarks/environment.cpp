@@ -59,7 +59,7 @@ class Recorder final : public ForwardingWorld {
 struct Played {
   struct Episode {
     Scene scene;
-    Action action;
+    tabletop::TwoPoses action;
     std::vector<BodyPlacement> placed;
     std::vector<GripperFrame> frames;
     std::unique_ptr<BareMujoco> bare;

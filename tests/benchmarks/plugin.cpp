@@ -10,6 +10,7 @@
 #include <lgabench/plugin/loader.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "../../plugins/lga.cpp"
 #include "benchmarks.hpp"
@@ -35,7 +36,7 @@ Scene training_scene(const Scenario& scenario, int index) {
 struct Hosted {
   Scratch scratch{"benchmark"};
   std::unique_ptr<HostedMethod> method =
-      std::make_unique<HostedMethod>(HostJob{lga_plugin(), one_epoch(), 0, scratch.path});
+      std::make_unique<HostedMethod>(HostJob{lga_plugin(), "tabletop", one_epoch(), 0, scratch.path});
 };
 
 // A policy that was trained for a moment, and what it is asked.
@@ -46,7 +47,7 @@ class Trained {
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Silent log;
-    Services services{lm, human, one_epoch(), 0, log};
+    Services services{lm, human, one_epoch(), 0, log, tabletop::two_poses()};
     const Scene scene = training_scene(scenario, 0);
     observation_ = seen(scene);
     const Command command = scenario.command(scene.command);
@@ -81,11 +82,12 @@ void start(benchmark::State& state) {
 void demonstrations(benchmark::State& state) {
   const Scenario scenario = load_scenario("heart");
   std::vector<Demonstration> all;
-  for (int i = 0; i < 50; ++i) all.push_back({{}, {{seen(training_scene(scenario, i)), {}}}});
+  for (int i = 0; i < 50; ++i) all.push_back({{}, {{seen(training_scene(scenario, i)), tabletop::TwoPoses{}}}});
+  const protocol::Layout layout{tabletop::Workspace::picture, tabletop::two_poses()};
   std::size_t bytes = 0;
   for (auto _ : state) {
-    const protocol::DemonstrationFile packed = protocol::pack(all);
-    benchmark::DoNotOptimize(protocol::unpack(JsonReader(packed.header, "learn"), packed.file));
+    const protocol::DemonstrationFile packed = protocol::pack(layout, all);
+    benchmark::DoNotOptimize(protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file));
     bytes = packed.size;
   }
   state.counters["bytes"] = static_cast<double>(bytes);

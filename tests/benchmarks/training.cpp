@@ -11,6 +11,7 @@
 #include <lgabench/learning/sentence_embeddings.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "benchmarks.hpp"
 
@@ -55,17 +56,17 @@ Samples samples_of(const NetworkShape& shape) {
     for (std::size_t t = 0; t < shape.channels.size(); ++t) {
       float* const picture = samples.picture(t, i);
       if (shape.channels[t] == 1)
-        shrink_mask(goal_mask(seen, command.truth), input_size, picture);
+        shrink_mask(goal_mask(seen, command.truth), seen.size, input_size, picture);
       else
-        shrink_rgb(seen.rgb, input_size, picture);
+        shrink_rgb(seen.rgb, seen.size, input_size, picture);
     }
     if (shape.text) {
       static SentenceEmbeddings embeddings;
       const std::vector<float>& text = embeddings.of(command.utterance);
       std::copy(text.begin(), text.end(), samples.text.begin() + i * text_size);
     }
-    const ActionVector label = to_vector({{scene.find(role::target)->position_m, {}}, {{.5, .3}, {}}});
-    std::copy(label.begin(), label.end(), samples.labels.begin() + i * action_size);
+    const Action label = tabletop::TwoPoses{{scene.find(role::target)->position_m, {}}, {{.5, .3}, {}}};
+    std::copy(label.begin(), label.end(), samples.labels.begin() + i * std::ptrdiff_t{12});
   }
   return samples;
 }
@@ -129,8 +130,7 @@ void torchs(benchmark::State& state, const NetworkShape& shape) {
     for (std::size_t t = 0; t < towers.size(); ++t)
       features.push_back(towers[t]->forward(pictures[t][static_cast<std::size_t>(b)]));
     if (shape.text) features.push_back(text(batch_of(samples.text, b, {text_size})));
-    const torch::Tensor loss =
-        (head(torch::cat(features, 1)) - batch_of(samples.labels, b, {action_size})).norm(2, 1).mean();
+    const torch::Tensor loss = (head(torch::cat(features, 1)) - batch_of(samples.labels, b, {12})).norm(2, 1).mean();
     adam.zero_grad();
     loss.backward();
     adam.step();

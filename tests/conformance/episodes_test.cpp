@@ -39,14 +39,16 @@ TEST_P(AnyTask, BeginsAlikeOnEveryEngine) {
       const Observation here = environment().reset(scene), there = other->reset(scene);
       EXPECT_EQ(here.rgb, there.rgb) << plugin.id;
       EXPECT_EQ(here.ids, there.ids) << plugin.id;
-      EXPECT_EQ(to_vector(environment().expert_action()), to_vector(other->expert_action())) << plugin.id;
+      EXPECT_EQ(recorded(two_poses(), environment().expert_action()), recorded(two_poses(), other->expert_action()))
+          << plugin.id;
     }
   }
 }
 
 TEST_P(AnyTask, DependsOnItsSceneAlone) {
   const auto same = [](const Episode& a, const Episode& b) {
-    return a.first.rgb == b.first.rgb && a.first.ids == b.first.ids && to_vector(a.action) == to_vector(b.action) &&
+    return a.first.rgb == b.first.rgb && a.first.ids == b.first.ids &&
+           recorded(two_poses(), a.action) == recorded(two_poses(), b.action) &&
            a.result.observation.rgb == b.result.observation.rgb && a.result.failure == b.result.failure &&
            a.result.observation.ids == b.result.observation.ids;
   };
@@ -59,11 +61,11 @@ TEST_P(AnyTask, DependsOnItsSceneAlone) {
 }
 
 /// Half of the actions begin on an object, as others mostly take nothing.
-Action random_action(RandomStream& random, const Scene& scene) {
+TwoPoses random_action(RandomStream& random, const Scene& scene) {
   const auto anywhere = [&] {
     return Vec2{random.uniform(Workspace::x_min, Workspace::x_max), random.uniform(Workspace::y_min, Workspace::y_max)};
   };
-  Action action{{anywhere(), {}}, {anywhere(), from_yaw(random.uniform(-pi, pi))}};
+  TwoPoses action{{anywhere(), {}}, {anywhere(), from_yaw(random.uniform(-pi, pi))}};
   if (random.coin())
     action.pose0.position_m = scene.objects[random.below(static_cast<std::uint32_t>(scene.objects.size()))].position_m;
   return action;
@@ -119,7 +121,7 @@ TEST(Episode, WhatLeansOnThePalletComesToRest) {
   scene.objects = {object("pallet", "wooden", role::goal, {.5, .3}, 1),
                    object("heart", "red", role::target, {.6, -.05}, 2)};
   env.reset(scene);
-  Action action = env.expert_action();
+  TwoPoses action = env.expert_action();
   for (int i = 0; i < 48; ++i) {  // around the pallet, half on it, turned
     const double angle = 2 * pi * i / 24;
     action.pose1 = {Vec2{.5, .3} + rotated({i < 24 ? .10 : .13, 0}, angle), from_yaw(.5 * angle)};

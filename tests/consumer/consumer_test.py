@@ -87,6 +87,7 @@ class Package(Consumer):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         self.assertGreater(len(headers), 30)
         self.assertNotIn("reader.hpp", [header.name for header in headers])
+        self.assertEqual([header for header in headers if "Private to" in (self.prefix / "include" / header).read_text()], [])
         alone = [[header] for header in headers]
         for standard, parts in [("-std=c++17", alone if FULL else [headers[::-1]]), ("-std=c++20", [headers])]:
             for part in parts:

@@ -2,6 +2,7 @@
 // changes the hello; the payload of "learn" lies where its file has labels, owners and instances.
 #include <algorithm>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/host/messages.hpp>
 #include <lgabench/host/serve.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -17,21 +18,28 @@ const PluginInfo& curious() {
   return plugin;
 }
 
+const protocol::Layout& layout() {
+  static const EnvironmentType& tabletop = find_environment("tabletop");
+  static const protocol::Layout of_it{tabletop.picture_size(), tabletop.action_space()};
+  return of_it;
+}
+
 Json hello() {
   Json json{{"type", "hello"},
             {"protocol", protocol_version},
             {"method", {{"file", curious().file.string()}, {"sha256", curious().sha256}}},
             {"options", Json::object()},
             {"seed", 0}};
-  json.update(protocol::layout());
+  json.update(protocol::to_json(layout()));
   return json;
 }
 
 // With the file that "learn" comes with: a step's pictures, all black, and what the input has beside them.
 void send(Channel& worker, const Frame& frame) {
   if (frame.header.value("type", Json()) != "learn") return worker.send(frame.header, frame.payload);
-  protocol::SharedMemory file(protocol::observation_bytes + fuzz::most_said);
-  std::copy(frame.payload.begin(), frame.payload.end(), file.data() + protocol::observation_bytes);
+  const std::size_t pictures = protocol::observation_bytes(layout().picture);
+  protocol::SharedMemory file(pictures + fuzz::most_said);
+  std::copy(frame.payload.begin(), frame.payload.end(), file.data() + pictures);
   worker.send(frame.header, {}, &file.file());
 }
 
@@ -42,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto [ours, theirs] = fuzz::ends();
   {
     Channel worker = fuzz::channel_of(std::move(theirs));
-    const protocol::SharedMemory observation(protocol::observation_bytes);
+    const protocol::SharedMemory observation(protocol::observation_bytes(layout().picture));
     const std::vector<Frame> frames = fuzz::frames_of(fuzz::text_of(data, size));
     Json first = hello();
     if (!frames.empty()) first.merge_patch(frames.front().header);

@@ -1,6 +1,7 @@
 // What a method's process says, as the worker reads it: HostedMethod's replies and Asked's questions.
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/host/asked.hpp>
 #include <lgabench/host/messages.hpp>
 
@@ -21,7 +22,8 @@ struct Answering {
   DeclaredHuman human{std::make_unique<TruthAsHuman>(scenario.commands), "edit"};
   NoLog log;
   Json options = Json::object();
-  Services services{model, human, options, 0, log, declared_truth(scenario.commands, "truth"), {}};
+  ActionSpace actions = find_environment(scenario.environment).action_space();
+  Services services{model, human, options, 0, log, actions, declared_truth(scenario.commands, "truth"), {}};
 };
 
 void read(const Frame& frame, Asked& asked, Channel& channel) {
@@ -32,7 +34,7 @@ void read(const Frame& frame, Asked& asked, Channel& channel) {
   } else if (type == "selection") {
     canonical(to_json(asked.account(protocol::read_selection(reader.at("selection")))));
   } else if (type == "action") {
-    protocol::to_bytes(protocol::read_action(frame.payload));
+    protocol::to_bytes(protocol::read_action(frame.payload, 12));
   } else if (type == "log") {
     protocol::read_log(frame);
   } else {

@@ -63,6 +63,12 @@ class IncludeGraph(unittest.TestCase):
     def test_the_framework_names_no_environment(self):
         self.forbid("framework", r"tabletop/")
 
+    def test_the_framework_knows_no_word_of_the_tabletops(self):
+        words = re.compile(r"^[^/\n]*\b(Workspace|TwoPoses|angle_rad|pose[01])\b", re.M)
+        found = [(str(file.relative_to(SOURCE)), words.findall(file.read_text()))
+                 for file in sorted((SOURCE / "framework").rglob("*.[ch]pp"))]
+        self.assertEqual([(file, all_of_it) for file, all_of_it in found if all_of_it], [])
+
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
         self.forbid("framework/lgabench/harness", r"lgabench/cell/")

@@ -14,7 +14,8 @@
 namespace lgabench {
 namespace {
 
-constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
+constexpr PictureSize picture{128, 256};
+const std::size_t pixels = picture.pixels();
 
 struct Asked {
   std::string id;
@@ -39,12 +40,13 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 // Ids 5, 9, 200 and 31, on single pixels in the corners and one in between.
 Observation four_objects() {
   Observation o;
+  o.size = picture;
   o.rgb.resize(pixels * 3);
   o.ids.resize(pixels);
   o.instances = {{9, "heart", "blue", 1}, {5, "heart", "red", 2}, {200, "pan", "red", 1}, {31, "line", "blue", 1}};
   o.ids[0] = 5;
-  o.ids[Observation::columns - 1] = 9;
-  o.ids[pixels - Observation::columns] = 200;
+  o.ids[picture.columns - 1] = 9;
+  o.ids[pixels - picture.columns] = 200;
   o.ids[pixels - 1] = 5;
   o.ids[1000] = 31;
   return o;
@@ -63,10 +65,10 @@ TEST(GoalMask, AddsWhatIsToBeAvoidedButNeverCrossesItWithTheTarget) {
   selection.target = {{"heart"}, {"red"}};
   selection.second = SecondSet{{{"pan", "line"}, {"blue"}}, "avoid"};
   const auto mask = goal_mask(four_objects(), selection);
-  EXPECT_EQ(mask[0], 1);                              // the red heart
-  EXPECT_EQ(mask[1000], 1);                           // the blue line
-  EXPECT_EQ(mask[Observation::columns - 1], 0);       // a blue heart: the target's type with avoid's texture
-  EXPECT_EQ(mask[pixels - Observation::columns], 0);  // a red pan: the reverse
+  EXPECT_EQ(mask[0], 1);                         // the red heart
+  EXPECT_EQ(mask[1000], 1);                      // the blue line
+  EXPECT_EQ(mask[picture.columns - 1], 0);       // a blue heart: the target's type with avoid's texture
+  EXPECT_EQ(mask[pixels - picture.columns], 0);  // a red pan: the reverse
 }
 
 TEST(GoalMask, AnythingIsAnObjectWithoutLanguage) {
@@ -82,12 +84,12 @@ TEST(GoalMask, MayKeepTheFirstInstanceOfEachRoleAlone) {
   const auto first = goal_mask(four_objects(), selection, Instances::first);
   EXPECT_EQ(first[0], 1);
   EXPECT_EQ(first[pixels - 1], 1) << "all of an instance, wherever it is";
-  EXPECT_EQ(first[Observation::columns - 1], 0) << "the other heart";
-  EXPECT_EQ(first[pixels - Observation::columns], 0) << "what matches both is a target, and not the first";
+  EXPECT_EQ(first[picture.columns - 1], 0) << "the other heart";
+  EXPECT_EQ(first[pixels - picture.columns], 0) << "what matches both is a target, and not the first";
   EXPECT_EQ(first[1000], 1) << "target and avoid apart";
   Observation hidden = four_objects();
   hidden.ids[0] = hidden.ids[pixels - 1] = 0;
-  EXPECT_EQ(goal_mask(hidden, selection, Instances::first)[Observation::columns - 1], 1) << "the first that is seen";
+  EXPECT_EQ(goal_mask(hidden, selection, Instances::first)[picture.columns - 1], 1) << "the first that is seen";
   const auto all = goal_mask(four_objects(), selection);
   EXPECT_EQ(std::count(all.begin(), all.end(), 1), 5);
 }
@@ -100,8 +102,8 @@ TEST(GoalMask, TellsRolesApart) {
   role_mask(four_objects(), selection, roles);
   EXPECT_EQ(roles[0], target_role);
   EXPECT_EQ(roles[1000], second_role);
-  EXPECT_EQ(roles[pixels - Observation::columns], target_role) << "both";
-  EXPECT_EQ(roles[Observation::columns - 1], 0);
+  EXPECT_EQ(roles[pixels - picture.columns], target_role) << "both";
+  EXPECT_EQ(roles[picture.columns - 1], 0);
 }
 
 TEST(GoalMask, OfAnyObjectMayLeaveAnObjectTypeOut) {

@@ -9,11 +9,16 @@
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/learning/centroid_policy.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench {
 namespace {
 
-constexpr int rows = Observation::rows, columns = Observation::columns;
+using tabletop::TwoPoses;
+using tabletop::Workspace;
+
+constexpr PictureSize native_size = Workspace::picture;
+constexpr int rows = Workspace::rows, columns = Workspace::columns;
 constexpr double pixel = 1.0 / columns;  // m
 
 using Roles = std::vector<std::uint8_t>;
@@ -48,26 +53,25 @@ const Vec2 here = place(40, 60), there = place(90, 200), elsewhere = place(64, 1
 // What the rule learns from, and its actions, without the rows of numbers between.
 class Rule {
  public:
-  void add(const Roles& roles, const Action& label) { demonstrated_.emplace_back(roles, label); }
+  void add(const Roles& roles, const TwoPoses& label) { demonstrated_.emplace_back(roles, label); }
   void fit() { rule_.begin(rows_of(demonstrated_)); }
-  Action act(const Roles& roles) {
-    ActionVector action;
-    std::copy_n(rule_.predict(rows_of({{roles, {}}})).begin(), action.size(), action.begin());
-    return from_vector(action);
+  TwoPoses act(const Roles& roles) {
+    const std::vector<float>& action = rule_.predict(rows_of({{roles, {}}}));
+    return Action(action.begin(), action.end());
   }
 
  private:
-  using Rows = std::vector<std::pair<Roles, Action>>;
+  using Rows = std::vector<std::pair<Roles, TwoPoses>>;
   static const SampleShape& shape() {
-    static const SampleShape one_mask{{{native_size, 1}}};
+    static const SampleShape one_mask{{{native_size, 1}}, false, tabletop::two_poses()};
     return one_mask;
   }
   static Samples rows_of(const Rows& given) {
     Samples samples(shape(), static_cast<int>(given.size()));
     for (int row = 0; row < samples.rows; ++row) {
       const auto& [roles, label] = given[static_cast<std::size_t>(row)];
-      shrink_mask(roles, native_size, samples.picture(0, row));
-      const ActionVector values = to_vector(label);
+      shrink_mask(roles, native_size, native_size, samples.picture(0, row));
+      const Action values = recorded(tabletop::two_poses(), label);
       std::copy(values.begin(), values.end(), samples.labels.begin() + row * std::ptrdiff_t{12});
     }
     return samples;
@@ -77,13 +81,13 @@ class Rule {
   CentroidRule rule_{shape()};
 };
 
-Action bring(Vec2 from) { return {{from, {}}, {goal, {}}}; }
+TwoPoses bring(Vec2 from) { return {{from, {}}, {goal, {}}}; }
 
 TEST(CentroidRule, TakesTheMiddleAndBringsItToTheDemonstratedPlace) {
   Rule rule;
   for (const Vec2 at : {here, there}) rule.add(target_at(at), bring(at + Vec2{.01, 0}));  // off the middle, on the mask
   rule.fit();
-  const Action action = rule.act(target_at(elsewhere));
+  const TwoPoses action = rule.act(target_at(elsewhere));
   expect_at(action.pose0.position_m, elsewhere);
   expect_at(action.pose1.position_m, goal);
 }
@@ -92,7 +96,7 @@ TEST(CentroidRule, KeepsEachCoordinateInTheFrameInWhichItVariesLess) {
   Rule rule;  // pose1: x beside the object, y on the table
   for (const Vec2 at : {here, there}) rule.add(target_at(at), {{at, {}}, {{at.x + .07, .25}, from_yaw(2)}});
   rule.fit();
-  const Action action = rule.act(target_at(elsewhere));
+  const TwoPoses action = rule.act(target_at(elsewhere));
   expect_at(action.pose1.position_m, {elsewhere.x + .07, .25});
   EXPECT_NEAR(yaw_of(action.pose1.rotation), 2, 1e-6);
 }
@@ -130,7 +134,8 @@ TEST(CentroidRule, ThatNeverSawATargetDoesTheMeanDemonstratedActionToo) {
   rule.add(nothing(), bring(here));
   rule.fit();
   expect_at(rule.act(target_at(there)).pose0.position_m, here);
-  for (const SampleShape& shape : {SampleShape{}, SampleShape{{{input_size, 1}}}, SampleShape{{{native_size, 3}}}})
+  for (const SampleShape& shape : {SampleShape{{}, false, tabletop::two_poses()}, SampleShape{{{native_size, 1}}},
+                                   SampleShape{{{native_size, 3}}, false, tabletop::two_poses()}})
     EXPECT_THROW(CentroidRule untaught(shape), InputError);
 }
 
@@ -143,7 +148,7 @@ TEST(CentroidRule, OfSeveralPiecesTakesTheLargestAndLearnsFromTheOneThatWasTaken
   rule.fit();
   Roles roles = target_at(here);
   paint(roles, there, target_role, 9, 9);
-  const Action action = rule.act(roles);
+  const TwoPoses action = rule.act(roles);
   expect_at(action.pose0.position_m, there);
   expect_at(action.pose1.position_m, there + Vec2{.05, 0});
 }
@@ -167,7 +172,7 @@ TEST(CentroidRule, TakesHoldOfMaterialWhereTheMiddleIsEmpty) {
 // strip on the other side.
 struct Sweep {
   Roles roles;
-  Action label;
+  TwoPoses label;
 };
 Sweep sweep(Vec2 at, int side, double tilt = 0, double beside = 0) {
   Roles roles = target_at(at);
@@ -188,7 +193,7 @@ TEST(CentroidRule, SweepsAsTheDemonstrationsWithTheObstacleOnThatSideDid) {
   rule.fit();
   for (const int side : {1, -1}) {
     const Sweep test = sweep(place(80, 140), side);
-    const Action action = rule.act(test.roles);
+    const TwoPoses action = rule.act(test.roles);
     expect_at(action.pose0.position_m, test.label.pose0.position_m);
     expect_at(action.pose1.position_m, test.label.pose1.position_m);
   }

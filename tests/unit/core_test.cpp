@@ -15,6 +15,7 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <tabletop/content.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "testing.hpp"
 
@@ -309,15 +310,18 @@ TEST(Scenario, RefusesBadInput) {
               "no scenario \"hart\" (did you mean \"heart\"?), expected one of: ");
 }
 
-TEST(Action, VectorHasOneSignOfEachQuaternion) {
-  const Action action{{{.3, -.2}, {0, 0, .6, -.8}}, {{.5, .3}, {0, 0, 0, 1}}};
-  const ActionVector v = to_vector(action);
-  EXPECT_EQ(v, (ActionVector{.3f, -.2f, 0, 0, -.6f, .8f, .5f, .3f, 0, 0, 0, 1}));
-  EXPECT_EQ(to_vector(from_vector(v)), v);
+using tabletop::two_poses;
+using tabletop::TwoPoses;
+
+TEST(Action, IsRecordedWithOneSignOfEachQuaternion) {
+  const TwoPoses action{{{.3, -.2}, {0, 0, .6, -.8}}, {{.5, .3}, {0, 0, 0, 1}}};
+  const Action kept = recorded(two_poses(), action);
+  EXPECT_EQ(kept, (Action{.3f, -.2f, 0, 0, -.6f, .8f, .5f, .3f, 0, 0, 0, 1}));
+  EXPECT_EQ(recorded(two_poses(), kept), kept);
 }
 
 TEST(Action, ExecutableClipsAndNormalises) {
-  const Action done = executable({{{9, -9}, {0, 0, 3, 4}}, {{.5, .1}, {0, 0, 0, -2}}});
+  const TwoPoses done = executable(two_poses(), TwoPoses{{{9, -9}, {0, 0, 3, 4}}, {{.5, .1}, {0, 0, 0, -2}}});
   EXPECT_EQ(done.pose0.position_m.x, .75);
   EXPECT_EQ(done.pose0.position_m.y, -.5);
   EXPECT_DOUBLE_EQ(done.pose0.rotation.z, .6);
@@ -327,22 +331,44 @@ TEST(Action, ExecutableClipsAndNormalises) {
 }
 
 TEST(Action, RefusesWhatCannotBeCarriedOut) {
-  const Action good{{{.5, 0}, {0, 0, 0, 1}}, {{.5, .3}, {0, 0, 0, 1}}};
-  EXPECT_NO_THROW(executable(good));
-  Action bad = good;
+  const TwoPoses good{{{.5, 0}, {0, 0, 0, 1}}, {{.5, .3}, {0, 0, 0, 1}}};
+  const auto refusal = [](const Action& action) {
+    return message_of<MethodError>([&] { executable(two_poses(), action); });
+  };
+  EXPECT_NO_THROW(executable(two_poses(), good));
+  TwoPoses bad = good;
   bad.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(executable(bad), MethodError);
-  EXPECT_SAYS(message_of<Error>([&] { executable(bad); }), "pose1: expected finite numbers");
+  EXPECT_SAYS(refusal(bad), "pose1.y: expected a finite number, got nan");
   bad = good;
   bad.pose0.rotation = {0, 0, 0, 1e-7};
-  EXPECT_THROW(executable(bad), MethodError);
+  EXPECT_SAYS(refusal(bad), "pose0.qx: expected a rotation of norm 1e-6 or more, got 1e-07");
   bad.pose0.rotation.x = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(executable(bad), MethodError);
+  EXPECT_SAYS(refusal(bad), "pose0.qx: expected a finite number");
+  EXPECT_SAYS(refusal({.5, 0}), "action: expected 12 numbers, got 2");
+}
+
+// What a plan of another environment may be: a place in the picture, a way to turn, a place on the floor.
+TEST(Action, OfAnotherSpaceIsDataAsWell) {
+  const ActionSpace plan{
+      {{"u", "", 0, 1}, {"v", "", 0, 1}, {"cos", "", -1, 1}, {"sin", "", -1, 1}, {"x", "m", 0, 4}}, {{2, 3}}, {{1, 0}}};
+  const Action action{.25, 1.5, -3, 4, 9};
+  EXPECT_EQ(executable(plan, action), (Action{.25, 1, -.6, .8, 4}));
+  EXPECT_EQ(recorded(plan, action), action) << "an angle has no other sign";
+  const Vec2 at = in_picture(plan, plan.places[0], action, {480, 640});
+  EXPECT_EQ(at.x, 160);
+  EXPECT_EQ(at.y, 480);
+  const Json json = to_json(plan);
+  EXPECT_EQ(to_json(read_action_space({json, "plan"})), json);
+  Json bad = json;
+  bad["rotations"][0] = {2, 5};
+  EXPECT_SAYS(message_of<InputError>([&] { read_action_space({bad, "plan"}); }), "/rotations/0/1");
+  bad["rotations"][0] = {2};
+  EXPECT_SAYS(message_of<InputError>([&] { read_action_space({bad, "plan"}); }), "two numbers or four");
 }
 
 TEST(Scene, HashCoversEveryField) {
   Scene scene{"heart", "test", "cells", "test", "pick_and_place",
-              0,       1,      2,       0,      {{"heart", "red", role::target, {.4, 0}, 0, 1}}};
+              {},      1,      2,       0,      {{"heart", "red", role::target, {.4, 0}, 0, 1}}};
   std::set<std::uint64_t> hashes{scene.hash()};
   const auto expect_new = [&](const std::function<void(Scene&)>& change) {
     Scene changed = scene;
@@ -354,7 +380,7 @@ TEST(Scene, HashCoversEveryField) {
   expect_new([](Scene& s) { s.layout = "continuous"; });
   expect_new([](Scene& s) { s.split = "dev"; });
   expect_new([](Scene& s) { s.task = "rotate"; });
-  expect_new([](Scene& s) { s.angle_rad = 1; });
+  expect_new([](Scene& s) { s.parameters["angle_rad"] = 1; });
   expect_new([](Scene& s) { s.seed = 7; });
   expect_new([](Scene& s) { s.command = 1; });
   expect_new([](Scene& s) { s.index = 3; });

@@ -8,9 +8,12 @@
 
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/environments.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench {
 namespace {
+
+using tabletop::TwoPoses;
 
 constexpr int per_clean = 5;
 constexpr double most = .2;
@@ -36,8 +39,10 @@ class Listener : public Environment {
   Action expert_action() const override { return stepped_ ? second : first; }
   Action expert_action_for(std::uint8_t) const override { return first; }
 
-  const Action first{{{.4, -.3}, from_yaw(.5)}, {{.6, .2}, from_yaw(-.25)}};
-  const Action second{{{.6, .2}, from_yaw(0)}, {{.5, .3}, from_yaw(0)}};
+  const ActionSpace& action_space() const override { return tabletop::two_poses(); }
+
+  const TwoPoses first{{{.4, -.3}, from_yaw(.5)}, {{.6, .2}, from_yaw(-.25)}};
+  const TwoPoses second{{{.6, .2}, from_yaw(0)}, {{.5, .3}, from_yaw(0)}};
   std::map<int, std::vector<Action>> executed;  // by rollout
 
  private:
@@ -75,7 +80,7 @@ TEST(Dart, DisturbsTheExecutedActionByTheProtocolsDeviations) {
     ASSERT_EQ(actions.size(), static_cast<std::size_t>(n));
     const double sigma = most * k / per_clean;
     std::vector<double> x, y, yaw, both;
-    for (const Action& action : actions) {
+    for (const TwoPoses action : actions) {
       for (const auto& [pose, clean] :
            {std::pair(action.pose0, environment.first.pose0), {action.pose1, environment.first.pose1}}) {
         x.push_back((pose.position_m.x - clean.position_m.x) / (.25 * sigma));
@@ -103,9 +108,9 @@ TEST(Dart, AddsOnePairForEachRolloutThatIsNotDropped) {
     const std::vector<Demonstration> all = demonstrations(environment, 3);
     for (const Demonstration& d : all)
       for (std::size_t i = 0; i < d.steps.size(); ++i) {  // noiseless, and of the state reached
-        const Action& expected = i == 0 ? environment.first : environment.second;
-        EXPECT_NEAR(d.steps[i].label.pose0.position_m.x, expected.pose0.position_m.x, 1e-6);
-        EXPECT_NEAR(d.steps[i].label.pose1.position_m.y, expected.pose1.position_m.y, 1e-6);
+        const TwoPoses expected = i == 0 ? environment.first : environment.second, label = d.steps[i].label;
+        EXPECT_NEAR(label.pose0.position_m.x, expected.pose0.position_m.x, 1e-6);
+        EXPECT_NEAR(label.pose1.position_m.y, expected.pose1.position_m.y, 1e-6);
       }
     return all.front().steps.size();
   };

@@ -11,12 +11,15 @@
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "../engine_under_test.hpp"
 #include "testing.hpp"
 
 namespace lgabench {
 namespace {
+
+using tabletop::TwoPoses;
 
 class Play : public ::testing::Test, public TemporaryDirectory {
  protected:
@@ -62,7 +65,7 @@ TEST_F(Play, TheFirstStepIsTheOraclesOnTheUntouchedScene) {
     const Demonstration& d = all[static_cast<std::size_t>(i)];
     EXPECT_EQ(d.steps.front().observation.rgb, seen.rgb);
     EXPECT_EQ(d.steps.front().observation.ids, seen.ids);
-    EXPECT_EQ(to_vector(d.steps.front().label), to_vector(environment->expert_action()));
+    EXPECT_EQ(d.steps.front().label, recorded(environment->action_space(), environment->expert_action()));
     EXPECT_TRUE(environment->step(d.steps.front().label).is_success) << "a label of a file's precision still succeeds";
   }
 }
@@ -82,7 +85,8 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
   // Without noise the action succeeds: the state after it has the target on the goal, and the oracle goes there.
   const auto still = demonstrate(*environment, scenes(1), {Needs::Targets::truth, 1, 0.0}, {""});
   ASSERT_EQ(still[0].steps.size(), 2u);
-  EXPECT_NEAR(still[0].steps[1].label.pose0.position_m.y, still[0].steps[0].label.pose1.position_m.y, .02);
+  EXPECT_NEAR(TwoPoses(still[0].steps[1].label).pose0.position_m.y,
+              TwoPoses(still[0].steps[0].label).pose1.position_m.y, .02);
 }
 
 TEST_F(Play, FileReadsBackAsItWasWritten) {
@@ -100,8 +104,7 @@ TEST_F(Play, FileReadsBackAsItWasWritten) {
       EXPECT_EQ(a.observation.ids, b.observation.ids);
       EXPECT_EQ(a.observation.instances.size(), b.observation.instances.size());
       EXPECT_EQ(a.observation.instances.back().texture, b.observation.instances.back().texture);
-      EXPECT_EQ(a.label.pose0.position_m.x, b.label.pose0.position_m.x) << "to the last bit: cached trains as fresh";
-      EXPECT_EQ(a.label.pose1.rotation.z, b.label.pose1.rotation.z);
+      EXPECT_EQ(a.label, b.label) << "to the last bit: cached trains as fresh";
     }
   }
 }
@@ -180,7 +183,7 @@ class Sometimes : public Policy {
   explicit Sometimes(int way) : way_(way) {}
   void reset() override { ++resets; }
   Action act(const Observation&, const Instruction&) override {
-    Action action;
+    TwoPoses action;
     action.pose0.position_m = action.pose1.position_m = {.5, 0};
     if (resets % 3 != 0) return action;
     if (way_ == 0) throw 42;
@@ -218,7 +221,7 @@ class Telling : public Policy {
  public:
   Action act(const Observation&, const Instruction&) override {
     ++acts_;
-    return {{{.5, 0}, {}}, {{.5, 0}, {}}};
+    return TwoPoses{{{.5, 0}, {}}, {{.5, 0}, {}}};
   }
   std::optional<bool> seen_in_training() const override { return acts_ % 2 == 0; }
 
@@ -259,9 +262,9 @@ class OnlyWith : public Policy {
  public:
   OnlyWith(FeatureSet key, std::function<Action()> oracle) : key_(std::move(key)), oracle_(std::move(oracle)) {}
   Action act(const Observation&, const Instruction& instruction) override {
-    Action nothing;
+    TwoPoses nothing;
     nothing.pose0.position_m = nothing.pose1.position_m = {.26, .49};
-    return instruction.selection.target == key_ ? oracle_() : nothing;
+    return instruction.selection.target == key_ ? oracle_() : Action(nothing);
   }
 
  private:
@@ -363,7 +366,7 @@ TEST_F(Play, ImperfectTextualizationChangesWhatAPolicySeesAndNothingElse) {
 TEST(Constant, IsTheMedoidOfTheLabels) {
   std::vector<Demonstration> demonstrations;
   for (const double y : {.4, -.1, 0.0, .05, -.3}) {
-    Action action;
+    TwoPoses action;
     action.pose0.position_m = {.5, y};
     demonstrations.push_back({{}, {{Observation{}, action}}});
   }
@@ -382,9 +385,9 @@ TEST(Constant, IsTheMedoidOfTheLabels) {
     Selection edit(const Command&, const Selection&) override { return {}; }
   } human;
   const Json options = Json::object();
-  Services services{lm, human, options, 0, log};
+  Services services{lm, human, options, 0, log, tabletop::two_poses()};
   // Summed distances: .4 1.85, -.1 .95, 0 .85, .05 .90, -.3 1.55
-  EXPECT_FLOAT_EQ(to_vector(method.learn(demonstrations, services)->act({}, {}))[1], 0.0f);
+  EXPECT_EQ(method.learn(demonstrations, services)->act({}, {})[1], 0);
   EXPECT_THROW(method.learn({}, services), MethodError);
 }
 

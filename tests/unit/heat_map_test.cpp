@@ -11,11 +11,16 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/heat_map.hpp>
 #include <lgabench/learning/training.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench {
 namespace {
 
-constexpr int rows = Observation::rows, columns = Observation::columns;
+using tabletop::TwoPoses;
+using tabletop::Workspace;
+
+constexpr PictureSize native_size = Workspace::picture;
+constexpr int rows = Workspace::rows, columns = Workspace::columns;
 constexpr double pixel = 1. / columns;  // m
 const Vec2 goal{.5, .3};
 
@@ -25,8 +30,8 @@ struct Silent : TrainingLog {
 
 Vec2 place(int row, int column) { return {Workspace::x_min + row * pixel, Workspace::y_min + column * pixel}; }
 
-void set_label(Samples& samples, int row, const Action& action) {
-  const ActionVector values = to_vector(action);
+void set_label(Samples& samples, int row, const TwoPoses& action) {
+  const Action values = recorded(tabletop::two_poses(), action);
   std::copy(values.begin(), values.end(), samples.labels.begin() + row * std::ptrdiff_t{12});
 }
 
@@ -35,10 +40,9 @@ void paint(Samples& samples, int row, int top, int left, int height, int width, 
   for (int r = top; r < top + height; ++r) std::fill_n(samples.picture(0, row) + r * columns + left, width, value);
 }
 
-Action predicted(HeatMap& policy, const Samples& samples) {
-  ActionVector action;
-  std::copy_n(policy.predict(samples).begin(), action.size(), action.begin());
-  return from_vector(action);
+TwoPoses predicted(HeatMap& policy, const Samples& samples) {
+  const std::vector<float>& action = policy.predict(samples);
+  return Action(action.begin(), action.end());
 }
 
 void train(HeatMap& policy, const Samples& samples) {
@@ -46,11 +50,12 @@ void train(HeatMap& policy, const Samples& samples) {
   train(policy, samples, {}, 5, log);
 }
 
-const SampleShape one_mask{{{native_size, 1}}}, colours{{{HeatMap::rgb_size, 3}}};
+const SampleShape one_mask{{{native_size, 1}}, false, tabletop::two_poses()},
+    colours{{{HeatMap::rgb_size, 3}}, false, tabletop::two_poses()};
 
 // Two demonstrations push one way, two the other, so that there are two groups.
 TEST(HeatMap, HasTheGradientsOfFiniteDifferences) {
-  Samples samples({{{native_size, 1}, {HeatMap::rgb_size, 3}}, true}, 4);
+  Samples samples({{{native_size, 1}, {HeatMap::rgb_size, 3}}, true, tabletop::two_poses()}, 4);
   RandomStream random("heat map");
   for (int row = 0; row < samples.rows; ++row) {
     const int top = static_cast<int>(random.below(90)), left = 20 + static_cast<int>(random.below(180));
@@ -115,7 +120,7 @@ TEST(HeatMap, LearnsWhichPartOfTheTargetToTake) {
   train(policy, samples);
   for (int trial = 0; trial < 10; ++trial) {
     const Vec2 end = draw(probe, 0);
-    const Action action = predicted(policy, probe);
+    const TwoPoses action = predicted(policy, probe);
     EXPECT_LT(norm(action.pose0.position_m - end), .02) << trial;
     EXPECT_LT(norm(action.pose1.position_m - goal), .01) << trial;
   }
@@ -159,14 +164,14 @@ TEST(HeatMap, LearnsOfTwoWaysTheOneThatTheSceneAsksFor) {
     paint(samples, row, top, left, 20, 20, 1);
     paint(samples, row, top, left + side * 40, 16, 16, -1);
     const Vec2 middle = place(top + 10, left + 10);
-    return Action{{middle + Vec2{0, side * .08}, {}}, {{middle.x, -side * .4}, {}}};
+    return TwoPoses{{middle + Vec2{0, side * .08}, {}}, {{middle.x, -side * .4}, {}}};
   };
   Samples samples(one_mask, 10), probe(one_mask, 1);
   for (int row = 0; row < samples.rows; ++row) set_label(samples, row, draw(samples, row));
   HeatMap policy(one_mask, 7);
   train(policy, samples);
   for (int trial = 0; trial < 10; ++trial) {
-    const Action wanted = draw(probe, 0), action = predicted(policy, probe);
+    const TwoPoses wanted = draw(probe, 0), action = predicted(policy, probe);
     EXPECT_LT(norm(action.pose0.position_m - wanted.pose0.position_m), .02) << trial;
     EXPECT_LT(norm(action.pose1.position_m - wanted.pose1.position_m), .02) << trial;
   }
@@ -180,13 +185,13 @@ TEST(HeatMap, MovesRelativeToTheSecondSetWhereTheDemonstrationsDo) {
     std::fill_n(samples.picture(0, row), rows * columns, 0.f);
     paint(samples, row, left, left, 20, 20, 1);
     paint(samples, row, 40, onto, 20, 20, -1);
-    return Action{{place(left + 10, left + 10), {}}, {place(50, onto + 10), {}}};
+    return TwoPoses{{place(left + 10, left + 10), {}}, {place(50, onto + 10), {}}};
   };
   Samples samples(one_mask, 5), probe(one_mask, 1);
   for (int row = 0; row < samples.rows; ++row) set_label(samples, row, draw(samples, row));
   HeatMap policy(one_mask, 7);
   policy.begin(samples);
-  const Action wanted = draw(probe, 0);
+  const TwoPoses wanted = draw(probe, 0);
   EXPECT_LT(norm(predicted(policy, probe).pose1.position_m - wanted.pose1.position_m), 1e-3);
 }
 
@@ -202,10 +207,10 @@ TEST(HeatMap, LearnsFromOneDemonstrationAndActsOnAnEmptyMask) {
     EXPECT_EQ(policy.parameters(), std::vector<float>{}) << "before begin()";
     train(policy, samples);
     for (const float p : policy.parameters()) ASSERT_TRUE(std::isfinite(p));
-    const Action empty = predicted(policy, probe);
+    const TwoPoses empty = predicted(policy, probe);
     EXPECT_LT(norm(empty.pose0.position_m - place(50, 70)), 1e-6) << "the mean action";
     paint(probe, 0, 90, 150, 20, 20, 1);
-    const Action action = predicted(policy, probe);
+    const TwoPoses action = predicted(policy, probe);
     EXPECT_LT(norm(action.pose0.position_m - place(100, 160)), .01);
     EXPECT_LT(norm(action.pose1.position_m - goal), 1e-6);
     EXPECT_NEAR(yaw_of(action.pose1.rotation), 2, 1e-6);
@@ -247,7 +252,8 @@ TEST(HeatMap, TakesThreeHundredStepsHoweverManySamplesThereAre) {
 
 TEST(HeatMap, RefusesRowsWithoutPicturesOrOfAnotherSize) {
   for (const SampleShape& shape :
-       {SampleShape{{}, true}, SampleShape{{{input_size, 1}}}, SampleShape{{{native_size, 3}}}})
+       {SampleShape{{}, true, tabletop::two_poses()}, SampleShape{{{input_size, 1}}, false, tabletop::two_poses()},
+        SampleShape{{{native_size, 3}}, false, tabletop::two_poses()}, SampleShape{{{native_size, 1}}}})
     EXPECT_THROW(HeatMap policy(shape, 1), InputError);
 }
 

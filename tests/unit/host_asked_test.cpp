@@ -99,7 +99,8 @@ class AskedTest : public testing::Test {
   Person person_;
   NoLog log_;
   Json options_ = Json::object();
-  Services services_{model_, person_, options_, 0, log_};
+  ActionSpace actions_;
+  Services services_{model_, person_, options_, 0, log_, actions_};
   Asked asked_{space, services_};
   std::unique_ptr<Channel> worker_, host_;
 };

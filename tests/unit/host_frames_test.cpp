@@ -144,13 +144,13 @@ TEST(Frames, leave_no_descriptor_behind_whatever_a_peer_attaches) {
 
 TEST(Messages, actions_keep_what_is_no_number) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  const Action action{{{.1, nan}, {0, 1, 2, infinity}}, {{-0.0, 1e-320}, {3, 4, 5, 6}}};
-  const Action back = protocol::read_action(protocol::to_bytes(action));
-  EXPECT_TRUE(std::isnan(back.pose0.position_m.y));
-  EXPECT_EQ(back.pose0.rotation.w, infinity);
-  EXPECT_TRUE(std::signbit(back.pose1.position_m.x));
+  const Action action{.1, nan, infinity, -0.0, 1e-320};
+  const Action back = protocol::read_action(protocol::to_bytes(action), 5);
+  EXPECT_TRUE(std::isnan(back[1]));
+  EXPECT_EQ(back[2], infinity);
+  EXPECT_TRUE(std::signbit(back[3]));
   EXPECT_EQ(protocol::to_bytes(back), protocol::to_bytes(action));
-  EXPECT_SAYS(message_of<InputError>([] { protocol::read_action("short"); }), "expected 96 bytes");
+  EXPECT_SAYS(message_of<InputError>([] { protocol::read_action("short", 12); }), "expected 96 bytes, 12 doubles");
 }
 
 TEST(Messages, a_log_arrives_as_it_was_reported) {
@@ -184,10 +184,14 @@ TEST(Messages, a_log_arrives_as_it_was_reported) {
   EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}, {"curves", {{"a"}}}}, std::string(8, 0)), "and curve");
 }
 
+// No environment's that there is.
+const protocol::Layout layout{{30, 40}, {{{"u", "", 0, 1}, {"angle", "", -1, 1}}, {}, {}}};
+
 Observation observation(std::uint8_t colour) {
   Observation o;
-  o.rgb.assign(std::size_t{3} * Observation::rows * Observation::columns, colour);
-  o.ids.assign(std::size_t{Observation::rows} * Observation::columns, 0);
+  o.size = layout.picture;
+  o.rgb.assign(3 * o.size.pixels(), colour);
+  o.ids.assign(o.size.pixels(), 0);
   o.ids[5] = 9;
   o.instances = {{9, "heart", "red", 1}, {3, "pallet", "plain", 0}};
   return o;
@@ -200,13 +204,12 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
   selection.provenance = Provenance::cassette;
   selection.source = "a model";
   const std::vector<Demonstration> given{
-      {{"Bring me the heart.", selection},
-       {{observation(1), {{{.3, .1}, {}}, {{.4, .2}, {0, 0, 1, 0}}}}, {observation(2), {}}}},
+      {{"Bring me the heart.", selection}, {{observation(1), {.3, -1}}, {observation(2), {0, 0}}}},
       {{"none", {}}, {}},
-      {{"other", {}}, {{observation(3), {}}}}};
-  const protocol::DemonstrationFile packed = protocol::pack(given);
+      {{"other", {}}, {{observation(3), {1, .5}}}}};
+  const protocol::DemonstrationFile packed = protocol::pack(layout, given);
   const Json header = Json::parse(packed.header.dump());
-  const auto read = protocol::unpack(JsonReader(header, "learn"), packed.file);
+  const auto read = protocol::unpack(layout, JsonReader(header, "learn"), packed.file);
   ASSERT_EQ(read.size(), given.size());
   for (std::size_t d = 0; d < given.size(); ++d) {
     EXPECT_EQ(read[d].instruction.utterance, given[d].instruction.utterance);
@@ -222,19 +225,31 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
   }
   Json beyond = header;
   beyond["arrays"]["ids"]["offset"] = packed.size;
-  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(JsonReader(beyond, "learn"), packed.file); }),
+  EXPECT_SAYS(message_of<InputError>([&] { protocol::unpack(layout, JsonReader(beyond, "learn"), packed.file); }),
               "an array within the file");
 }
 
 TEST(Messages, an_observation_arrives_through_shared_memory) {
-  protocol::SharedMemory memory(protocol::observation_bytes);
+  protocol::SharedMemory memory(protocol::observation_bytes(layout.picture));
   protocol::write(observation(7), memory);
   const Json instances = protocol::instances_json(observation(7));
   Observation read;
-  protocol::read_observation(memory, JsonReader(instances, "act"), read);
+  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), read);
+  EXPECT_EQ(read.size, layout.picture);
   EXPECT_EQ(read.rgb, observation(7).rgb);
   EXPECT_EQ(read.ids, observation(7).ids);
   EXPECT_EQ(protocol::instances_json(read), instances);
+  Observation larger = observation(7);
+  larger.size = {31, 40};
+  EXPECT_SAYS(message_of<Error>([&] { protocol::write(larger, memory); }), "got 31 x 40");
+}
+
+TEST(Messages, a_layout_arrives_as_it_was_said) {
+  const Json json = protocol::to_json(layout);
+  EXPECT_EQ(protocol::to_json(protocol::read_layout({json, "hello"})), json);
+  Json none = json;
+  none["observation"]["rows"] = 0;
+  EXPECT_SAYS(message_of<InputError>([&] { protocol::read_layout({none, "hello"}); }), "/observation/rows");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/learning/network.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace {
 long long allocations = 0;  // of this program and its libraries
@@ -61,8 +62,9 @@ class Acting : public testing::TestWithParam<const char*> {};
 
 TEST_P(Acting, OnTheGoalMaskMakesNoAllocation) {
   Observation seen;
-  seen.rgb.resize(std::size_t{Observation::rows} * Observation::columns * 3);
-  seen.ids.resize(std::size_t{Observation::rows} * Observation::columns);
+  seen.size = tabletop::Workspace::picture;
+  seen.rgb.resize(3 * seen.size.pixels());
+  seen.ids.resize(seen.size.pixels());
   std::fill_n(seen.ids.begin() + 3000, 40, std::uint8_t{3});
   seen.instances = {{3, "heart", "red", 40}};
   Instruction instruction{"Bring me the red heart.", {}};
@@ -74,14 +76,14 @@ TEST_P(Acting, OnTheGoalMaskMakesNoAllocation) {
   Silent log;
   const Json options = {{"epochs", 1},           {"batch_size", 10},  {"learning_rate", 1e-3}, {"loss", "norm"},
                         {"batches", "shuffled"}, {"network", "text"}, {"policy", GetParam()}};
-  Services services{lm, human, options, 0, log};
-  const auto policy = MaskCloner().learn({{instruction, {{seen, {}}}}}, services);
+  Services services{lm, human, options, 0, log, tabletop::two_poses()};
+  const auto policy = MaskCloner().learn({{instruction, {{seen, tabletop::TwoPoses{}}}}}, services);
 
-  const ActionVector first = to_vector(policy->act(seen, instruction));
+  const Action first = policy->act(seen, instruction);
   const long long before = allocations;
   const Action again = policy->act(seen, instruction);
   EXPECT_EQ(allocations, before);
-  EXPECT_EQ(to_vector(again), first);
+  EXPECT_EQ(again, first);
 }
 
 INSTANTIATE_TEST_SUITE_P(Policies, Acting, testing::Values("regression", "centroid", "heat_map"));

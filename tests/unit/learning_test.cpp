@@ -16,11 +16,16 @@
 #include <lgabench/learning/network.hpp>
 #include <lgabench/learning/training.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench {
 namespace {
 
-constexpr int rows = Observation::rows, columns = Observation::columns;
+using tabletop::TwoPoses;
+using tabletop::Workspace;
+
+constexpr PictureSize native_size = Workspace::picture;
+constexpr int rows = Workspace::rows, columns = Workspace::columns;
 
 // Length over which small pixel `small` of `count` lies on native pixel `pixel` of `native`, in native pixels.
 double overlap(int small, int count, int pixel, int native) {
@@ -42,7 +47,7 @@ TEST(Inputs, ASmallMaskPixelIsOneIfItTouchesAnyNativeOne) {
           if (128 * r < 36 * (y + 1) && 36 * y < 128 * (r + 1) && 256 * c < 72 * (x + 1) && 72 * x < 256 * (c + 1))
             expected[static_cast<std::size_t>(r * input_columns + c)] = 1;
     }
-    shrink_mask(mask, input_size, small.data());
+    shrink_mask(mask, native_size, input_size, small.data());
     ASSERT_EQ(small, expected) << "trial " << trial;
   }
 }
@@ -52,7 +57,7 @@ TEST(Inputs, RgbIsTheAreaMeanOver255) {
   std::vector<std::uint8_t> rgb(rows * columns * 3);
   for (auto& byte : rgb) byte = static_cast<std::uint8_t>(random.below(256));
   std::vector<float> small(3 * input_pixels);
-  shrink_rgb(rgb, input_size, small.data());
+  shrink_rgb(rgb, native_size, input_size, small.data());
   const double area = 128.0 / 36 * 256.0 / 72;
   for (int channel = 0; channel < 3; ++channel)
     for (const int r : {0, 1, 17, 35})
@@ -69,8 +74,9 @@ TEST(Inputs, RgbIsTheAreaMeanOver255) {
 
 TEST(Inputs, RefusePicturesOfAnotherSize) {
   std::vector<float> out(3 * input_pixels);
-  EXPECT_THROW(shrink_mask(std::vector<std::uint8_t>(rows * columns - 1), input_size, out.data()), InputError);
-  EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), input_size, out.data()), InputError);
+  EXPECT_THROW(shrink_mask(std::vector<std::uint8_t>(rows * columns - 1), native_size, input_size, out.data()),
+               InputError);
+  EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), native_size, input_size, out.data()), InputError);
 }
 
 TEST(Losses, HaveTheGradientOfFiniteDifferences) {
@@ -79,13 +85,13 @@ TEST(Losses, HaveTheGradientOfFiniteDifferences) {
   for (auto* values : {&output, &label})
     for (float& v : *values) v = static_cast<float>(random.gaussian());
   for (const Loss loss : {Loss::norm, Loss::squared}) {
-    loss_and_gradient(loss, output.data(), label.data(), .1, gradient.data());
+    loss_and_gradient(loss, output.data(), label.data(), 12, .1, gradient.data());
     for (std::size_t i = 0; i < output.size(); ++i) {
       const float step = 0x1p-8f, here = output[i];
       output[i] = here + step;
-      const double above = loss_and_gradient(loss, output.data(), label.data(), 1, unused.data());
+      const double above = loss_and_gradient(loss, output.data(), label.data(), 12, 1, unused.data());
       output[i] = here - step;
-      const double below = loss_and_gradient(loss, output.data(), label.data(), 1, unused.data());
+      const double below = loss_and_gradient(loss, output.data(), label.data(), 12, 1, unused.data());
       output[i] = here;
       EXPECT_NEAR(gradient[i], .1 * (above - below) / (2 * step), 1e-5);
     }
@@ -94,14 +100,14 @@ TEST(Losses, HaveTheGradientOfFiniteDifferences) {
 
 TEST(Losses, ArePlainNumbersAndTheNormsSubgradientAtZeroIsZero) {
   std::vector<float> output(12), label(12), gradient(12, NAN);
-  EXPECT_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), .5, gradient.data()), 0);
+  EXPECT_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), 12, .5, gradient.data()), 0);
   for (const float number : gradient) EXPECT_EQ(number, 0);
   output[0] = 3;
   output[1] = 4;
-  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), .5, gradient.data()), 5);
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::norm, output.data(), label.data(), 12, .5, gradient.data()), 5);
   EXPECT_FLOAT_EQ(gradient[0], .3f);  // 3/5, halved by the weight
   EXPECT_FLOAT_EQ(gradient[1], .4f);
-  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::squared, output.data(), label.data(), .5, gradient.data()), 25);
+  EXPECT_DOUBLE_EQ(loss_and_gradient(Loss::squared, output.data(), label.data(), 12, .5, gradient.data()), 25);
 }
 
 TEST(Network, StartsUniformWithinOneOverTheRootOfFanIn) {
@@ -267,6 +273,7 @@ Instruction instruction() {
 // A red heart and a blue star, squares of 40 pixels at the given corners.
 Observation scene(int heart_row, int heart_column, int star_row, int star_column) {
   Observation o;
+  o.size = native_size;
   o.rgb.assign(rows * columns * 3, 80);
   o.ids.resize(rows * columns);
   o.instances = {{7, "star", "blue", 1600}, {3, "heart", "red", 1600}};
@@ -290,7 +297,8 @@ std::vector<Demonstration> demonstrations(int count, int steps_each = 1) {
     for (int k = 0; k < steps_each; ++k) {
       const int row = static_cast<int>(random.below(40)), column = static_cast<int>(random.below(216));
       const Vec2 centre{.25 + (row + 20) / 256.0, -.5 + (column + 20) / 256.0};
-      d.steps.push_back({scene(row, column, 80, static_cast<int>(random.below(216))), {{centre, {}}, {{.5, .3}, {}}}});
+      d.steps.push_back(
+          {scene(row, column, 80, static_cast<int>(random.below(216))), TwoPoses{{centre, {}}, {{.5, .3}, {}}}});
     }
     all.push_back(std::move(d));
   }
@@ -311,13 +319,13 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
   RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
-  Services services{lm, human, options, seed, log};
+  Services services{lm, human, options, seed, log, tabletop::two_poses()};
   auto policy = Cloner(seen).learn(data, services);
   return {std::move(policy), log.lines};
 }
 
-ActionVector act(const Trained& trained, const Observation& observation) {
-  return to_vector(trained.policy->act(observation, instruction()));
+Action act(const Trained& trained, const Observation& observation) {
+  return trained.policy->act(observation, instruction());
 }
 
 // Counts its calls; its one parameter is the sum of the learning rates.
@@ -376,7 +384,7 @@ TEST(Learners, OfAMethodsOwnAreShownTrainedLoggedAndPlayed) {
     for (const bool cosine : {false, true}) {
       Counting::Calls calls;
       Lines log;
-      Services services{lm, human, options, 3, log};
+      Services services{lm, human, options, 3, log, tabletop::two_poses()};
       const auto policy = WithCounting(calls, cosine).learn(demonstrations(count), services);
       EXPECT_EQ(calls.rows, count);
       EXPECT_EQ(calls.batches, std::vector<std::size_t>(count == 3 ? 4 : 8, count == 3 ? 3 : 10));
@@ -386,7 +394,7 @@ TEST(Learners, OfAMethodsOwnAreShownTrainedLoggedAndPlayed) {
         const double part = static_cast<double>(step) / static_cast<double>(calls.rates.size());
         EXPECT_NEAR(calls.rates[step], cosine ? .25 * (1 + std::cos(pi * part)) : .5, 1e-12);
       }
-      EXPECT_EQ(to_vector(policy->act(scene(10, 100, 80, 30), instruction()))[0], .25f);
+      EXPECT_EQ(policy->act(scene(10, 100, 80, 30), instruction())[0], .25f);
       EXPECT_EQ(policy->seen_in_training(), false);
     }
 }
@@ -398,8 +406,8 @@ TEST(Training, OverfitsTenDemonstrations) {
     EXPECT_GT(trained.log.front().loss, .1);
     EXPECT_LT(trained.log.back().loss, .05);
     for (const Demonstration& d : data) {
-      const Action action = trained.policy->act(d.steps[0].observation, instruction());
-      EXPECT_LT(norm(action.pose0.position_m - d.steps[0].label.pose0.position_m), .1);
+      const TwoPoses action = trained.policy->act(d.steps[0].observation, instruction());
+      EXPECT_LT(norm(action.pose0.position_m - TwoPoses(d.steps[0].label).pose0.position_m), .1);
     }
   }
   EXPECT_TRUE(denormals_flushed());
@@ -433,7 +441,7 @@ TEST(Training, OptionsChangeWhatIsLearned) {
   const auto data = demonstrations(10);
   const PolicyInputs seen{{Picture::mask}};
   const Observation probe = scene(10, 100, 80, 30);
-  const ActionVector usual = act(learn(seen, data, 5), probe);
+  const Action usual = act(learn(seen, data, 5), probe);
   for (const Json& change :
        {Json{{"loss", "squared"}}, Json{{"network", "plain"}}, Json{{"network", "released"}},
         Json{{"batches", "drawn"}}, Json{{"learning_rate", 2e-3}}, Json{{"batch_size", 5}}, Json{{"epochs", 6}}})
@@ -448,7 +456,7 @@ TEST(Training, RefusesWhatItCannotLearnFrom) {
   EXPECT_THROW(learn(text, unknown, 1), InputError);
   EXPECT_THROW(learn(mask, demonstrations(1), 0), InputError);
   auto broken = demonstrations(2);
-  broken[1].steps[0].label.pose0.position_m.x = NAN;
+  broken[1].steps[0].label[0] = NAN;
   EXPECT_THROW(learn(mask, broken, 1), MethodError);
 }
 
@@ -471,7 +479,7 @@ TEST(Policies, SeeWhatTheirInputsShowAndNothingElse) {
   EXPECT_NE(act(rgb, recoloured), act(rgb, here));
   Instruction other = instruction();
   other.utterance = "Bring me the heart.";
-  EXPECT_NE(to_vector(rgb.policy->act(here, other)), act(rgb, here));
+  EXPECT_NE(rgb.policy->act(here, other), act(rgb, here));
 }
 
 TEST(Policies, MaskTheSelectionOfTheirInputsWhereThereIsOne) {
@@ -541,7 +549,7 @@ TEST(Policies, OfCentroidsTakeTheMiddleOfTheMaskAndTrainNothing) {
   const auto data = demonstrations(10);
   const Trained centroid = learn({{Picture::mask, Picture::rgb}}, data, 5, 0, {{"policy", "centroid"}});
   EXPECT_TRUE(centroid.log.empty());
-  const Action action = centroid.policy->act(scene(10, 100, 80, 30), instruction());
+  const TwoPoses action = centroid.policy->act(scene(10, 100, 80, 30), instruction());
   EXPECT_NEAR(action.pose0.position_m.x, .25 + 30 / 256., 1e-6);
   EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
   EXPECT_NEAR(action.pose1.position_m.y, .3, 1e-6);
@@ -554,7 +562,7 @@ TEST(Policies, OfCentroidsTellTheTargetFromWhatIsToBeAvoided) {
   around_stars.selection.second = SecondSet{{{"star"}, {"blue"}}, "avoid"};
   for (Demonstration& d : data) d.instruction = around_stars;
   const Trained centroid = learn({{Picture::mask}}, data, 5, 0, {{"policy", "centroid"}});
-  const Action action = centroid.policy->act(scene(60, 100, 0, 30), around_stars);  // of equals the first is taken
+  const TwoPoses action = centroid.policy->act(scene(60, 100, 0, 30), around_stars);  // of equals the first is taken
   EXPECT_NEAR(action.pose0.position_m.x, .25 + 80 / 256., 1e-6);
   EXPECT_NEAR(action.pose0.position_m.y, -.5 + 120 / 256., 1e-6);
 }
@@ -566,7 +574,7 @@ TEST(Policies, SeeWhatIsToBeAvoidedApartWhereTheMaskIsSigned) {
   PolicyInputs seen{{Picture::mask}};
   for (const bool apart : {false, true}) {
     seen.signed_mask = apart;
-    Featurizer featurizer(seen);
+    Featurizer featurizer(seen, tabletop::two_poses());
     Samples row(featurizer.shape(), 1);
     featurizer.write(scene(0, 100, 80, 30), around_stars, Phase::test, row, 0);
     const auto at = [&](int y, int x) {
@@ -581,7 +589,7 @@ TEST(Policies, SeeWhatIsToBeAvoidedApartWhereTheMaskIsSigned) {
   for (Demonstration& d : data) d.instruction = around_stars;
   const Observation probe = scene(60, 100, 0, 30);
   const auto taught = [&](const char* mask) {
-    return to_vector(learn({{Picture::mask}}, data, 5, 0, {{"mask", mask}}).policy->act(probe, around_stars));
+    return learn({{Picture::mask}}, data, 5, 0, {{"mask", mask}}).policy->act(probe, around_stars);
   };
   EXPECT_NE(taught("signed"), taught("binary"));
 }
@@ -593,9 +601,9 @@ TEST(Inputs, ASmallPixelOfASignedMaskIsTheTargetsIfItTouchesIt) {
   roles[1] = target_role;
   roles[8] = second_role;
   std::vector<float> small(input_pixels), native(rows * columns);
-  shrink_mask(roles, input_size, small.data());
+  shrink_mask(roles, native_size, input_size, small.data());
   EXPECT_EQ(std::vector<float>(small.begin(), small.begin() + 4), (std::vector<float>{1, 0, -1, 0}));
-  shrink_mask(roles, native_size, native.data());
+  shrink_mask(roles, native_size, native_size, native.data());
   EXPECT_EQ(std::vector<float>(native.begin(), native.begin() + 3), (std::vector<float>{-1, 1, 0}));
   EXPECT_EQ(native[8], -1);
 }
@@ -615,7 +623,7 @@ TEST(Policies, MayBeShownAPictureOfTheMethodsOwn) {
   };
   const Trained trained = learn(own, data, 5);
   EXPECT_EQ(calls, (std::map<Phase, int>{{Phase::training, 10}}));
-  const ActionVector shown = act(trained, probe);
+  const Action shown = act(trained, probe);
   EXPECT_EQ(calls[Phase::test], 1);
   Observation inverted = probe;
   for (std::uint8_t& byte : inverted.rgb) byte = static_cast<std::uint8_t>(255 - byte);
@@ -641,8 +649,9 @@ TEST(Policies, OfHeatMapsSeeAllInputs) {
   rgb.policy->act(probe, other);
   EXPECT_EQ(rgb.policy->seen_in_training(), false);
   const Trained all = learn({{Picture::rgb, Picture::mask}}, data, 1, 0, heat_map);
-  EXPECT_LT(norm(all.policy->act(probe, instruction()).pose0.position_m - Vec2{.25 + 50 / 256., -.5 + 120 / 256.}),
-            .05);
+  EXPECT_LT(
+      norm(TwoPoses(all.policy->act(probe, instruction())).pose0.position_m - Vec2{.25 + 50 / 256., -.5 + 120 / 256.}),
+      .05);
   EXPECT_THROW(learn({{}, Text::utterance}, data, 1, 0, heat_map), InputError);
 }
 
@@ -665,7 +674,7 @@ TEST(Policies, OfAnyObjectDoNotSeeTheTypeThatIsLeftOut) {
 TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Trained trained = learn({{Picture::mask, Picture::rgb}, Text::utterance}, demonstrations(10), 5);
   const Observation probe = scene(10, 100, 80, 30);
-  const ActionVector first = act(trained, probe);
+  const Action first = act(trained, probe);
   act(trained, scene(0, 0, 80, 200));
   EXPECT_EQ(act(trained, probe), first);
 }
@@ -746,13 +755,13 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Lines log;
-    Services services{lm, human, options, 0, log};
+    Services services{lm, human, options, 0, log, tabletop::two_poses()};
     services.truth = [&blue_stars](const Command&) { return blue_stars; };
     auto method = load_method(plugin);
     EXPECT_EQ(method->select(scenario.command(0), scenario.space, services).provenance, Provenance::recorded);
     const auto policy = method->learn(data, services);
     method.reset();  // a policy outlives its method
-    const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
+    const auto action = [&](const Observation& o) { return policy->act(o, instruction()); };
     EXPECT_EQ(action(star_moved) != action(here), star) << input;
     EXPECT_EQ(action(heart_moved) != action(here), heart) << input;
     EXPECT_EQ(action(with_pallet(star_moved)) != action(with_pallet(here)), pallet) << input;
@@ -777,7 +786,7 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
-  Services services{lm, human, options, 0, log};
+  Services services{lm, human, options, 0, log, tabletop::two_poses()};
   const auto method = load_method(plugin);
   const Selection selection = method->select(scenario.command(0), scenario.space, services);
   EXPECT_EQ(selection.cost.lm_queries, GetParam().queries);
@@ -791,7 +800,7 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   const auto policy = method->learn(demonstrations(10), services);
   const Observation probe = scene(10, 100, 80, 30), star_moved = scene(10, 100, 80, 150),
                     heart_moved = scene(30, 10, 80, 30);
-  const auto action = [&](const Observation& o) { return to_vector(policy->act(o, instruction())); };
+  const auto action = [&](const Observation& o) { return policy->act(o, instruction()); };
   EXPECT_EQ(action(probe) != action(star_moved), GetParam().star);
   EXPECT_EQ(action(probe) != action(heart_moved), GetParam().heart);
 }
@@ -805,7 +814,7 @@ long long steps_of_a_pass(const char* dart, std::uint64_t seed, std::vector<doub
   RecordedLanguageModel lm(scenario, scenario.recorded);
   TruthAsHuman human(scenario.commands);
   Lines log;
-  Services services{lm, human, options, seed, log};
+  Services services{lm, human, options, seed, log, tabletop::two_poses()};
   load_method(plugin)->learn(demonstrations(10), services);
   if (losses) losses->push_back(log.lines.back().loss);
   return log.lines.back().steps;
@@ -831,10 +840,10 @@ TEST(ShippedMethodsOptions, PictureGivesTheMasksMethodsTheInputOfLgaS) {
     overrides["epochs"] = 3;
     const PluginInfo& plugin = catalogue.find("method", id);
     const Json options = resolve_options(plugin, overrides);
-    Services services{lm, human, options, 0, log};
-    return to_vector(load_method(plugin)->learn(demonstrations(10), services)->act(probe, instruction()));
+    Services services{lm, human, options, 0, log, tabletop::two_poses()};
+    return load_method(plugin)->learn(demonstrations(10), services)->act(probe, instruction());
   };
-  const ActionVector both = action("lga_s", Json::object());
+  const Action both = action("lga_s", Json::object());
   for (const char* id : {"lga", "lga_hill", "human"}) {
     EXPECT_EQ(action(id, {{"picture", "rgb"}}), both) << id;
     EXPECT_NE(action(id, Json::object()), both) << id;

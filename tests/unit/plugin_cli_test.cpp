@@ -90,8 +90,8 @@ TEST(InfoCommand, AnEnvironmentsTasksAndTheNumbersOfItsActions) {
   EXPECT_SAYS(said, "second set  avoid, the object to be avoided");
   EXPECT_SAYS(said, "pose1.y   -0.5 to 0.5 m");
   const Json json = Json::parse(lgabench("info tabletop --json").out);
-  EXPECT_EQ(json["action"].size(), 12u);
-  EXPECT_EQ(json["action"][2], (Json{{"name", "pose0.qx"}, {"unit", ""}, {"low", -1}, {"high", 1}}));
+  EXPECT_EQ(json["action"]["numbers"].size(), 12u);
+  EXPECT_EQ(json["action"]["numbers"][2], (Json{{"name", "pose0.qx"}, {"unit", ""}, {"low", -1}, {"high", 1}}));
   EXPECT_EQ(json["tasks"][0]["id"], "pick_and_place");
 }
 

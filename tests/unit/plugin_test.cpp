@@ -4,6 +4,7 @@
 #include <lgabench/plugin/fingerprint.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <tabletop/two_poses.hpp>
 
 #include "plugin_fixtures.hpp"
 
@@ -34,7 +35,7 @@ struct Host {
   NoHuman human;
   CountingLog log;
   Json options;
-  Services services{lm, human, options, 0, log};
+  Services services{lm, human, options, 0, log, tabletop::two_poses()};
 };
 
 TEST(Plugin, DescriptorIsReadFromTheBytes) {
@@ -55,7 +56,7 @@ TEST(Plugin, LoadedMethodLearnsAndActs) {
   std::vector<Demonstration> demonstrations(3);
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
     demonstrations[i].steps.resize(1);
-    demonstrations[i].steps[0].label.pose1.position_m = {0.25 + 0.125 * static_cast<double>(i), -0.25};
+    demonstrations[i].steps[0].label = {0.25 + 0.125 * static_cast<double>(i), -0.25};
   }
   std::unique_ptr<Policy> policy;
   {
@@ -64,8 +65,7 @@ TEST(Plugin, LoadedMethodLearnsAndActs) {
     policy = method->learn(demonstrations, host.services);
   }
   const Action action = policy->act({}, {});  // the policy outlives its method
-  EXPECT_EQ(action.pose1.position_m.x, 0.375);
-  EXPECT_EQ(action.pose1.position_m.y, -0.25);
+  EXPECT_EQ(action, (Action{0.375, -0.25}));
   EXPECT_EQ(host.log.last_epoch, 1);
   EXPECT_EQ(host.log.last_steps, 3);
 }
@@ -97,7 +97,7 @@ TEST(Plugin, FaultyMethodsFailWhenUsedNotWhenLoaded) {
             "plugin fixture_throw: the fixture's own failure");
 
   const Action nan = policy_of(read_plugin(fixture("faulty/fixture_nan")))->act({}, {});
-  EXPECT_THROW(executable(nan), MethodError);
+  EXPECT_THROW(executable(tabletop::two_poses(), nan), MethodError);
 
   const auto segfaulting = policy_of(read_plugin(fixture("faulty/fixture_segfault")));
   EXPECT_EXIT(

@@ -10,11 +10,12 @@
 #include <tabletop/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/textures.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
 namespace {
 
-constexpr int rows = Observation::rows, columns = Observation::columns;
+constexpr int rows = Workspace::rows, columns = Workspace::columns;
 constexpr double pixel_m = 1.0 / 256;
 
 std::size_t index(int row, int column) { return static_cast<std::size_t>(row * columns + column); }

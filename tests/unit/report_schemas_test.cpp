@@ -79,6 +79,21 @@ TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
   }
 }
 
+TEST(Schemas, AcceptThePapersMethods) {
+  const Json document = read_json(data_directory() / "paper" / "methods.json");
+  EXPECT_EQ(complaints("paper_methods", document), Complaints());
+  for (const auto& [where, value] : std::vector<std::pair<const char*, Json>>{{"/methods/0/mark", "star"},
+                                                                              {"/methods/0/colour", "blue"},
+                                                                              {"/references/0/id", "lga"},
+                                                                              {"/remarks/0/rows", Json::array()},
+                                                                              {"/remarks/0/rows/0", Json::object()},
+                                                                              {"/surprise", 1}}) {
+    Json broken = document;
+    broken[Json::json_pointer(where)] = value;
+    EXPECT_NE(complaints("paper_methods", broken), Complaints()) << where;
+  }
+}
+
 TEST(Schemas, AcceptThePapersClaims) {
   Json document = read_json(data_directory() / "paper" / "claims.json");
   EXPECT_EQ(complaints("paper_claims", document), Complaints());
@@ -107,7 +122,8 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"training", "/epoch", 0.5},
       {"episodes", "/failure", "Bad luck"},
       {"episodes", "/success", true},  // and a failure
-      {"episodes", "/action", {1, 2, 3}},
+      {"episodes", "/action", {1, "2", 3}},
+      {"episodes", "/action", Json::array()},
       {"episodes", "/command", -1},
       {"episodes", "/attribution", "luck"},
       {"episodes", "/input_seen", "yes"},

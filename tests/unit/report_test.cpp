@@ -47,6 +47,18 @@ TEST(Summary, VariantsOfAMethodAreRowsOfTheirOwn) {
   EXPECT_LT(variant, text.find("GCBC-DART")) << "a variant stands with its method";
 }
 
+TEST(Summary, TheHeadRemarksOnRowsThatThePapersMethodsNames) {
+  FabricatedRun run;
+  run.add({"lga", 15});
+  run.add({"lga_s", 15});
+  summary_of(run);
+  EXPECT_EQ(table_text(run.path).find("one method under two names"), std::string::npos) << "LGA sees no picture here";
+  run.add({"lga+network=plain+picture=rgb", 15});
+  summary_of(run);
+  EXPECT_SAYS(table_text(run.path), "one method under two names, as with picture=rgb LGA sees the picture too: LGA");
+  EXPECT_SAYS(table_text(run.path), "network=plain has no batch normalisation");
+}
+
 TEST(Summary, RowsHaveTheExactCounts) {
   FabricatedRun run;
   run.add({"lga", 15, "heart", 20, 0});

@@ -134,7 +134,7 @@ void check_roles(const Scenario& s, const Scene& scene) {
     ASSERT_EQ(goal->texture, "wooden");
     ASSERT_EQ(goal->yaw_rad, 0);
   }
-  ASSERT_EQ(scene.angle_rad != 0, s.task == "rotate");
+  ASSERT_EQ(asked_turn_rad(scene) != 0, s.task == "rotate");
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     ASSERT_EQ(scene.objects[i].instance_id, i + 1);
     ASSERT_TRUE(&scene.objects[i] == goal || scene.objects[i].object_type != "pallet");
@@ -416,17 +416,17 @@ TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
 TEST(Sampler, ClockwiseTurnsTheOtherWayAndChangesNothingElse) {
   const Scenario left = load_scenario("rotate_block");
   Json json = left.json;
-  const double turn = sample_scene(left, test_request("cells"), 0).angle_rad;
+  const double turn = asked_turn_rad(sample_scene(left, test_request("cells"), 0));
   EXPECT_NEAR(turn, 120 * 3.14159265358979323846 / 180, 1e-12);
   json["direction"] = "counter_clockwise";
-  EXPECT_EQ(sample_scene(read_scenario(json, "test"), test_request("cells"), 0).angle_rad, turn);
+  EXPECT_EQ(asked_turn_rad(sample_scene(read_scenario(json, "test"), test_request("cells"), 0)), turn);
   json["direction"] = "clockwise";
   const Scenario right = read_scenario(json, "test");
   for (int i = 0; i < 20; ++i) {
     const Scene a = sample_scene(left, test_request("continuous"), i),
                 b = sample_scene(right, test_request("continuous"), i);
-    EXPECT_GT(a.angle_rad, 0);
-    EXPECT_EQ(b.angle_rad, -a.angle_rad);
+    EXPECT_GT(asked_turn_rad(a), 0);
+    EXPECT_EQ(asked_turn_rad(b), -asked_turn_rad(a));
     EXPECT_EQ(to_json(a)["objects"], to_json(b)["objects"]);
   }
 }

@@ -12,6 +12,7 @@
 #include <tabletop/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/sampler.hpp>
+#include <tabletop/task.hpp>
 
 #include "../tabletop_bench.hpp"
 
@@ -47,7 +48,7 @@ TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
     for (const double degrees : {120.0, 135.0, -90.0}) {
       Scene scene = bring(type);
       scene.task = "rotate";
-      scene.angle_rad = degrees * pi / 180;
+      set_asked_turn(scene, degrees * pi / 180);
       scene.objects.erase(scene.objects.begin() + 1);
       const StepResult result = play(environment(), scene).result;
       EXPECT_TRUE(result.is_success) << type << " by " << degrees << ": " << result.failure;
@@ -56,7 +57,7 @@ TEST(Tabletop, TheOracleTurnsTheTargetInPlace) {
 
 TEST(Tabletop, ANumberThatIsNotOneIsTheMethodsFault) {
   const Observation before = environment().reset(bring());
-  Action action = environment().expert_action();
+  TwoPoses action = environment().expert_action();
   action.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(environment().step(action), MethodError);
   action = environment().expert_action();
@@ -96,7 +97,7 @@ TEST(Tabletop, TakingADistractorIsTheWrongObject) {
 
 TEST(Tabletop, PlacingBesideTheGoalIsABadPlacement) {
   environment().reset(bring("block"));
-  Action action = environment().expert_action();
+  TwoPoses action = environment().expert_action();
   action.pose1.position_m.y -= .13;
   EXPECT_EQ(environment().step(action).failure, "bad_placement");
   environment().reset(bring("block"));
@@ -106,7 +107,7 @@ TEST(Tabletop, PlacingBesideTheGoalIsABadPlacement) {
 
 TEST(Tabletop, TurnsByTheSecondPosesYaw) {
   environment().reset(bring("L-shaped block"));
-  Action action = environment().expert_action();
+  TwoPoses action = environment().expert_action();
   action.pose1 = {{.5, .05}, from_yaw(2.5)};
   environment().step(action);
   EXPECT_NEAR(yaw_of(bench().world->pose(2).rotation), 2.5, .02);
@@ -115,7 +116,7 @@ TEST(Tabletop, TurnsByTheSecondPosesYaw) {
 
 TEST(Tabletop, PositionsOutsideAreCarriedOutAtTheBorder) {
   environment().reset(bring());
-  Action action = environment().expert_action();
+  TwoPoses action = environment().expert_action();
   action.pose1.position_m = {9, -9};
   environment().step(action);
   const Vec2 reached = centre_of(bring().objects[2], bench().world->pose(2));
@@ -128,10 +129,10 @@ TEST(Tabletop, ASecondActionStartsFromTheStateReached) {
   EXPECT_TRUE(environment().step(environment().expert_action()).is_success);
 
   environment().reset(bring());
-  Action wide = environment().expert_action();
+  TwoPoses wide = environment().expert_action();
   wide.pose1 = {{.4, .1}, from_yaw(1)};
   EXPECT_EQ(environment().step(wide).failure, "bad_placement");
-  const Action again = environment().expert_action();
+  const TwoPoses again = environment().expert_action();
   EXPECT_LT(norm(again.pose0.position_m - Vec2{.4, .1}), .01);  // where suction let go of it
   EXPECT_TRUE(environment().step(again).is_success);
 }
@@ -142,7 +143,7 @@ TEST(Tabletop, TheOracleRecoversFromWhateverANoisyActionLeaves) {
   for (int i = 0; i < 40; ++i) {
     const Scene scene = sample_scene(scenario, {"cells", "train", "train", 9}, i);
     environment().reset(scene);
-    Action noisy = environment().expert_action();
+    TwoPoses noisy = environment().expert_action();
     noisy.pose1.position_m = noisy.pose1.position_m + Vec2{.05 * std::sin(i), .2 * std::cos(2 * i)};
     noisy.pose1.rotation = from_yaw(i);
     if (environment().step(noisy).failure == "left_workspace") continue;

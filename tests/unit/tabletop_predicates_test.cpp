@@ -8,6 +8,7 @@
 #include <tabletop/judge.hpp>
 #include <tabletop/objects.hpp>
 #include <tabletop/oracle.hpp>
+#include <tabletop/task.hpp>
 #include <tabletop/tasks/sweep.hpp>
 
 namespace lgabench::tabletop {
@@ -35,7 +36,7 @@ Scene bring() {
 Scene turn(double degrees) {
   Scene scene;
   scene.task = "rotate";
-  scene.angle_rad = degrees * pi / 180;
+  set_asked_turn(scene, degrees * pi / 180);
   scene.objects = {object("block", role::distractor, {.4, -.3}, 1), object("block", role::target, {.6, -.1}, 2)};
   scene.objects[1].yaw_rad = 1;
   return scene;

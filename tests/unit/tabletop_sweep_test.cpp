@@ -85,8 +85,8 @@ TEST(Sweep, ZonesAreSeenInTheColoursOnly) {
   const Observation plain = environment().reset(scene);
   EXPECT_EQ(zones.ids, plain.ids);
   EXPECT_EQ(zones.instances.size(), 3u);
-  for (int column = 0; column < Observation::columns; ++column) {
-    const double y = (column + .5) / Observation::columns - .5;
+  for (int column = 0; column < Workspace::columns; ++column) {
+    const double y = (column + .5) / Workspace::columns - .5;
     const auto first = static_cast<std::ptrdiff_t>(3 * column);  // of row 0, which holds no object
     EXPECT_EQ(std::abs(y) >= .34 && std::abs(y) <= .48,
               !std::equal(zones.rgb.begin() + first, zones.rgb.begin() + first + 3, plain.rgb.begin() + first))

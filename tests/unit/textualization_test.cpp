@@ -16,8 +16,9 @@ constexpr int count = 200;  // instances of an observation: more than a scene ha
 // Instance i has three pixels of its own, and a type and a texture of the space.
 Observation many_objects(const FeatureSpace& space) {
   Observation o;
-  o.rgb.assign(std::size_t{Observation::rows} * Observation::columns * 3, 77);
-  o.ids.resize(std::size_t{Observation::rows} * Observation::columns);
+  o.size = {128, 256};
+  o.rgb.assign(3 * o.size.pixels(), 77);
+  o.ids.resize(o.size.pixels());
   for (std::size_t i = 0; i < count; ++i) {
     const auto id = static_cast<std::uint8_t>(count - i);
     o.instances.push_back(

@@ -33,7 +33,7 @@ class Rotate final : public Task {
     if (to != "clockwise" && to != "counter_clockwise") file.at(direction).fail("clockwise or counter_clockwise");
     content.numbers[angle] = {to == "clockwise" ? -angle_deg : angle_deg};
   }
-  double angle_rad(const Content& content) const override { return content.numbers.at(angle).front() * pi / 180; }
+  double turn_rad(const Content& content) const override { return content.numbers.at(angle).front() * pi / 180; }
 
   // The disc that the target sweeps.
   std::vector<Polygon> room(const Layout&, const SceneObject& target) const override {
@@ -44,10 +44,10 @@ class Rotate final : public Task {
     return {disc};
   }
 
-  Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
-                       std::size_t object) const override {
+  TwoPoses expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
+                         std::size_t object) const override {
     const SceneObject& target = scene.objects[object];
-    const double left = target.yaw_rad + scene.angle_rad - yaw_of(poses[object].rotation);
+    const double left = target.yaw_rad + asked_turn_rad(scene) - yaw_of(poses[object].rotation);
     return bring(scene, poses, world, object, target.position_m, std::remainder(left, 2 * pi));
   }
 
@@ -56,7 +56,7 @@ class Rotate final : public Task {
     for (const Final& f : finals)
       if (f.object.role == role::distractor && norm(f.centre_m - f.object.position_m) > undisturbed_m)
         return failure::bad_placement;
-    const double error = std::remainder(target.yaw_rad - target.object.yaw_rad - scene.angle_rad, 2 * pi);
+    const double error = std::remainder(target.yaw_rad - target.object.yaw_rad - asked_turn_rad(scene), 2 * pi);
     return std::abs(error) <= angle_tolerance_deg * pi / 180 ? failure::none : bad_angle;
   }
 };

@@ -42,8 +42,8 @@ class Stack final : public Task {
   }
   std::vector<Layout> layouts() const override { return {{"cells", four_places(), four_places()}, {"continuous"}}; }
 
-  Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
-                       std::size_t object) const override {
+  TwoPoses expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
+                         std::size_t object) const override {
     const SceneObject& onto = expect(scene, support);
     const Pose& pose = poses[static_cast<std::size_t>(&onto - scene.objects.data())];
     return bring(scene, poses, world, object, top_of(onto, pose));

@@ -78,7 +78,7 @@ Push push_of(Vec2 centre, Vec2 mass, const Polygon& corners, double side) {
 /// The spatula starts .03 behind the object and brings its centre straight into the goal zone on the side that the
 /// obstacle leaves free. Along y, or nearly: whatever else a sweep scene holds stands in the other row, or on the
 /// obstacle's side.
-Action sweep_action(const Scene& scene, const Pose& pose, const SceneObject& object) {
+TwoPoses sweep_action(const Scene& scene, const Pose& pose, const SceneObject& object) {
   constexpr double behind_m = .03;
   const bool bars_upper = expect(scene, obstacle).position_m.y > expect(scene, role::target).position_m.y;
   const double side = bars_upper ? -1 : 1;  // the free one
@@ -177,7 +177,7 @@ class Sweep final : public Task {
 
   // The spatula descends at pose0, its blade across the way to pose1, until it stands on the table or meets a body; is
   // pushed straight to pose1 and taken away; then waits until all bodies rest. The action's rotations do not count.
-  Motion carry_out(const Scene& scene, const Bodies& bodies, const Action& action) const override {
+  Motion carry_out(const Scene& scene, const Bodies& bodies, const TwoPoses& action) const override {
     PhysicsWorld& world = bodies.world;
     const Vec2 from = action.pose0.position_m, to = action.pose1.position_m, way = to - from;
     constexpr double on_table = spatula_size_m.z / 2 + spatula_gap_m;
@@ -211,8 +211,8 @@ class Sweep final : public Task {
     return motion;
   }
 
-  Action expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld&,
-                       std::size_t object) const override {
+  TwoPoses expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld&,
+                         std::size_t object) const override {
     return sweep_action(scene, poses[object], scene.objects[object]);
   }
 

@@ -14,7 +14,7 @@ constexpr std::uint8_t unlisted = 255;
 
 // Looks every pixel's id up.
 void look_up(const Observation& observation, const Table& values, std::vector<std::uint8_t>& mask) {
-  constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
+  const std::size_t pixels = observation.size.pixels();
   if (observation.ids.size() != pixels)
     throw InputError(fmt::format("observation: ids: expected {} pixels, got {}", pixels, observation.ids.size()));
   mask.resize(pixels);

@@ -15,9 +15,9 @@ enum class Instances {
   first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
 };
 
-/// Observation::rows x columns of 0 and 1, row-major: 1 on the visible pixels of every instance that `selection` keeps.
+/// Of the observation's size, 0 and 1, row-major: 1 on the visible pixels of every instance that `selection` keeps.
 /// All 0 where nothing in view is kept.
-/// @throws InputError if the ids are not rows x columns, or name an instance that the table lacks.
+/// @throws InputError if the ids are not as many as the size says, or name an instance that the table lacks.
 std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection,
                                     Instances instances = Instances::all);
 

@@ -104,7 +104,13 @@ struct Answering {
         truthful(scenario.commands),
         model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
         human(std::make_unique<TruthAsHuman>(scenario.commands), job.method.asks),
-        services{model, human, job.options, seed, log, declared_truth(scenario.commands, job.method.asks)} {}
+        services{model,
+                 human,
+                 job.options,
+                 seed,
+                 log,
+                 find_environment(scenario.environment).action_space(),
+                 declared_truth(scenario.commands, job.method.asks)} {}
 
   RecordedLanguageModel recorded;
   TruthfulModel truthful;
@@ -230,12 +236,13 @@ class MethodCheck {
     return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
   }
 
-  // The action's 12 numbers as text. @throws MethodError where it cannot be carried out.
+  // The action's numbers as text. @throws MethodError where it cannot be carried out.
   std::string act(const std::string& what, const Actor& actor, const Bench& bench, const Sight& sight) {
     const Move move = timed(what, [&] { return actor(*bench.environment, sight.scene, sight.observation); });
-    executable(move.action);
+    const ActionSpace& space = bench.environment->action_space();
+    executable(space, move.action);
     std::string text;
-    for (const float value : to_vector(move.action)) text += fmt::format("{:a} ", value);
+    for (const double value : recorded(space, move.action)) text += fmt::format("{:a} ", value);
     return text;
   }
 
@@ -303,7 +310,7 @@ class MethodCheck {
       if (act("act", actor, bench, bench.sights[i]) != actions[i]) differs = "act() gave another action";
     report_.judge("order of scenes", differs.empty() ? "" : differs + " when scenes came in reverse order",
                   "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
-    report_.ok("actions", "finite, 12 numbers each");
+    report_.ok("actions", fmt::format("finite, {} numbers each", bench.environment->action_space().size()));
 
     if (!is_library()) return;
     constexpr int calls = 200, bearable = 256;  // bytes a call
@@ -343,10 +350,11 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first shipped scenario that tests commands which were not demonstrated.
-std::string with_unseen_commands() {
+// The first shipped scenario of that environment that tests commands which were not demonstrated.
+std::string with_unseen_commands(const std::string& environment) {
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id);
+    if (scenario.environment != environment) continue;
     for (const ScenarioCommand& command : scenario.commands)
       if (!command.seen) return id;
   }
@@ -358,8 +366,9 @@ std::string with_unseen_commands() {
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
   std::vector<std::unique_ptr<Bench>> benches;
-  for (const std::string& id : {installed_tasks().front().example, with_unseen_commands()})
-    benches.push_back(std::make_unique<Bench>(id, engine));
+  benches.push_back(std::make_unique<Bench>(installed_tasks().front().example, engine));
+  job.environment = benches.front()->scenario.environment;
+  benches.push_back(std::make_unique<Bench>(with_unseen_commands(job.environment), engine));
   phase("load");
   return MethodCheck(job, phase).run(benches);
 }

@@ -15,25 +15,45 @@
 namespace lgabench {
 namespace {
 
-PlanarPose disturbed(const PlanarPose& pose, double sigma, RandomStream& stream) {
-  const double dx = .25 * sigma * stream.gaussian(), dy = .5 * sigma * stream.gaussian();
-  const double yaw_rad = pi * sigma * stream.gaussian();
-  return {pose.position_m + Vec2{dx, dy}, from_yaw(yaw_rad) * pose.rotation};
+// Turned by an angle about z, or by that angle.
+void turn(Action& action, const std::vector<std::size_t>& rotation, double by_rad) {
+  if (rotation.size() == 4) {
+    const Quat q =
+        from_yaw(by_rad) * Quat{action[rotation[0]], action[rotation[1]], action[rotation[2]], action[rotation[3]]};
+    action[rotation[0]] = q.x, action[rotation[1]] = q.y, action[rotation[2]] = q.z, action[rotation[3]] = q.w;
+  } else {
+    const Vec2 turned = rotated(Vec2{action[rotation[0]], action[rotation[1]]}, by_rad);
+    action[rotation[0]] = turned.x, action[rotation[1]] = turned.y;
+  }
+}
+
+// Number by number: sigma 1 is half of a number's range, and half a turn.
+Action disturbed(const ActionSpace& space, Action action, double sigma, RandomStream& stream) {
+  for (std::size_t i = 0; i < action.size(); ++i) {
+    const auto rotation = std::find_if(space.rotations.begin(), space.rotations.end(), [&](const auto& rotation_of) {
+      return std::find(rotation_of.begin(), rotation_of.end(), i) != rotation_of.end();
+    });
+    if (rotation == space.rotations.end())
+      action[i] += (space.numbers[i].high - space.numbers[i].low) / 2 * sigma * stream.gaussian();
+    else if (rotation->front() == i)
+      turn(action, *rotation, pi * sigma * stream.gaussian());
+  }
+  return action;
 }
 
 // As it is after a file: fresh and cached demonstrations must train the same policy.
-Action label(const Action& action) { return from_vector(to_vector(action)); }
+Action label(const Environment& environment) {
+  return recorded(environment.action_space(), environment.expert_action());
+}
 
 // The state that a noisy execution of the oracle's action leads to, labelled; false where it is to be dropped.
 bool recovery_step(Environment& environment, const Scene& scene, double sigma, int k, Step& step) {
   RandomStream stream(fmt::format("dart/{}/{}", hex(scene.hash()), k));
   environment.reset(scene);
-  Action action = environment.expert_action();
-  action.pose0 = disturbed(action.pose0, sigma, stream);
-  action.pose1 = disturbed(action.pose1, sigma, stream);
+  const Action action = disturbed(environment.action_space(), environment.expert_action(), sigma, stream);
   StepResult result = environment.step(action);
   if (!result.recoverable) return false;
-  step = {std::move(result.observation), label(environment.expert_action())};
+  step = {std::move(result.observation), label(environment)};
   return true;
 }
 
@@ -78,7 +98,7 @@ std::vector<Demonstration> demonstrate(Environment& environment, const std::vect
     Demonstration demonstration;
     demonstration.instruction.utterance = utterances.at(static_cast<std::size_t>(scene.command));
     Observation observation = environment.reset(scene);
-    demonstration.steps.push_back({std::move(observation), label(environment.expert_action())});
+    demonstration.steps.push_back({std::move(observation), label(environment)});
     for (int k = 1; k <= needs.noisy_per_clean; ++k) {
       Step step;
       if (recovery_step(environment, scene, needs.noise_max * k / needs.noisy_per_clean, k, step))

@@ -30,8 +30,8 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
       imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
   try {
     const Move move = actor(environment, scene, observation);
-    episode.failure = environment.step(move.action).failure;  // refuses an action that is not finite
-    episode.action = to_vector(move.action);
+    episode.failure = environment.step(move.action).failure;  // refuses one that is not executable()
+    episode.action = recorded(environment.action_space(), move.action);
     episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {
     to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());

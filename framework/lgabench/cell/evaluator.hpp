@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <lgabench/abstraction/textualization.hpp>
-#include <lgabench/core/action.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
 
@@ -18,10 +17,10 @@ struct Episode {
   int index = 0, command = 0;
   std::uint64_t scene = 0;  // hash
   Failure failure = failure::none;
-  std::optional<ActionVector> action;  // none where the actor gave none
-  std::string attribution;             // of a failure: "abstraction" or "policy"; "" where it is not known
-  std::optional<bool> input_seen;      // Policy::seen_in_training() of the action
-  std::string error;                   // of a method_error: what was thrown, as the method words it
+  std::optional<Action> action;    // recorded(); none where the actor gave none
+  std::string attribution;         // of a failure: "abstraction" or "policy"; "" where it is not known
+  std::optional<bool> input_seen;  // Policy::seen_in_training() of the action
+  std::string error;               // of a method_error: what was thrown, as the method words it
 };
 
 /// A line of episodes.jsonl: without the error, whose words may hold an address.

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include <lgabench/core/action_space.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 
@@ -101,13 +100,17 @@ Json instances_json(const Observation& observation) {
   return table;
 }
 
-std::vector<Instance> read_instances(const JsonReader& table) {
+std::vector<Instance> read_instances(const JsonReader& table, PictureSize picture) {
   std::vector<Instance> all;
   for (const JsonReader& i : table.elements())
     all.push_back({static_cast<std::uint8_t>(i.at("id").integer(1, 255)), i.at("object_type").string(),
                    i.at("texture").string(),
-                   static_cast<int>(i.at("pixels").integer(0, Observation::rows * Observation::columns))});
+                   static_cast<int>(i.at("pixels").integer(0, static_cast<long long>(picture.pixels())))});
   return all;
+}
+
+std::array<hsize_t, 2> sizes(PictureSize picture) {
+  return {static_cast<hsize_t>(picture.rows), static_cast<hsize_t>(picture.columns)};
 }
 
 void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration) {
@@ -115,18 +118,19 @@ void write_demonstration(const Library& h5, hid_t group, const Demonstration& de
   std::vector<std::uint8_t> rgb, ids;
   Json instances = Json::array();
   for (const Step& step : demonstration.steps) {
-    const ActionVector label = to_vector(step.label);
-    actions.insert(actions.end(), label.begin(), label.end());
+    actions.insert(actions.end(), step.label.begin(), step.label.end());
     rgb.insert(rgb.end(), step.observation.rgb.begin(), step.observation.rgb.end());
     ids.insert(ids.end(), step.observation.ids.begin(), step.observation.ids.end());
     instances.push_back(instances_json(step.observation));
   }
-  const hsize_t steps = demonstration.steps.size(), rows = Observation::rows, columns = Observation::columns;
+  const Step& first = demonstration.steps.front();  // all are of one environment
+  const auto [rows, columns] = sizes(first.observation.size);
+  const hsize_t steps = demonstration.steps.size();
   write_attribute(h5, group, "num_samples", static_cast<std::int64_t>(steps));
   write_attribute(h5, group, "utterance", demonstration.instruction.utterance);
   // A dataset, not an attribute: attributes end at 64 KiB.
   const std::string table = canonical(instances);
-  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, two_poses().numbers.size()}, actions.data(), false);
+  write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, first.label.size()}, actions.data(), false);
   write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
   const Handle obs = make_group(h5, group, "obs");
   write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
@@ -147,9 +151,9 @@ std::string read_text(const Library& h5, hid_t object, const char* name, const s
   return text.substr(0, text.find('\0'));
 }
 
-// Reads a dataset whose shape must be `sizes`; 0 stands for any.
+// Reads a dataset whose shape must be `sizes`; 0 stands for any, and becomes what was found.
 template <class T>
-std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hid_t type, const Sizes& sizes,
+std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hid_t type, Sizes& sizes,
                             const std::string& place) {
   const std::string where = place + "/" + name;
   const Handle set = h5.handle(H5Dopen2(group, name, H5P_DEFAULT), where);
@@ -163,24 +167,26 @@ std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hi
     count *= found[i];
   }
   if (!fits) h5.fail(where, fmt::format("expected the shape [{}]", fmt::join(sizes, ", ")));
+  std::copy_n(found.begin(), sizes.size(), sizes.begin());
   std::vector<T> values(count);
   h5.check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), where);
   return values;
 }
 
 Demonstration read_demonstration(const Library& h5, hid_t group, const std::string& place) {
-  const hsize_t rows = Observation::rows, columns = Observation::columns;
-  const std::size_t pixels = rows * columns;
-  const auto bytes = read_dataset<std::uint8_t>(h5, group, "instances", H5T_NATIVE_UINT8, {0}, place);
+  Sizes table_size{0};
+  const auto bytes = read_dataset<std::uint8_t>(h5, group, "instances", H5T_NATIVE_UINT8, table_size, place);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const Json tables = parse_json(text, fmt::format("{}: {}/instances", h5.file(), place));
   const auto instances = JsonReader(tables, h5.file(), place + "/instances").elements();
   const hsize_t steps = instances.size();
   if (steps == 0 || steps > 10000) h5.fail(place, "expected 1 to 10000 steps");
-  const auto actions =
-      read_dataset<float>(h5, group, "actions", H5T_NATIVE_FLOAT, {steps, two_poses().numbers.size()}, place);
-  const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, {steps, rows, columns, 3}, place);
-  const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, {steps, rows, columns}, place);
+  Sizes actions_size{steps, 0}, rgb_size{steps, 0, 0, 3};
+  const auto actions = read_dataset<float>(h5, group, "actions", H5T_NATIVE_FLOAT, actions_size, place);
+  const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, rgb_size, place);
+  Sizes ids_size{steps, rgb_size[1], rgb_size[2]};
+  const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, ids_size, place);
+  const PictureSize picture{static_cast<int>(ids_size[1]), static_cast<int>(ids_size[2])};
 
   Demonstration demonstration;
   demonstration.instruction.utterance = read_text(h5, group, "utterance", place);
@@ -190,10 +196,10 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
       const auto from = all.begin() + static_cast<std::ptrdiff_t>(t * size);
       return std::vector<std::uint8_t>(from, from + static_cast<std::ptrdiff_t>(size));
     };
-    step.observation = {slice(rgb, pixels * 3), slice(ids, pixels), read_instances(instances[t])};
-    ActionVector label;
-    std::copy_n(actions.begin() + static_cast<std::ptrdiff_t>(t * label.size()), label.size(), label.begin());
-    step.label = from_vector(label);
+    step.observation = {picture, slice(rgb, picture.pixels() * 3), slice(ids, picture.pixels()),
+                        read_instances(instances[t], picture)};
+    const float* const label = actions.data() + t * actions_size[1];
+    step.label.assign(label, label + actions_size[1]);
     demonstration.steps.push_back(std::move(step));
   }
   return demonstration;

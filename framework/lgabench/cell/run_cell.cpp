@@ -14,6 +14,7 @@
 #include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/steps.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/run_layout.hpp>
@@ -62,6 +63,7 @@ class Phases {
 std::unique_ptr<Method> make_method(const CellJob& job) {
   if (job.method) {
     HostJob host{*job.method,
+                 job.cell.environment,
                  job.cell.method.options,
                  job.cell.training_seed,
                  job.scratch,
@@ -177,7 +179,9 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const std::unique_ptr<Method> method = make_method(job);
   const Answers answers = answers_for(job, scenario, server);
   TrainingLines training(count);
-  Services services{*answers.lm, *answers.human, cell.method.options, cell.training_seed, training, answers.truth};
+  Services services{*answers.lm,        *answers.human, cell.method.options,
+                    cell.training_seed, training,       find_environment(cell.environment).action_space(),
+                    answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
   const Row row = row_of(method.get(), selected, scenario);

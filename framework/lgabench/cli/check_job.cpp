@@ -14,7 +14,7 @@ void check(const JsonReader& reader, const Messages& messages) {
   perturb_heap(job.perturb);  // of an engine, which runs in this process
   const CheckPhase phase = [&messages](const std::string& name) { messages.at({name}); };
   const auto on_method = [&] {
-    HostJob method{*job.method, job.options, 0, job.scratch};
+    HostJob method{*job.method, "", job.options, 0, job.scratch};
     method.perturb = job.perturb;
     return check_method(method, job.engine, phase);
   };

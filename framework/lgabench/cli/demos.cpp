@@ -61,7 +61,7 @@ void write(const Arguments& a) {
   to_stdout("{}\n", a.out);
 }
 
-// A line a demonstration: its steps, the objects of its first picture, and where its first action goes.
+// A line a demonstration: its steps, the objects of its first picture, and its first action.
 void inspect(const std::string& file) {
   const auto demonstrations = read_demonstrations(read_file(file), file);
   for (std::size_t i = 0; i < demonstrations.size(); ++i) {
@@ -69,10 +69,8 @@ void inspect(const std::string& file) {
     std::vector<std::string> objects;
     for (const Instance& instance : steps.front().observation.instances)
       objects.push_back(instance.texture + " " + instance.object_type);
-    const Action& action = steps.front().label;
-    to_stdout("demo_{}: {} steps; \"{}\"; {}; ({:.3f}, {:.3f}) -> ({:.3f}, {:.3f})\n", i, steps.size(),
-              instruction.utterance, fmt::join(objects, ", "), action.pose0.position_m.x, action.pose0.position_m.y,
-              action.pose1.position_m.x, action.pose1.position_m.y);
+    to_stdout("demo_{}: {} steps; \"{}\"; {}; action {:.3f}\n", i, steps.size(), instruction.utterance,
+              fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
   }
 }
 

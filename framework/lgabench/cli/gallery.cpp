@@ -18,7 +18,9 @@ struct Tile {
   std::vector<Rgb> pixels;
 };
 
-std::size_t pixel(int column, int row) { return static_cast<std::size_t>(row * Observation::columns + column); }
+std::size_t pixel(const Observation& seen, int column, int row) {
+  return static_cast<std::size_t>(row * seen.size.columns + column);
+}
 
 // One object in the middle of the table, and what lies around it.
 Tile close_up(const std::string& type, const std::string& texture, const std::string& caption) {
@@ -28,10 +30,10 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
   scene.task = environment.tasks().front().id;
   scene.objects = {{type, texture, role::distractor, {.5, 0}, 0, 1}};
   const Observation seen = environment.draw(scene);
-  const int left = (Observation::columns - tile.columns) / 2, top = (Observation::rows - tile.rows) / 2;
+  const int left = (seen.size.columns - tile.columns) / 2, top = (seen.size.rows - tile.rows) / 2;
   for (int row = 0; row < tile.rows; ++row)
     for (int column = 0; column < tile.columns; ++column)
-      tile.pixels.push_back(pixel_colour(seen, pixel(left + column, top + row)));
+      tile.pixels.push_back(pixel_colour(seen, pixel(seen, left + column, top + row)));
   return tile;
 }
 
@@ -42,15 +44,13 @@ Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
   const Observation seen = environment.draw(scene);
   const auto mask = goal_mask(seen, command.truth);
-  Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance),
-            2 * Observation::columns,
-            Observation::rows,
-            {}};
-  for (int row = 0; row < Observation::rows; ++row) {
-    for (int column = 0; column < Observation::columns; ++column)
-      tile.pixels.push_back(pixel_colour(seen, pixel(column, row)));
-    for (int column = 0; column < Observation::columns; ++column)
-      tile.pixels.push_back(mask_colour(mask[pixel(column, row)] != 0));
+  Tile tile{
+      fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * seen.size.columns, seen.size.rows, {}};
+  for (int row = 0; row < seen.size.rows; ++row) {
+    for (int column = 0; column < seen.size.columns; ++column)
+      tile.pixels.push_back(pixel_colour(seen, pixel(seen, column, row)));
+    for (int column = 0; column < seen.size.columns; ++column)
+      tile.pixels.push_back(mask_colour(mask[pixel(seen, column, row)] != 0));
   }
   return tile;
 }

@@ -45,12 +45,6 @@ Json set_of(const Words& types, const Words& textures) {
   return {{"object_types", names(types)}, {"textures", names(textures)}};
 }
 
-std::vector<std::string> task_ids() {
-  std::vector<std::string> ids;
-  for (const TaskInfo& task : installed_tasks()) ids.push_back(task.id);
-  return ids;
-}
-
 Json range_of(const std::string& text) {
   const std::size_t colon = text.find(':');
   int fewest = 0, most = 0;
@@ -121,7 +115,9 @@ void add_new_scenario(CLI::App& app, int& exit) {
   verb->add_option("--space", a->space, "The words there are (lgabench render --gallery objects)")
       ->check(one_of("space", {"tabletop", "household"}))
       ->capture_default_str();
-  verb->add_option("--task", a->task, "What is done with it")->check(one_of("task", task_ids()))->capture_default_str();
+  verb->add_option("--task", a->task, "What is done with it")
+      ->check(one_of("task", installed_task_ids()))
+      ->capture_default_str();
   verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
   verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
   verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();

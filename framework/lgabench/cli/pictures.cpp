@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
@@ -32,16 +33,15 @@ std::string base64(const std::string& bytes) {
 }
 
 template <class ColourAt>
-std::string png(ColourAt colour_at) {
-  Picture picture(Observation::columns, Observation::rows);
-  picture.paste(0, 0, Observation::columns, Observation::rows, 1, [&](int column, int row) {
-    return colour_at(static_cast<std::size_t>(row * Observation::columns + column));
-  });
+std::string png(PictureSize size, ColourAt colour_at) {
+  Picture picture(size.columns, size.rows);
+  picture.paste(0, 0, size.columns, size.rows, 1,
+                [&](int column, int row) { return colour_at(static_cast<std::size_t>(row * size.columns + column)); });
   return base64(picture.png());
 }
 
 // The edges of all pixels that are `inside`, as an SVG path in pixels.
-std::string outline(const std::function<bool(int column, int row)>& inside) {
+std::string outline(PictureSize size, const std::function<bool(int column, int row)>& inside) {
   std::string path;
   const auto edges = [&path](int lines, int length, const auto& is_edge, const auto& step) {
     for (int line = 0; line <= lines; ++line)
@@ -51,10 +51,10 @@ std::string outline(const std::function<bool(int column, int row)>& inside) {
       }
   };
   edges(
-      Observation::rows, Observation::columns, [&](int y, int x) { return inside(x, y) != inside(x, y - 1); },
+      size.rows, size.columns, [&](int y, int x) { return inside(x, y) != inside(x, y - 1); },
       [](int y, int x, int n) { return fmt::format("M{} {}h{}", x, y, n); });
   edges(
-      Observation::columns, Observation::rows, [&](int x, int y) { return inside(x, y) != inside(x - 1, y); },
+      size.columns, size.rows, [&](int x, int y) { return inside(x, y) != inside(x - 1, y); },
       [](int x, int y, int n) { return fmt::format("M{} {}v{}", x, y, n); });
   return path;
 }
@@ -64,9 +64,10 @@ std::string targets(const Scene& scene, const Observation& seen) {
   std::set<std::uint8_t> ids;
   for (const SceneObject& object : scene.objects)
     if (object.role == role::target) ids.insert(object.instance_id);
-  return outline([&](int column, int row) {
-    if (column < 0 || row < 0 || column >= Observation::columns || row >= Observation::rows) return false;
-    return ids.count(seen.ids[static_cast<std::size_t>(row * Observation::columns + column)]) != 0;
+  const PictureSize size = seen.size;
+  return outline(size, [&](int column, int row) {
+    if (column < 0 || row < 0 || column >= size.columns || row >= size.rows) return false;
+    return ids.count(seen.ids[static_cast<std::size_t>(row * size.columns + column)]) != 0;
   });
 }
 
@@ -78,9 +79,9 @@ struct Played {
 class Pictures {
  public:
   // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action}, pictures in base64:
-  // the scene, goal masks of the request's Selections, the scene after each of its actions (null where the engine is
-  // not there, "" where nothing moved), the targets' outline, and what the oracle would do (null without the cell's
-  // engine). @throws InputError where the scene is not the one asked for.
+  // the scene, goal masks of the request's Selections, the scene after each of its actions (null where it could
+  // not be carried out, "" where nothing moved), the targets' outline, and what the oracle would do (null without the
+  // cell's engine). @throws InputError where the scene is not the one asked for.
   Json draw(const PictureRequest& request) {
     const Played& played = cell(request.cell.string());
     const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
@@ -97,15 +98,13 @@ class Pictures {
       const auto mask = goal_mask(
           perceived, read_distribution(selection.at("distribution"), played.scenario.space, played.scenario.second),
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
-      masks.push_back(png([&](std::size_t i) { return mask_colour(mask[i] != 0); }));
+      masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     const std::string picture = picture_of(seen);
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
-      Environment* const environment = on(end.engine, played.scenario);
-      if (environment) environment->reset(scene);
-      const std::string after = environment ? picture_of(environment->step(from_vector(end.action)).observation) : "";
-      ends.push_back(!environment ? Json() : Json(after == picture ? "" : after));
+      const std::optional<std::string> after = after_action(played.scenario, scene, end);
+      ends.push_back(!after ? Json() : Json(*after == picture ? "" : *after));
     }
     Environment* const environment = on(played.cell.engine, played.scenario);
     if (environment) environment->reset(scene);
@@ -113,12 +112,25 @@ class Pictures {
             {"masks", masks},
             {"ends", ends},
             {"targets", targets(scene, seen)},
-            {"oracle", environment ? Json(to_vector(environment->expert_action())) : Json()}};
+            {"oracle", environment ? Json(environment->expert_action()) : Json()}};
   }
 
  private:
   static std::string picture_of(const Observation& seen) {
-    return png([&](std::size_t i) { return pixel_colour(seen, i); });
+    return png(seen.size, [&](std::size_t i) { return pixel_colour(seen, i); });
+  }
+
+  // None where the engine is not there, or the action is none of this environment's.
+  std::optional<std::string> after_action(const Scenario& scenario, const Scene& scene,
+                                          const PictureRequest::End& end) {
+    Environment* const environment = on(end.engine, scenario);
+    if (!environment) return std::nullopt;
+    environment->reset(scene);
+    try {
+      return picture_of(environment->step(end.action).observation);
+    } catch (const MethodError&) {
+      return std::nullopt;
+    }
   }
 
   // Null for an engine that is not there.

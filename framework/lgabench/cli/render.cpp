@@ -35,16 +35,19 @@ Rgb colour_of(std::uint8_t id) {
   return {channel(0), channel(2), channel(4)};
 }
 
-// The observation's size side by side, enlarged.
+// Pictures of one size side by side, enlarged.
 struct Panels {
-  static constexpr int zoom = 4, gutter = 8, step = Observation::columns * zoom + gutter;
+  static constexpr int zoom = 4, gutter = 8;
+  PictureSize size;
+  int step;
   Picture picture;
 
-  explicit Panels(int count) : picture(count * step - gutter, Observation::rows * zoom) {}
+  Panels(int count, PictureSize of_one)
+      : size(of_one), step(size.columns * zoom + gutter), picture(count * step - gutter, size.rows * zoom) {}
 
   void fill(int panel, const std::function<Rgb(std::size_t pixel)>& colour_at) {
-    picture.paste(panel * step, 0, Observation::columns, Observation::rows, zoom, [&](int column, int row) {
-      return colour_at(static_cast<std::size_t>(row * Observation::columns + column));
+    picture.paste(panel * step, 0, size.columns, size.rows, zoom, [&](int column, int row) {
+      return colour_at(static_cast<std::size_t>(row * size.columns + column));
     });
   }
 };
@@ -68,7 +71,7 @@ void render(const Arguments& arguments) {
   const Observation seen = environment.draw(scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
-  Panels panels(3);
+  Panels panels(3, seen.size);
   panels.fill(0, [&](std::size_t i) { return pixel_colour(seen, i); });
   panels.fill(1, [&](std::size_t i) { return colour_of(seen.ids[i]); });
   panels.fill(2, [&](std::size_t i) { return mask_colour(mask[i] != 0); });

@@ -10,6 +10,7 @@
 #include <lgabench/cli/gif.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/watched_world.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
@@ -71,40 +72,28 @@ Recorded recorded(const Arguments& a) {
     if (line.at("arm").string() != episode.arm || line.at("index").integer(0, 1 << 30) != episode.index) continue;
     episode.outcome = line.at("failure").string();
     episode.scene = line.at("scene").string();
-    ActionVector numbers{};
     if (line.at("action").json().is_null())
       throw InputError(fmt::format("replay: {} ended without an action: {}", a.episode, episode.outcome));
-    const auto values = line.at("action").elements();
-    if (values.size() != numbers.size()) line.at("action").fail(fmt::format("{} numbers", numbers.size()));
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(values[i].number());
-    episode.action = from_vector(numbers);
+    for (const JsonReader& number : line.at("action").elements()) episode.action.push_back(number.number());
     return episode;
   }
   throw InputError(fmt::format("replay: {} has no episode {} in arm {}", cell.string(), episode.index, episode.arm));
 }
 
-// Where a point on the table is in the enlarged picture.
-Vec2 in_picture(Vec2 table_m) {
-  return {zoom * Workspace::columns * (table_m.y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min),
-          zoom * Workspace::rows * (table_m.x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min)};
-}
-
-void draw(const Tool& tool, Picture& picture) {
+void draw(const EnvironmentType& environment, const Tool& tool, Picture& picture) {
   constexpr Rgb colour{255, 0, 160};
-  const Vec2 at{tool.pose.position_m.x, tool.pose.position_m.y};
-  const auto dots = [&](Vec2 from, Vec2 to) {
+  const Vec3 at = tool.pose.position_m;
+  const auto dots = [&](Vec3 from, Vec3 to) {
     constexpr int count = 40;
     for (int i = 0; i <= count; ++i) {
-      const double share = static_cast<double>(i) / count;
-      const Vec2 p = in_picture({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
+      const Vec2 p = zoom * environment.in_picture(from + static_cast<double>(i) / count * (to - from));
       picture.dot(p.x, p.y, 2, colour);
     }
   };
   if (tool.box_m) {
     const Vec3 half = .5 * *tool.box_m;
     const auto corner = [&](double x, double y) {
-      const Vec3 turned = rotated({x * half.x, y * half.y, 0}, tool.pose.rotation);
-      return Vec2{at.x + turned.x, at.y + turned.y};
+      return at + rotated({x * half.x, y * half.y, 0}, tool.pose.rotation);
     };
     dots(corner(-1, -1), corner(1, -1));
     dots(corner(1, -1), corner(1, 1));
@@ -112,8 +101,8 @@ void draw(const Tool& tool, Picture& picture) {
     dots(corner(-1, 1), corner(-1, -1));
   } else {
     constexpr double arm_m = .02;
-    dots({at.x - arm_m, at.y}, {at.x + arm_m, at.y});
-    dots({at.x, at.y - arm_m}, {at.x, at.y + arm_m});
+    dots(at - Vec3{arm_m, 0, 0}, at + Vec3{arm_m, 0, 0});
+    dots(at - Vec3{0, arm_m, 0}, at + Vec3{0, arm_m, 0});
   }
 }
 
@@ -139,13 +128,14 @@ void replay(const Arguments& a) {
   if (hex(scene.hash()) != episode.scene)
     throw InputError("replay: this version samples another scene than the run played");
 
+  const EnvironmentType& type = find_environment(episode.scenario.environment);
   std::vector<Picture> frames;
   const auto add = [&](const Observation& seen, const std::optional<Tool>& tool) {
-    frames.emplace_back(zoom * Observation::columns, zoom * Observation::rows);
-    frames.back().paste(0, 0, Observation::columns, Observation::rows, zoom, [&](int column, int row) {
-      return pixel_colour(seen, static_cast<std::size_t>(row * Observation::columns + column));
+    frames.emplace_back(zoom * seen.size.columns, zoom * seen.size.rows);
+    frames.back().paste(0, 0, seen.size.columns, seen.size.rows, zoom, [&](int column, int row) {
+      return pixel_colour(seen, static_cast<std::size_t>(row * seen.size.columns + column));
     });
-    if (tool) draw(*tool, frames.back());
+    if (tool) draw(type, *tool, frames.back());
   };
   std::unique_ptr<Environment> environment;
   const auto look = [&](const std::optional<Tool>& tool) { add(environment->observe(), tool); };

@@ -115,12 +115,6 @@ std::vector<Asked> find_commands(const Arguments& arguments) {
   return {asked};
 }
 
-std::vector<std::string> task_ids() {
-  std::vector<std::string> ids;
-  for (const TaskInfo& task : installed_tasks()) ids.push_back(task.id);
-  return ids;
-}
-
 std::string list(const std::vector<std::string>& names, const std::vector<std::string>& all) {
   if (names.empty()) return "(none)";
   return names == all ? fmt::format("any of the {}", all.size()) : fmt::format("{}", fmt::join(names, ", "));
@@ -196,7 +190,7 @@ void add_select(CLI::App& app, int&) {
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "The task, where the command is not one of a scenario")
-      ->check(one_of("task", task_ids()))
+      ->check(one_of("task", installed_task_ids()))
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "The feature space, where the command is not one of a scenario")
       ->capture_default_str();
@@ -212,7 +206,7 @@ void add_select(CLI::App& app, int&) {
   add_scenario_path(*verb);
   verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
   arrange(*verb, "", {{"command", "COMMAND"}});
-  const std::string tasks = fmt::format("{}", fmt::join(task_ids(), "|"));
+  const std::string tasks = fmt::format("{}", fmt::join(installed_task_ids(), "|"));
   arrange(*verb, "What is asked",
           {{"--suite", "SUITE"},
            {"--task", tasks.c_str()},

@@ -4,43 +4,85 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lgabench/core/error.hpp>
-
 namespace lgabench {
 namespace {
 
-PlanarPose executable(const PlanarPose& pose, const char* name) {
-  const Quat q = pose.rotation;
-  for (const double v : {pose.position_m.x, pose.position_m.y, q.x, q.y, q.z, q.w})
-    if (!std::isfinite(v)) throw MethodError(fmt::format("{}: expected finite numbers, got {}", name, v));
-  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  if (length < 1e-6)
-    throw MethodError(fmt::format("{}: expected a quaternion of norm 1e-6 or more, got {}", name, length));
-  return {{std::clamp(pose.position_m.x, Workspace::x_min, Workspace::x_max),
-           std::clamp(pose.position_m.y, Workspace::y_min, Workspace::y_max)},
-          {q.x / length, q.y / length, q.z / length, q.w / length}};
+constexpr double least_norm = 1e-6;
+
+double norm_of(const Action& action, const std::vector<std::size_t>& rotation) {
+  double squares = 0;
+  for (const std::size_t i : rotation) squares += action[i] * action[i];
+  return std::sqrt(squares);
+}
+
+double share(const ActionNumber& number, double value) {
+  return (std::clamp(value, number.low, number.high) - number.low) / (number.high - number.low);
 }
 
 }  // namespace
 
-ActionVector to_vector(const Action& action) {
-  ActionVector v{};
-  int i = 0;
-  for (const PlanarPose& pose : {action.pose0, action.pose1}) {
-    const Quat q = pose.rotation;
-    const double sign = q.w < 0 ? -1 : 1;
-    for (const double value : {pose.position_m.x, pose.position_m.y, sign * q.x, sign * q.y, sign * q.z, sign * q.w})
-      v[static_cast<std::size_t>(i++)] = static_cast<float>(value);
+Json to_json(const ActionSpace& space) {
+  Json numbers = Json::array(), places = Json::array();
+  for (const ActionNumber& n : space.numbers)
+    numbers.push_back({{"name", n.name}, {"unit", n.unit}, {"low", n.low}, {"high", n.high}});
+  for (const PicturePlace& place : space.places) places.push_back({place.down, place.across});
+  return {{"numbers", numbers}, {"rotations", space.rotations}, {"places", places}};
+}
+
+ActionSpace read_action_space(const JsonReader& reader) {
+  ActionSpace space;
+  for (const JsonReader& number : reader.at("numbers").elements())
+    space.numbers.push_back({number.at("name").string(), number.at("unit").string(), number.at("low").number(),
+                             number.at("high").number()});
+  const auto indices = [&](const JsonReader& list) {
+    std::vector<std::size_t> all;
+    for (const JsonReader& index : list.elements())
+      all.push_back(static_cast<std::size_t>(index.integer(0, static_cast<long long>(space.size()) - 1)));
+    return all;
+  };
+  for (const JsonReader& rotation : reader.at("rotations").elements()) {
+    space.rotations.push_back(indices(rotation));
+    if (const std::size_t n = space.rotations.back().size(); n != 2 && n != 4) rotation.fail("two numbers or four");
   }
-  return v;
+  for (const JsonReader& place : reader.at("places").elements()) {
+    const std::vector<std::size_t> pair = indices(place);
+    if (pair.size() != 2) place.fail("two numbers");
+    space.places.push_back({pair[0], pair[1]});
+  }
+  return space;
 }
 
-Action from_vector(const ActionVector& v) {
-  return {{{v[0], v[1]}, {v[2], v[3], v[4], v[5]}}, {{v[6], v[7]}, {v[8], v[9], v[10], v[11]}}};
+Action executable(const ActionSpace& space, const Action& action) {
+  if (action.size() != space.size())
+    throw MethodError(fmt::format("action: expected {} numbers, got {}", space.size(), action.size()));
+  Action done = action;
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    const auto& [name, unit, low, high] = space.numbers[i];
+    if (!std::isfinite(done[i])) throw MethodError(fmt::format("{}: expected a finite number, got {}", name, done[i]));
+    done[i] = std::clamp(done[i], low, high);
+  }
+  for (const auto& rotation : space.rotations) {
+    const double norm = norm_of(action, rotation);
+    if (norm < least_norm)
+      throw MethodError(fmt::format("{}: expected a rotation of norm 1e-6 or more, got {}",
+                                    space.numbers[rotation.front()].name, norm));
+    for (const std::size_t i : rotation) done[i] = action[i] / norm;
+  }
+  return done;
 }
 
-Action executable(const Action& action) {
-  return {executable(action.pose0, "pose0"), executable(action.pose1, "pose1")};
+Action recorded(const ActionSpace& space, const Action& action) {
+  Action kept = action;
+  for (const auto& rotation : space.rotations)
+    if (rotation.size() == 4 && kept[rotation[3]] < 0)
+      for (const std::size_t i : rotation) kept[i] = -kept[i];
+  for (double& value : kept) value = static_cast<float>(value);
+  return kept;
+}
+
+Vec2 in_picture(const ActionSpace& space, const PicturePlace& place, const Action& action, PictureSize picture) {
+  return {share(space.numbers[place.across], action[place.across]) * picture.columns,
+          share(space.numbers[place.down], action[place.down]) * picture.rows};
 }
 
 }  // namespace lgabench

@@ -1,32 +1,57 @@
-// The action of every task: two poses on the table, 12 numbers.
+// Actions as data: numbers, and the space that says what each of them means.
 #pragma once
-#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
 
 #include <lgabench/core/geometry.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/observation.hpp>
 
 namespace lgabench {
 
-/// A position on the table and a rotation. As 6 numbers: x, y, then the quaternion x, y, z, w.
-struct PlanarPose {
-  Vec2 position_m;
-  Quat rotation;
+/// The numbers of one action, in the order of its environment's ActionSpace.
+using Action = std::vector<double>;
+
+/// What one of them is.
+struct ActionNumber {
+  std::string name, unit;  // "pose0.x", "m"; "" for a number without a unit
+  double low, high;        // what is outside is clipped when the action is carried out
 };
 
-/// pick_and_place and rotate: pose0 is where suction takes hold, pose1 where it lets go, turned by pose1's rotation.
-/// sweep: the spatula descends at pose0 and pushes straight to pose1. (VIMA's action space; paper, appendix.)
-struct Action {
-  PlanarPose pose0, pose1;
+/// Two numbers that are a place in the picture: their bounds are its edges.
+struct PicturePlace {
+  std::size_t down, across;  // which of the numbers grows along the rows, which along the columns
 };
 
-using ActionVector = std::array<float, 12>;
+/// What all actions of an environment have in common. A value.
+struct ActionSpace {
+  std::vector<ActionNumber> numbers;
+  /// Numbers that are a unit vector together, and are not clipped but normalised: four are a quaternion x, y, z, w, two
+  /// the cosine and the sine of an angle.
+  std::vector<std::vector<std::size_t>> rotations;
+  /// The first is where the action begins.
+  std::vector<PicturePlace> places;
 
-/// pose0 position (2), pose0 rotation (4), pose1 position (2), pose1 rotation (4). Quaternions are written with
-/// w >= 0, since q and -q turn alike and a regression target must be unique.
-ActionVector to_vector(const Action& action);
-Action from_vector(const ActionVector& values);
+  std::size_t size() const { return numbers.size(); }
+};
 
-/// The action that the environment carries out: positions clipped to the workspace, quaternions normalised.
-/// @throws MethodError if a number is not finite or a quaternion's norm is below 1e-6.
-Action executable(const Action& action);
+/// {"numbers": [{"name", "unit", "low", "high"}, ...], "rotations": [[index, ...], ...], "places": [[down, across],
+/// ...]}
+Json to_json(const ActionSpace& space);
+/// @throws InputError for an index that there is not, or a rotation of neither two numbers nor four.
+ActionSpace read_action_space(const JsonReader& reader);
+
+/// The action that is carried out: numbers clipped to their bounds, rotations normalised.
+/// @throws MethodError for another number of them, one that is not finite, or a rotation of norm below 1e-6.
+Action executable(const ActionSpace& space, const Action& action);
+
+/// As files, labels and learners have it: rounded to float, quaternions with w >= 0, since q and -q turn alike and a
+/// regression target must be unique. @pre as many numbers as the space has.
+Action recorded(const ActionSpace& space, const Action& action);
+
+/// Where a place of the action lies in a picture: x its column, y its row, in pixels, 0 at the picture's corner; within
+/// the picture. @pre as for recorded().
+Vec2 in_picture(const ActionSpace& space, const PicturePlace& place, const Action& action, PictureSize picture);
 
 }  // namespace lgabench

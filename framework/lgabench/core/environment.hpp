@@ -34,13 +34,16 @@ class Environment {
  public:
   virtual ~Environment() = default;
 
+  /// What the numbers of its actions mean; does not change.
+  virtual const ActionSpace& action_space() const = 0;
+
   /// Builds the scene anew. Pure: the same scene gives the same bytes, whatever was played before.
   /// @throws EngineError if the engine fails, InputError for an object type or texture that is not known.
   virtual Observation reset(const Scene& scene) = 0;
 
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
-  /// @throws MethodError for an action that is not finite, EngineError if the engine fails.
+  /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
 
   /// What is seen in the present state; also while step() is under way, by whoever looks on at the engine.

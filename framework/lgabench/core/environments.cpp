@@ -73,6 +73,12 @@ std::vector<TaskInfo> installed_tasks() {
   return all;
 }
 
+std::vector<std::string> installed_task_ids() {
+  std::vector<std::string> ids;
+  for (const TaskInfo& task : installed_tasks()) ids.push_back(task.id);
+  return ids;
+}
+
 std::vector<std::string> installed_layouts() {
   std::vector<std::string> layouts;
   for (const TaskInfo& task : installed_tasks()) append_new(layouts, task.layouts);

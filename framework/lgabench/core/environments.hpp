@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/core/action_space.hpp>
+#include <lgabench/core/action.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -48,6 +48,11 @@ class EnvironmentType {
 
   /// What the numbers of its actions mean.
   virtual const ActionSpace& action_space() const = 0;
+  /// Of each observation.
+  virtual PictureSize picture_size() const = 0;
+  /// Where the camera shows a point of the world, in metres: x its column, y its row, in pixels, 0 at the picture's
+  /// corner; also outside of the picture.
+  virtual Vec2 in_picture(Vec3 point_m) const = 0;
 
   /// Members that a scenario's file may have for the environment to read: beside those of scenario.hpp, and in "train"
   /// and each of "tests" beside those of Arm.
@@ -76,6 +81,8 @@ std::vector<std::string> environment_ids();
 
 /// Tasks of all that are installed.
 std::vector<TaskInfo> installed_tasks();
+/// Their ids.
+std::vector<std::string> installed_task_ids();
 /// Layouts of all tasks, each once.
 std::vector<std::string> installed_layouts();
 /// Words for a failure, in a report's order: of all environments, then the framework's.

@@ -6,15 +6,15 @@ namespace lgabench {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A point on the table, or a way along it.
+/// A point on a plane, or a way along it.
 struct Vec2 {
   double x = 0, y = 0;
 };
-/// z is the height above the table.
+/// z is the height above the plane.
 struct Vec3 {
   double x = 0, y = 0, z = 0;
 };
-/// Unit quaternion in the order x, y, z, w, as in VIMA's actions.
+/// Unit quaternion in the order x, y, z, w.
 struct Quat {
   double x = 0, y = 0, z = 0, w = 1;
 };
@@ -55,14 +55,5 @@ inline Vec3 rotated(Vec3 v, const Quat& q) {
   const Vec3 t = 2.0 * cross(u, v);
   return v + q.w * t + cross(u, t);
 }
-
-/// The table's working area and the picture that covers it (VIMA's workspace, orthographic top view).
-/// Picture rows run along +x (row 0 at x_min), columns along +y (column 0 at y_min); z points at the camera.
-struct Workspace {
-  static constexpr double x_min = 0.25, x_max = 0.75, y_min = -0.5, y_max = 0.5;
-  static constexpr int rows = 128, columns = 256;
-  /// Edges included.
-  static bool contains(Vec2 p) { return p.x >= x_min && p.x <= x_max && p.y >= y_min && p.y <= y_max; }
-};
 
 }  // namespace lgabench

@@ -63,6 +63,7 @@ struct Services {
   const Json& options;  // an object with every option of the descriptor, defaults filled in
   std::uint64_t seed;   // governs initial weights and batch order
   TrainingLog& log;
+  const ActionSpace& actions;  // what an action's numbers mean
   /// A command's true distribution, for a method whose descriptor asks for the truth; for others it throws MethodError.
   std::function<Selection(const Command&)> truth = {};
   /// A directory for pictures and curves of the method's own: plain files in it are kept with the cell (files/). It is
@@ -79,7 +80,7 @@ class Policy {
   /// The one action of an episode: a function of its arguments and of what was learned, so that the same scene gives
   /// the same action whatever was played before. `observation` comes from a scene that was not demonstrated;
   /// `instruction` may hold an utterance that was not, and any Selection, an empty one or the true one included.
-  /// @returns positions in metres in the frame of Workspace. Not finite: the episode fails as method_error.
+  /// @returns the numbers of Services::actions. Others, or one that is not finite: the episode fails as method_error.
   virtual Action act(const Observation& observation, const Instruction& instruction) = 0;
   /// Whether all that the last act() made its action of was, to the byte, an input that the policy learned from. None
   /// where it does not tell.

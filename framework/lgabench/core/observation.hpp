@@ -1,10 +1,9 @@
 // What a policy sees, and all that it may see.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <lgabench/core/geometry.hpp>
 
 namespace lgabench {
 
@@ -16,10 +15,18 @@ struct Instance {
   int pixels = 0;  // visible now; 0 if hidden
 };
 
-/// The orthographic top view, row-major, row 0 at the smallest x, column 0 at the smallest y, and its textualization.
-struct Observation {
-  static constexpr int rows = Workspace::rows, columns = Workspace::columns;  // 128 x 256
+/// Rows of a picture, from the top, and its columns, from the left.
+struct PictureSize {
+  int rows = 0, columns = 0;
+  std::size_t pixels() const { return static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns); }
+};
+inline bool operator==(PictureSize a, PictureSize b) { return a.rows == b.rows && a.columns == b.columns; }
+inline bool operator!=(PictureSize a, PictureSize b) { return !(a == b); }
 
+/// The camera's picture, row-major, and its textualization. An environment's pictures have one size
+/// (EnvironmentType::picture_size()); a method may make others for its own use.
+struct Observation {
+  PictureSize size;
   std::vector<std::uint8_t> rgb;  // rows x columns x 3
   std::vector<std::uint8_t> ids;  // rows x columns; 0 where there is no object
   std::vector<Instance> instances;

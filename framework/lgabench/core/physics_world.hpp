@@ -1,4 +1,5 @@
-// What an engine plugin provides: rigid bodies on a table. Tasks, success, pictures and the oracle are the framework's.
+// What an engine plugin provides: rigid bodies on a level plane. Tasks, success, pictures and the oracle are the
+// environment's.
 #pragma once
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct Contact {
 };
 constexpr int table_body = -1, spatula_body = -2, no_body = -3;
 
-/// Bodies under gravity 9.81 m/s^2 on a table whose top is z = 0 and reaches well beyond the workspace. One thread.
+/// Bodies under gravity 9.81 m/s^2 on a plane, z = 0, without an end: a table's top, a floor. One thread.
 /// Deterministic: the same calls give the same bits on one machine class. Owned by the host.
 /// Every call @throws EngineError if the engine reports a warning, an instability or a value that is not finite, or
 /// if it is called out of order (a body that is not placed, a move without a grip).
@@ -58,7 +59,7 @@ class PhysicsWorld {
   /// Pairs in which both bodies are at rest may be left out.
   virtual std::vector<Contact> contacts() const = 0;
 
-  /// First body hit by the vertical ray from above at `point`: no_body if only the table. `height_m` gets z of the hit.
+  /// First body hit by the vertical ray from above at `point`: no_body if only the plane. `height_m` gets z of the hit.
   /// The spatula is not seen.
   virtual int cast_down(Vec2 point, double& height_m) const = 0;
 

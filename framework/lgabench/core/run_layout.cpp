@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include <lgabench/core/hash.hpp>
+
 namespace lgabench {
 
 const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "learn", "evaluate"};
@@ -28,6 +30,14 @@ std::vector<std::string> artefact_names(const fs::path& files) {
 bool is_cell_key(const std::string& text) {
   return text.size() == 16 &&
          std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+}
+
+fs::path changed_file(const fs::path& cell, const JsonReader& status) {
+  const JsonReader files = status.at("files");
+  files.only(cell_files);
+  for (const auto& [name, sum] : files.json().items())
+    if (sum != sha256_file(cell / name)) return cell / name;
+  return {};
 }
 
 std::vector<std::string> read_cell_keys(const JsonReader& run) {

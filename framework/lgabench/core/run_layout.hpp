@@ -20,6 +20,10 @@ std::vector<std::string> artefact_names(const fs::path& files);
 /// 16 hexadecimal digits: the name of a cell's directory.
 bool is_cell_key(const std::string& text);
 
+/// The first file of the cell that status.json names and whose bytes are not those that it names; "" where there is
+/// none. @throws InputError where one cannot be read, or is none of cell_files.
+fs::path changed_file(const fs::path& cell, const JsonReader& status);
+
 /// run.json's "cells". @throws InputError where one of them is no key.
 std::vector<std::string> read_cell_keys(const JsonReader& run);
 

@@ -13,10 +13,17 @@ Json to_json(const Scene& scene) {
                        {"position_m", {o.position_m.x, o.position_m.y}},
                        {"yaw_rad", o.yaw_rad},
                        {"instance_id", o.instance_id}});
-  return {{"scenario", scene.scenario},   {"arm", scene.arm},   {"layout", scene.layout},
-          {"split", scene.split},         {"seed", scene.seed}, {"index", scene.index},
-          {"command", scene.command},     {"task", scene.task}, {"angle_rad", scene.angle_rad},
-          {"objects", std::move(objects)}};
+  Json json = scene.parameters;
+  json.update({{"scenario", scene.scenario},
+               {"arm", scene.arm},
+               {"layout", scene.layout},
+               {"split", scene.split},
+               {"seed", scene.seed},
+               {"index", scene.index},
+               {"command", scene.command},
+               {"task", scene.task},
+               {"objects", std::move(objects)}});
+  return json;
 }
 
 std::uint64_t Scene::hash() const { return hash64(canonical(to_json(*this))); }

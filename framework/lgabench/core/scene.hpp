@@ -1,6 +1,7 @@
 // A scene: all that is sampled for an episode, before physics.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct SceneObject {
 /// Never given to a method: it holds roles, seed and index.
 struct Scene {
   std::string scenario, arm, layout, split;
-  std::string task;      // an id of the environment's list
-  double angle_rad = 0;  // the turn that the task asks for; 0 where it asks for none
+  std::string task;  // an id of the environment's list
+  /// What else the environment needs to know of it, by its own names.
+  std::map<std::string, double> parameters;
   std::uint64_t seed = 0;
   int index = 0;
   int command = 0;                   // which of the scenario's commands is given

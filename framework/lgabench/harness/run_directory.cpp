@@ -77,9 +77,7 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
     }
     for (const char* name : result_files) reader.at("files").at(name).string();
     reader.at("files").at("timing.json").string();
-    reader.at("files").only(cell_files);
-    for (const auto& file : reader.at("files").json().items())
-      if (sha256_file(cell / file.key()) != file.value()) return not_its_own(cell / file.key());
+    if (const fs::path changed = changed_file(cell, reader); !changed.empty()) return not_its_own(changed);
     if (sha256(canonical(read_json(cell / "cell.json"))).substr(0, key.size()) != key)
       return not_its_own(cell / "cell.json");
     const Json& there = reader.at("build").json();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <new>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -38,6 +39,11 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   return command;
 }
 
+protocol::Layout layout_of(const std::string& environment) {
+  const EnvironmentType& type = find_environment(environment);
+  return {type.picture_size(), type.action_space()};
+}
+
 Json method_json(const PluginInfo& method) {
   Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
   if (!method.python.is_null()) json["class"] = method.python.at("class");
@@ -63,7 +69,10 @@ Reach reach_of(const HostJob& job) {
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
     const std::string name = entry.path().filename();
     const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
-    (readable ? reach.reads : reach.hidden).push_back(entry.path());
+    std::vector<fs::path>& list = readable ? reach.reads : reach.hidden;
+    list.push_back(entry.path());
+    for (const auto& file : fs::directory_iterator(entry.path(), none_there))
+      if (file.is_symlink()) list.push_back(file.path());  // in a build tree, to the sources
   }
   return reach;
 }
@@ -74,17 +83,18 @@ Reach reach_of(const HostJob& job) {
 class HostSession {
  public:
   explicit HostSession(const HostJob& job)
-      : confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
+      : layout_(layout_of(job.environment)),
+        confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
         process_(command_of(job, confinement_.get())),
         channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),
-        observation_(protocol::observation_bytes) {
+        observation_(protocol::observation_bytes(layout_.picture)) {
     Json hello{{"type", "hello"},
                {"protocol", protocol_version},
                {"method", method_json(job.method)},
                {"options", job.options},
                {"seed", job.seed},
                {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
-    hello.update(protocol::layout());
+    hello.update(protocol::to_json(layout_));
     const Frame answer = call(hello, "hello", {}, &observation_.file());
     read([&] { return JsonReader(answer.header, "hello").at("protocol").integer(protocol_version, protocol_version); });
   }
@@ -116,6 +126,7 @@ class HostSession {
     return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });
   }
 
+  const protocol::Layout& layout() const { return layout_; }
   protocol::SharedMemory& observation() { return observation_; }
 
  private:
@@ -142,6 +153,7 @@ class HostSession {
     throw MethodError(reason);
   }
 
+  const protocol::Layout layout_;
   std::unique_ptr<Confinement> confinement_;
   HostProcess process_;
   Channel channel_;
@@ -167,7 +179,7 @@ class HostedPolicy : public Policy {
       const JsonReader reader(frame.header, "action");
       seen_.reset();
       if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
-      return protocol::read_action(frame.payload);
+      return protocol::read_action(frame.payload, session_->layout().actions.size());
     });
   }
   std::optional<bool> seen_in_training() const override { return seen_; }
@@ -220,7 +232,7 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
     }
     return true;
   };
-  const protocol::DemonstrationFile packed = protocol::pack(demonstrations);
+  const protocol::DemonstrationFile packed = protocol::pack(session_->layout(), demonstrations);
   Json request = packed.header;
   request["type"] = "learn";
   try {

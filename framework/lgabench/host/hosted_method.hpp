@@ -17,6 +17,7 @@ namespace lgabench {
 /// What a method's process is started with.
 struct HostJob {
   PluginInfo method;
+  std::string environment;                      // the cell's
   Json options;                                 // every one
   std::uint64_t seed;                           // as Services::seed
   std::filesystem::path scratch;                // an empty directory of its own

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cstring>
-
-#include <lgabench/core/action_space.hpp>
 
 namespace lgabench::protocol {
 namespace {
@@ -16,12 +13,6 @@ using Group = Question::Group;
 FeatureSet read_set(const JsonReader& reader) {
   reader.only({"object_types", "textures"});
   return {reader.at("object_types").strings(), reader.at("textures").strings()};
-}
-
-std::array<double, 12> numbers(const Action& action) {
-  const auto& [p, q] = action;
-  return {p.position_m.x, p.position_m.y, p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w,
-          q.position_m.x, q.position_m.y, q.rotation.x, q.rotation.y, q.rotation.z, q.rotation.w};
 }
 
 }  // namespace
@@ -195,26 +186,30 @@ std::vector<LogEntry> read_log(const Frame& frame) {
 }
 
 std::string to_bytes(const Action& action) {
-  const std::array<double, 12> values = numbers(action);
-  return {reinterpret_cast<const char*>(values.data()), sizeof values};
+  return {reinterpret_cast<const char*>(action.data()), action.size() * sizeof action[0]};
 }
 
-Action read_action(const std::string& bytes) {
-  std::array<double, 12> v{};
-  if (bytes.size() != sizeof v)
-    throw InputError("action: expected 96 bytes, 12 doubles, got " + std::to_string(bytes.size()));
-  std::memcpy(v.data(), bytes.data(), sizeof v);
-  return {{{v[0], v[1]}, {v[2], v[3], v[4], v[5]}}, {{v[6], v[7]}, {v[8], v[9], v[10], v[11]}}};
+Action read_action(const std::string& bytes, std::size_t numbers) {
+  Action action(numbers);
+  if (bytes.size() != numbers * sizeof action[0])
+    throw InputError(fmt::format("action: expected {} bytes, {} doubles, got {}", numbers * sizeof action[0], numbers,
+                                 bytes.size()));
+  std::memcpy(action.data(), bytes.data(), bytes.size());
+  return action;
 }
 
-Json layout() {
-  return {{"observation",
-           {{"rows", Observation::rows},
-            {"columns", Observation::columns},
-            {"channels", 3},
-            {"x_m", {Workspace::x_min, Workspace::x_max}},
-            {"y_m", {Workspace::y_min, Workspace::y_max}}}},
-          {"action", lgabench::to_json(two_poses())}};
+Json to_json(const Layout& layout) {
+  return {{"observation", {{"rows", layout.picture.rows}, {"columns", layout.picture.columns}, {"channels", 3}}},
+          {"action", to_json(layout.actions)}};
+}
+
+Layout read_layout(const JsonReader& hello) {
+  constexpr int longest = 1 << 14;
+  const JsonReader observation = hello.at("observation");
+  observation.at("channels").integer(3, 3);
+  return {{static_cast<int>(observation.at("rows").integer(1, longest)),
+           static_cast<int>(observation.at("columns").integer(1, longest))},
+          read_action_space(hello.at("action"))};
 }
 
 }  // namespace lgabench::protocol

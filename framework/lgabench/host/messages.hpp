@@ -59,13 +59,18 @@ struct LogEntry {
 Frame log_frame(const std::vector<LogEntry>& entries);
 std::vector<LogEntry> read_log(const Frame& frame);
 
-/// 12 doubles: pose0's position and rotation, then pose1's; NaN and infinity included.
+/// A double for each number; NaN and infinity included.
 std::string to_bytes(const Action& action);
-/// @throws InputError for another number of bytes.
-Action read_action(const std::string& bytes);
+/// @throws InputError for bytes of another number of them.
+Action read_action(const std::string& bytes, std::size_t numbers);
 
-/// What an observation and an action are: rows, columns, channels, names, units and bounds.
-Json layout();
+/// What observations and actions of an environment are, as the worker says it in "hello".
+struct Layout {
+  PictureSize picture;
+  ActionSpace actions;
+};
+Json to_json(const Layout& layout);
+Layout read_layout(const JsonReader& hello);
 
 /// A file in memory, mapped. The last of its maps and descriptors frees it.
 class SharedMemory {
@@ -90,12 +95,14 @@ class SharedMemory {
 };
 
 /// rgb, then ids.
-constexpr std::size_t observation_bytes = std::size_t{Observation::rows} * Observation::columns * 4;
-/// Copies the pictures; instances are instances_json().
+inline std::size_t observation_bytes(PictureSize picture) { return 4 * picture.pixels(); }
+/// Copies the pictures; instances are instances_json(). @throws Error for an observation of another size than the
+/// memory's.
 void write(const Observation& observation, SharedMemory& memory);
 Json instances_json(const Observation& observation);
 /// Into `observation`, whose memory it uses again.
-void read_observation(const SharedMemory& memory, const JsonReader& instances, Observation& observation);
+void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances,
+                      Observation& observation);
 
 /// All demonstrations as arrays in one sealed file, and the JSON that says where each lies.
 struct DemonstrationFile {
@@ -103,7 +110,7 @@ struct DemonstrationFile {
   Descriptor file;
   std::size_t size = 0;  // bytes
 };
-DemonstrationFile pack(const std::vector<Demonstration>& demonstrations);
-std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file);
+DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& demonstrations);
+std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header, const Descriptor& file);
 
 }  // namespace lgabench::protocol

@@ -121,15 +121,6 @@ class RemoteLog : public TrainingLog {
   Clock::time_point sent_ = Clock::now();
 };
 
-void expect_this_layout(const JsonReader& hello) {
-  const Json ours = protocol::layout();
-  for (const auto& [name, value] : ours.items())
-    if (hello.at(name).json() != value)
-      throw PluginError(
-          fmt::format("/{}: {} (this program: {})", name, canonical(hello.at(name).json()), canonical(value)));
-  hello.at("protocol").integer(protocol_version, protocol_version);
-}
-
 // One plugin from loading to its end.
 class Host {
  public:
@@ -138,9 +129,10 @@ class Host {
         model_(channel),
         human_(channel),
         log_(channel),
-        memory_(hello.file, protocol::observation_bytes) {
+        layout_(protocol::read_layout({hello.header, "hello"})),
+        memory_(hello.file, protocol::observation_bytes(layout_.picture)) {
     const JsonReader reader(hello.header, "hello");
-    expect_this_layout(reader);
+    reader.at("protocol").integer(protocol_version, protocol_version);
     options_ = reader.at("options").json();
     const JsonReader seed = reader.at("seed");
     if (!seed.json().is_number_unsigned()) seed.fail("a whole number, 0 or more");
@@ -178,8 +170,13 @@ class Host {
  private:
   Frame reply_to(const Frame& frame) {
     const JsonReader reader(frame.header, frame.type());
-    Services services{model_, human_, options_,
-                      seed_,  log_,   [this](const Command& command) { return human_.truth(command); },
+    Services services{model_,
+                      human_,
+                      options_,
+                      seed_,
+                      log_,
+                      layout_.actions,
+                      [this](const Command& command) { return human_.truth(command); },
                       files_};
     if (frame.type() == "needs") {
       Json needs = protocol::to_json(call([&] { return method().needs(options_); }));
@@ -193,19 +190,21 @@ class Host {
       return {{{"type", "selection"}, {"selection", distribution_json(selection)}}};
     }
     if (frame.type() == "learn") {
-      const std::vector<Demonstration> demonstrations = protocol::unpack(reader, frame.file);
+      const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
       policy_ = call([&] { return method().learn(demonstrations, services); });
       if (!policy_) throw MethodError("learn returned no policy");
       return {{{"type", "learned"}}};
     }
     if (frame.type() == "act") {
       if (!policy_) throw MethodError("asked to act before it learned");
-      protocol::read_observation(memory_, reader.at("instances"), observation_);
+      protocol::read_observation(memory_, layout_.picture, reader.at("instances"), observation_);
       const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
       const Action action = call([&] {
         if (reader.at("reset").boolean()) policy_->reset();
         return policy_->act(observation_, instruction);
       });
+      if (action.size() != layout_.actions.size())
+        throw MethodError(fmt::format("act() returned {} numbers, expected {}", action.size(), layout_.actions.size()));
       Json reply{{"type", "action"}};
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       return {reply, protocol::to_bytes(action)};
@@ -247,6 +246,7 @@ class Host {
   RemoteModel model_;
   RemoteHuman human_;
   RemoteLog log_;
+  protocol::Layout layout_;
   protocol::SharedMemory memory_;
   Observation observation_;                              // the last one
   const ProcessState before_ = ProcessState::now();      // the plugin came

@@ -17,8 +17,7 @@
 namespace lgabench::protocol {
 namespace {
 
-constexpr std::size_t pixels = std::size_t{Observation::rows} * Observation::columns;
-constexpr std::size_t action_numbers = 12, instance_numbers = 5;
+constexpr std::size_t instance_numbers = 5;
 constexpr std::size_t most_bytes = std::size_t{1} << 36;
 
 [[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
@@ -110,6 +109,10 @@ SharedMemory::~SharedMemory() {
 }
 
 void write(const Observation& observation, SharedMemory& memory) {
+  const std::size_t pixels = observation.size.pixels();
+  if (observation_bytes(observation.size) != memory.size())
+    throw Error(fmt::format("observation: expected the environment's size, got {} x {}", observation.size.rows,
+                            observation.size.columns));
   std::memcpy(memory.data(), observation.rgb.data(), 3 * pixels);
   std::memcpy(memory.data() + 3 * pixels, observation.ids.data(), pixels);
 }
@@ -121,17 +124,22 @@ Json instances_json(const Observation& observation) {
   return all;
 }
 
-void read_observation(const SharedMemory& memory, const JsonReader& instances, Observation& observation) {
+void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances,
+                      Observation& observation) {
+  const std::size_t pixels = picture.pixels();
+  observation.size = picture;
   observation.rgb.assign(memory.data(), memory.data() + 3 * pixels);
   observation.ids.assign(memory.data() + 3 * pixels, memory.data() + 4 * pixels);
   observation.instances.clear();
   for (const JsonReader& one : instances.elements())
     observation.instances.push_back({static_cast<std::uint8_t>(one.at("id").integer(0, 255)),
                                      one.at("object_type").string(), one.at("texture").string(),
-                                     static_cast<int>(one.at("pixels").integer(0, pixels))});
+                                     static_cast<int>(one.at("pixels").integer(0, static_cast<long long>(pixels)))});
 }
 
-DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
+DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& demonstrations) {
+  const auto rows = static_cast<std::size_t>(layout.picture.rows), columns = layout.picture.pixels() / rows;
+  const std::size_t pixels = layout.picture.pixels();
   std::size_t steps = 0, instances = 0;
   Json instructions = Json::array();
   for (const Demonstration& demonstration : demonstrations) {
@@ -140,10 +148,9 @@ DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
     for (const Step& step : demonstration.steps) instances += step.observation.instances.size();
   }
   Arrays arrays;
-  constexpr std::size_t rows = Observation::rows, columns = Observation::columns;
   const std::size_t rgb = arrays.add("rgb", "u1", 1, {steps, rows, columns, 3});
   const std::size_t ids = arrays.add("ids", "u1", 1, {steps, rows, columns});
-  const std::size_t labels = arrays.add("labels", "f8", 8, {steps, action_numbers});
+  const std::size_t labels = arrays.add("labels", "f8", 8, {steps, layout.actions.size()});
   const std::size_t owners = arrays.add("demonstration", "i4", 4, {steps});
   const std::size_t table = arrays.add("instances", "i4", 4, {instances, instance_numbers});
   Descriptor file = memory_file(arrays.size);
@@ -179,7 +186,7 @@ DemonstrationFile pack(const std::vector<Demonstration>& demonstrations) {
           arrays.size};
 }
 
-std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& file) {
+std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header, const Descriptor& file) {
   struct stat status {};
   if (::fstat(file.fd, &status) != 0) throw InputError("demonstrations: no file came with them");
   const auto size = std::min(static_cast<std::size_t>(status.st_size), most_bytes);
@@ -190,11 +197,12 @@ std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& fi
               labels = array_at(arrays, "labels", "f8", 8, size),
               owners = array_at(arrays, "demonstration", "i4", 4, size),
               table = array_at(arrays, "instances", "i4", 4, size);
-  constexpr std::size_t rows = Observation::rows, columns = Observation::columns;
+  const auto rows = static_cast<std::size_t>(layout.picture.rows), columns = layout.picture.pixels() / rows;
+  const std::size_t pixels = layout.picture.pixels(), numbers = layout.actions.size();
   const std::size_t steps = owners.shape.size() == 1 ? owners.shape[0] : 0;
   using Shape = std::vector<std::size_t>;
   if (rgb.shape != Shape{steps, rows, columns, 3} || ids.shape != Shape{steps, rows, columns} ||
-      labels.shape != Shape{steps, action_numbers} || table.shape.size() != 2 || table.shape[1] != instance_numbers)
+      labels.shape != Shape{steps, numbers} || table.shape.size() != 2 || table.shape[1] != instance_numbers)
     arrays.fail("arrays of the shapes that the protocol names");
 
   std::vector<Demonstration> all;
@@ -210,10 +218,11 @@ std::vector<Demonstration> unpack(const JsonReader& header, const Descriptor& fi
     Step step;
     const std::uint8_t* const colours = memory.data() + rgb.offset + s * 3 * pixels;
     const std::uint8_t* const labelled = memory.data() + ids.offset + s * pixels;
+    step.observation.size = layout.picture;
     step.observation.rgb.assign(colours, colours + 3 * pixels);
     step.observation.ids.assign(labelled, labelled + pixels);
-    const auto* const label = reinterpret_cast<const char*>(memory.data() + labels.offset + s * action_numbers * 8);
-    step.label = read_action({label, action_numbers * 8});
+    const auto* const label = reinterpret_cast<const char*>(memory.data() + labels.offset + s * numbers * 8);
+    step.label = read_action({label, numbers * 8}, numbers);
     owner.push_back(std::move(step));
     by_index.push_back(&owner.back());
   }

@@ -134,10 +134,8 @@ PictureRequest read_picture_request(const JsonReader& reader) {
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
   if (!reader.has("ends")) return request;
   for (const JsonReader& end : reader.at("ends").elements()) {
-    ActionVector& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;
-    const std::vector<JsonReader> numbers = end.at("action").elements();
-    if (numbers.size() != action.size()) end.at("action").fail("12 numbers");
-    for (std::size_t i = 0; i < action.size(); ++i) action[i] = static_cast<float>(numbers[i].number());
+    Action& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;
+    for (const JsonReader& number : end.at("action").elements()) action.push_back(number.number());
   }
   return request;
 }

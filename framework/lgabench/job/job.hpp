@@ -72,7 +72,7 @@ struct PictureRequest {
   /// The scene is drawn after each of these, carried out from its beginning.
   struct End {
     std::string engine;
-    ActionVector action{};
+    Action action{};
   };
   std::vector<End> ends{};
 };

@@ -30,34 +30,45 @@ struct Side {
 }  // namespace
 
 struct CentroidRule::Impl {
+  const SampleShape shape;
+  const Field field;
   Eye eye;
   std::optional<Action> mean;    // of all
   std::optional<Motion> motion;  // of those whose target is seen
   std::vector<Side> sides;       // of each group of those
   std::vector<float> outputs;
 
-  std::optional<Places> look(const float* mask, const Vec2* pose0) {
-    const std::optional<Vec2> taken = eye.taken(mask, pose0);
+  explicit Impl(const SampleShape& of_a_row) : shape(of_a_row), field(of_a_row.actions) {}
+
+  FieldMask mask_of(const Samples& samples, int row) const {
+    return {samples.picture(0, row), shape.pictures[0].size, field};
+  }
+
+  std::optional<Places> look(const FieldMask& mask, const Vec2* begin) {
+    const std::optional<Vec2> taken = eye.taken(mask, begin);
     if (!taken) return std::nullopt;
-    return Places{*taken, avoided_in(mask)};
+    return Places{*taken, mask.avoided()};
   }
 
   void fit(const Samples& samples) {
     std::vector<Action> labels;
     std::vector<Demonstrated> seen;
     for (int row = 0; row < samples.rows; ++row) {
-      const float* const mask = samples.picture(0, row);
-      const Action done = executable(samples.label(row));
+      const FieldMask mask = mask_of(samples, row);
+      const Action done = executable(shape.actions, samples.label(row));
       labels.push_back(done);
-      const auto places = look(mask, &done.pose0.position_m);
+      const Vec2 begin = place_of(shape.actions, done, 0);
+      const auto places = look(mask, &begin);
       if (!places) continue;
-      seen.push_back({done, *places, {on_target(mask, done.pose0.position_m), on_target(mask, done.pose1.position_m)}});
+      Demonstrated& one = seen.emplace_back(Demonstrated{done, *places, {}});
+      for (std::size_t i = 0; i < shape.actions.places.size(); ++i)
+        one.on_target.push_back(mask.on_target(place_of(shape.actions, done, i)));
     }
-    mean = mean_action(labels);
+    mean = mean_action(shape.actions, labels);
     if (seen.empty()) return;
     const bool takes = mostly_on_target(seen, 0);
-    const Groups groups = takes ? one_group(seen) : by_push(seen);
-    motion.emplace(seen, groups, takes, false);
+    const Groups groups = takes ? one_group(seen) : by_push(shape.actions, seen);
+    motion.emplace(shape.actions, seen, groups, takes, false);
     for (const auto& group : groups) {
       Side& side = sides.emplace_back(Side{group.size()});
       for (const std::size_t member : group) side.to_second = side.to_second + to_second(seen[member].places);
@@ -65,7 +76,7 @@ struct CentroidRule::Impl {
     }
   }
 
-  Action act(const float* mask) {
+  Action act(const FieldMask& mask) {
     const auto places = look(mask, nullptr);
     return places && motion ? motion->act(*places, nearest(to_second(*places))) : *mean;
   }
@@ -82,9 +93,10 @@ struct CentroidRule::Impl {
   }
 };
 
-CentroidRule::CentroidRule(const SampleShape& shape) : impl_(std::make_unique<Impl>()) {
-  if (shape.pictures.size() != 1 || !(shape.pictures[0].size == native_size) || shape.pictures[0].channels != 1)
-    throw InputError("inputs: expected one mask of 128 x 256 for policy=centroid");
+CentroidRule::CentroidRule(const SampleShape& shape) {
+  if (shape.pictures.size() != 1 || shape.pictures[0].channels != 1)
+    throw InputError("inputs: expected one mask for policy=centroid");
+  impl_ = std::make_unique<Impl>(shape);
 }
 CentroidRule::~CentroidRule() = default;
 
@@ -99,7 +111,7 @@ void CentroidRule::begin(const Samples& samples) { impl_->fit(samples); }
 const std::vector<float>& CentroidRule::predict(const Samples& samples) {
   impl_->outputs.clear();
   for (int row = 0; row < samples.rows; ++row) {
-    const ActionVector action = to_vector(impl_->act(samples.picture(0, row)));
+    const Action action = recorded(impl_->shape.actions, impl_->act(impl_->mask_of(samples, row)));
     impl_->outputs.insert(impl_->outputs.end(), action.begin(), action.end());
   }
   return impl_->outputs;

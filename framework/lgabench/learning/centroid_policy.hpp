@@ -8,21 +8,22 @@
 
 namespace lgabench {
 
-/// Sees one signed mask of 128 x 256 (shrink_mask()): target and avoid set apart, which the mask that LGA's network
-/// sees does not tell. Fitted by begin(); trains in no pass and has no parameters.
+/// Sees one signed mask (shrink_mask()), of the native size: target and avoid set apart, which the mask that LGA's
+/// network sees does not tell. Fitted by begin(); trains in no pass and has no parameters.
 ///
 /// The taken point is the centroid of the target's pixels (of several pieces the largest one's; in a demonstration the
-/// one's nearest to pose0), moved to the piece's nearest pixel with two more on every side where it is not on such a
-/// one. pose0 is the taken point where most demonstrations begin on the target. Each other coordinate of the positions
-/// is the demonstrations' mean on the table or relative to the taken point, whichever varies less (spreads below 1 mm
-/// are equal; of equals the latter where most demonstrated positions lie on the target). Rotations are means.
+/// one's nearest to where the action begins), moved to the piece's nearest pixel with two more on every side where it
+/// is not on such a one. The action's first place is the taken point where most demonstrations begin on the target.
+/// Each other coordinate of the places is the demonstrations' mean as it is or relative to the taken point, whichever
+/// varies less (spreads below 1 mm are equal; of equals the latter where most demonstrated places lie on the target).
+/// All else are means.
 ///
 /// Where most do not begin on the target (sweep), demonstrations of one direction of push (unit vectors within .15) are
 /// a group with means of its own; a scene is given the largest of the groups whose mean direction from the taken point
 /// to the centroid of the avoided pixels is nearest, up to .15.
 class CentroidRule : public Learner {
  public:
-  /// @throws InputError for rows of another shape.
+  /// @throws InputError for rows of another shape, and for actions without a place in the picture.
   explicit CentroidRule(const SampleShape& shape);
   ~CentroidRule() override;
   CentroidRule(const CentroidRule&) = delete;

@@ -54,9 +54,8 @@ class CloningPolicy : public Policy {
   Action act(const Observation& observation, const Instruction& instruction) override {
     featurizer_.write(observation, instruction, Phase::test, input_, 0);
     seen_.meet(hash_of(input_, 0));
-    ActionVector action;
-    std::copy_n(learner_->predict(input_).begin(), action.size(), action.begin());
-    return from_vector(action);
+    const std::vector<float>& predicted = learner_->predict(input_);
+    return {predicted.begin(), predicted.end()};
   }
 
   std::optional<bool> seen_in_training() const override { return seen_.last(); }
@@ -72,6 +71,12 @@ class CloningPolicy : public Policy {
 std::string option(const Services& services, const char* name, const char* usual) {
   const JsonReader options(services.options, "options");
   return options.has(name) ? options.at(name).string() : usual;
+}
+
+PictureSize picture_size(const std::vector<Demonstration>& demonstrations) {
+  for (const Demonstration& demonstration : demonstrations)
+    for (const Step& step : demonstration.steps) return step.observation.size;
+  throw MethodError("training: expected at least one demonstration, got none");
 }
 
 TrainingOptions training_options(const Services& services) {
@@ -103,7 +108,9 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   PolicyInputs seen = inputs(services.options);
   if (option(services, "instances", "all") == "first") seen.instances = Instances::first;
   if (option(services, "mask", "binary") == "signed") seen.signed_mask = true;
-  Featurizer featurizer(inputs_of(option(services, "policy", "regression"), std::move(seen)));
+  Featurizer featurizer(
+      inputs_of(option(services, "policy", "regression"), std::move(seen), picture_size(demonstrations)),
+      services.actions);
   const Samples samples = training_rows(featurizer.samples(demonstrations), services);
   std::unique_ptr<Learner> trained = learner(samples.shape, services);
   train(*trained, samples, options, services.seed, services.log);

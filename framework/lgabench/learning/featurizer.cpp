@@ -9,12 +9,13 @@ namespace lgabench {
 
 using Picture = PolicyInputs::Picture;
 
-Featurizer::Featurizer(PolicyInputs inputs) : inputs_(std::move(inputs)) {
+Featurizer::Featurizer(PolicyInputs inputs, ActionSpace actions)
+    : inputs_(std::move(inputs)), actions_(std::move(actions)) {
   if (inputs_.text != PolicyInputs::Text::none) embeddings_ = std::make_shared<SentenceEmbeddings>();
 }
 
 SampleShape Featurizer::shape() const {
-  SampleShape shape{{}, inputs_.text != PolicyInputs::Text::none};
+  SampleShape shape{{}, inputs_.text != PolicyInputs::Text::none, actions_};
   for (const Picture picture : inputs_.pictures)
     shape.pictures.push_back(picture == Picture::rgb ? SampleShape::Picture{inputs_.rgb_size, 3}
                                                      : SampleShape::Picture{inputs_.mask_size, 1});
@@ -30,8 +31,8 @@ Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations) {
   for (const Demonstration& demonstration : demonstrations)
     for (const Step& step : demonstration.steps) {
       write(step.observation, demonstration.instruction, Phase::training, samples, row++);
-      const ActionVector action = to_vector(step.label);
-      label = std::copy(action.begin(), action.end(), label);
+      label = std::transform(step.label.begin(), step.label.end(), label,
+                             [](double value) { return static_cast<float>(value); });
     }
   return samples;
 }
@@ -55,7 +56,7 @@ void Featurizer::write_pictures(const Observation& observation, const Selection&
     const Picture picture = inputs_.pictures[i];
     float* const out = samples.picture(i, row);
     if (picture == Picture::rgb) {
-      shrink_rgb(observation.rgb, inputs_.rgb_size, out);
+      shrink_rgb(observation.rgb, observation.size, inputs_.rgb_size, out);
       continue;
     }
     if (picture == Picture::segmentation)
@@ -64,7 +65,7 @@ void Featurizer::write_pictures(const Observation& observation, const Selection&
       role_mask(observation, selection, mask_, inputs_.instances);
     else
       goal_mask(observation, selection, mask_, inputs_.instances);
-    shrink_mask(mask_, inputs_.mask_size, out);
+    shrink_mask(mask_, observation.size, inputs_.mask_size, out);
   }
 }
 

@@ -49,15 +49,16 @@ struct PolicyInputs {
 /// One thread. Copies share the sentence embeddings.
 class Featurizer {
  public:
-  /// @throws InputError for a text without a sentence embedding, where the encoder's weights are not there; write()
-  /// too.
-  explicit Featurizer(PolicyInputs inputs);
+  /// `actions`: Services::actions. @throws InputError for a text without a sentence embedding, where the encoder's
+  /// weights are not there; write() too.
+  Featurizer(PolicyInputs inputs, ActionSpace actions);
 
   SampleShape shape() const;
   /// A row for each step of each demonstration, in their order, with its label.
   Samples samples(const std::vector<Demonstration>& demonstrations);
   /// The inputs of one row; its label stays. Allocates nothing after the first, unless `prepare` does.
-  /// @throws MethodError for an utterance that `masks` lacks. InputError for a picture of another size.
+  /// @throws MethodError for an utterance that `masks` lacks. InputError for a picture whose pixels do not fit its
+  /// size.
   void write(const Observation& observation, const Instruction& instruction, Phase phase, Samples& samples, int row);
 
  private:
@@ -65,6 +66,7 @@ class Featurizer {
   void write_pictures(const Observation& observation, const Selection& selection, Samples& samples, int row);
 
   PolicyInputs inputs_;
+  ActionSpace actions_;
   std::shared_ptr<SentenceEmbeddings> embeddings_;  // null without a text
   std::vector<std::uint8_t> mask_;
 };

@@ -20,8 +20,8 @@ void FirstConvolution::make_room(int rows) {
   numbers_ = Numbers(size(most * layer_.out_channels));
 }
 
-Layer FirstConvolution::on_patches(int channels) const {
-  return {1, static_cast<int>(places_.size()), layer_.kernel * layer_.segment(), 1, 1, channels};
+Layer FirstConvolution::on_patches() const {
+  return {1, static_cast<int>(places_.size()), layer_.kernel * layer_.segment(), 1, 1, layer_.out_channels};
 }
 
 // Appends the patches of one picture that differ.
@@ -75,7 +75,7 @@ bool FirstConvolution::find(const std::vector<const float*>& pictures, const flo
 void FirstConvolution::forward(const float* weights, const float* bias, bool relu, float* out) {
   static const float no_bias[most_channels] = {};
   kernels_.forward(layer_, usual_, weights, bias, whole_, false);
-  kernels_.forward(on_patches(layer_.out_channels), patches_, weights, no_bias, numbers_, false);
+  kernels_.forward(on_patches(), patches_, weights, no_bias, numbers_, false);
   for (int row = 0; row < rows_; ++row)
     std::copy_n(static_cast<const float*>(whole_), layer_.outputs(), out + row * layer_.outputs());
   const float* from = numbers_;
@@ -85,16 +85,15 @@ void FirstConvolution::forward(const float* weights, const float* bias, bool rel
   for (int i = 0; i < rows_ * layer_.outputs(); ++i) out[i] = std::max(out[i], 0.f);
 }
 
-void FirstConvolution::weight_gradient(const float* gradient, int channels, float* weight_gradient) {
-  Layer layer = layer_;
-  layer.out_channels = channels;
+void FirstConvolution::weight_gradient(const float* gradient, float* weight_gradient) {
+  const int channels = layer_.out_channels;
   float* to = numbers_;
   for (const int place : places_) to = std::copy_n(gradient + place * channels, channels, to);
   const float* const patches = patches_;
-  kernels_.weight_gradient(on_patches(channels), &patches, numbers_, weight_gradient, 1);
-  kernels_.sum_rows(gradient, whole_, rows_, layer.outputs());
-  kernels_.weight_gradient(layer, &usual_, whole_, usual_gradient_, 1);
-  for (int i = 0; i < layer.weights(); ++i) weight_gradient[i] += usual_gradient_[i];
+  kernels_.weight_gradient(on_patches(), &patches, numbers_, weight_gradient, 1);
+  kernels_.sum_rows(gradient, whole_, rows_, layer_.outputs());
+  kernels_.weight_gradient(layer_, &usual_, whole_, usual_gradient_, 1);
+  for (int i = 0; i < layer_.weights(); ++i) weight_gradient[i] += usual_gradient_[i];
 }
 
 }  // namespace lgabench

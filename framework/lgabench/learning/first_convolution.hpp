@@ -22,11 +22,11 @@ class FirstConvolution {
   bool find(const std::vector<const float*>& pictures, const float* usual, int rows);
   /// Of the pictures that find() took: rows x out rows x out columns x out channels.
   void forward(const float* weights, const float* bias, bool relu, float* out);
-  /// Of the last forward(), from the gradient of `channels` of its outputs.
-  void weight_gradient(const float* gradient, int channels, float* weight_gradient);
+  /// Of the last forward(), from the gradient of its outputs.
+  void weight_gradient(const float* gradient, float* weight_gradient);
 
  private:
-  Layer on_patches(int channels) const;  // as a linear layer
+  Layer on_patches() const;  // as a linear layer
   void gather(const float* picture, int first_place);
 
   const Layer layer_;

@@ -23,11 +23,11 @@ Head::Head(const NetworkShape& shape, Parameters& parameters, const Kernels& ker
     shares.push_back(&inputs_[i].share.emplace(kind, parameters, kernels));
   }
   joined_bias_ = parameters.take(deep ? padded_hidden : padded_action);
-  name(shares, deep ? hidden_features : action_size, joined_bias_);
+  name(shares, deep ? hidden_features : shape.actions, joined_bias_);
   if (!deep) return;
   last_.emplace(text_head, parameters, kernels);
   last_bias_ = parameters.take(padded_action);
-  name({&*last_}, action_size, last_bias_);
+  name({&*last_}, shape.actions, last_bias_);
 }
 
 void Head::name(const std::vector<const Linear*>& side_by_side, int outs, std::size_t bias) {

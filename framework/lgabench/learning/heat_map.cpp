@@ -20,10 +20,8 @@ constexpr int steps = 300, batch_size = 16;
 constexpr double learning_rate = 3e-3;
 constexpr double label_m = .015;   // standard deviation of the map that is taught
 constexpr double near_m = .05;     // of the peak: what the taken point is the mean of
-constexpr double one_way_m = .05;  // more spread of pose1 is another way to move
+constexpr double one_way_m = .05;  // more spread of later places is another way to move
 constexpr float least_prior = 1e-4f;
-
-Vec2 middle_of_cell(int cell) { return middle_of(grid, cell / grid.columns, cell % grid.columns); }
 
 bool is_mask(const SampleShape::Picture& picture) { return picture.channels == 1; }
 
@@ -33,10 +31,11 @@ struct View {
   std::vector<float> prior;     // of each cell; empty without a mask
   const float* mask = nullptr;  // of the row that is viewed, like the text; null without one
   const float* text = nullptr;
+  std::size_t mask_pixels = 0;
 
   const float* prior_or_null() const { return prior.empty() ? nullptr : prior.data(); }
   bool shows_target() const {
-    return !mask || std::any_of(mask, mask + native_size.rows * native_size.columns, [](float v) { return v > 0; });
+    return !mask || std::any_of(mask, mask + mask_pixels, [](float v) { return v > 0; });
   }
 };
 
@@ -52,6 +51,7 @@ struct Lesson {
 
 struct HeatMap::Impl {
   const SampleShape shape;
+  const Field field;
   const std::uint64_t seed;
   int planes = 0;
   std::optional<std::size_t> mask;        // the first, of the pictures
@@ -64,11 +64,16 @@ struct HeatMap::Impl {
   View seen;                     // by predict()
   std::vector<float> outputs;
 
-  Impl(const SampleShape& of_a_row, std::uint64_t from) : shape(of_a_row), seed(from), usual(shape.pictures.size()) {
+  Impl(const SampleShape& of_a_row, std::uint64_t from)
+      : shape(of_a_row), field(shape.actions), seed(from), usual(shape.pictures.size()) {
     for (std::size_t i = 0; i < shape.pictures.size(); ++i) {
       const SampleShape::Picture& picture = shape.pictures[i];
-      if (!(picture.size == (is_mask(picture) ? native_size : grid)))
-        throw InputError("inputs: expected masks of 128 x 256 and colours of 32 x 64 for policy=heat_map");
+      const bool fits = is_mask(picture)
+                            ? picture.size.rows % grid.rows == 0 && picture.size.columns % grid.columns == 0
+                            : picture.size == grid;
+      if (!fits)
+        throw InputError(
+            "inputs: expected masks of a multiple of 32 x 64 pixels and colours of 32 x 64 for policy=heat_map");
       if (is_mask(picture) && !mask) mask = i;
       planes += is_mask(picture) ? 2 : picture.channels;
     }
@@ -79,7 +84,10 @@ struct HeatMap::Impl {
   View new_view() const {
     View view;
     view.planes = Numbers(size(padded.rows * padded.columns * planes));
-    if (mask) view.prior.resize(cells);
+    if (mask) {
+      view.prior.resize(cells);
+      view.mask_pixels = shape.pictures[*mask].size.pixels();
+    }
     return view;
   }
 
@@ -94,7 +102,7 @@ struct HeatMap::Impl {
       const float* const picture = samples.picture(i, row);
       const int channels = shape.pictures[i].channels;
       if (is_mask(shape.pictures[i])) {
-        look_at_mask(picture, number, view);
+        look_at_mask(picture, shape.pictures[i].size, number, view);
         if (i == mask) view.mask = picture, set_prior(number, view);
         number += 2;
         continue;
@@ -107,21 +115,23 @@ struct HeatMap::Impl {
   }
 
   // The share of each cell that is the target's, and that is to be avoided.
-  void look_at_mask(const float* picture, int number, View& view) const {
-    constexpr int side = native_size.rows / grid.rows;
+  void look_at_mask(const float* picture, PictureSize of, int number, View& view) const {
+    const int high = of.rows / grid.rows, wide = of.columns / grid.columns;  // pixels of a cell
     for (int cell = 0; cell < cells; ++cell) {
-      const float* const corner =
-          picture + cell / grid.columns * side * native_size.columns + cell % grid.columns * side;
+      const float* const corner = picture + cell / grid.columns * high * of.columns + cell % grid.columns * wide;
       int target = 0, avoid = 0;
-      for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x) {
-          target += corner[y * native_size.columns + x] > 0;
-          avoid += corner[y * native_size.columns + x] < 0;
+      for (int y = 0; y < high; ++y)
+        for (int x = 0; x < wide; ++x) {
+          target += corner[y * of.columns + x] > 0;
+          avoid += corner[y * of.columns + x] < 0;
         }
-      *plane(view, cell, number) = static_cast<float>(target) / (side * side);
-      *plane(view, cell, number + 1) = static_cast<float>(avoid) / (side * side);
+      *plane(view, cell, number) = static_cast<float>(target) / static_cast<float>(high * wide);
+      *plane(view, cell, number + 1) = static_cast<float>(avoid) / static_cast<float>(high * wide);
     }
   }
+
+  FieldMask field_mask(const View& view) const { return {view.mask, shape.pictures[*mask].size, field}; }
+  Vec2 middle_of_cell(int cell) const { return field.middle_of(grid, cell / grid.columns, cell % grid.columns); }
 
   void set_prior(int target, View& view) const {
     for (int cell = 0; cell < cells; ++cell)
@@ -156,34 +166,34 @@ void HeatMap::Impl::begin(const Samples& samples) {
   std::vector<Demonstrated> shown;
   std::vector<std::size_t> rows;  // of those
   for (int row = 0; row < samples.rows; ++row) {
-    const Action done = executable(samples.label(row));
+    const Action done = executable(shape.actions, samples.label(row));
     labels.push_back(done);
     look(samples, row, lessons.emplace_back(Lesson{new_view()}).view);
     const View& view = lessons.back().view;
     if (!view.shows_target()) continue;
-    const Vec2 p = done.pose0.position_m, q = done.pose1.position_m;
-    Demonstrated demonstrated{done, {p}, {true, false}};
-    if (view.mask) {
-      demonstrated.places.second_m = avoided_in(view.mask);
-      demonstrated.on_target = {on_target(view.mask, p), on_target(view.mask, q)};
-    }
+    Demonstrated demonstrated{done, {place_of(shape.actions, done, 0)}, {}};
+    for (std::size_t i = 0; i < shape.actions.places.size(); ++i)
+      demonstrated.on_target.push_back(view.mask ? field_mask(view).on_target(place_of(shape.actions, done, i))
+                                                 : i == 0);
+    if (view.mask) demonstrated.places.second_m = field_mask(view).avoided();
     shown.push_back(demonstrated);
     rows.push_back(size(row));
   }
-  mean = mean_action(labels);
+  mean = mean_action(shape.actions, labels);
 
   takes = !mask || mostly_on_target(shown, 0);
   Eye eye;
   for (std::size_t i = 0; i < shown.size() && !takes; ++i) {
     Demonstrated& one = shown[i];
-    one.places.taken_m = *eye.taken(lessons[rows[i]].view.mask, &one.label.pose0.position_m);
+    const Vec2 begin = place_of(shape.actions, one.label, 0);
+    one.places.taken_m = *eye.taken(field_mask(lessons[rows[i]].view), &begin);
   }
   Groups groups = one_group(shown);
   if (!shown.empty()) {
-    motion.emplace(shown, groups, takes, true);
+    motion.emplace(shape.actions, shown, groups, takes, true);
     if (motion->spread_m() > one_way_m) {
-      groups = by_push(shown);
-      motion.emplace(shown, groups, takes, true);
+      groups = by_push(shape.actions, shown);
+      motion.emplace(shape.actions, shown, groups, takes, true);
     }
   }
   for (std::size_t g = 0; g < groups.size(); ++g)
@@ -193,7 +203,7 @@ void HeatMap::Impl::begin(const Samples& samples) {
       lesson.wanted = wanted(lesson.view, lesson.taken_m);
       lesson.group = g;
     }
-  network.emplace(planes, shape.text, groups.size(), seed, *available_kernels().front());
+  network.emplace(field, planes, shape.text, groups.size(), seed, *available_kernels().front());
 }
 
 // The mean of what is near the highest sum of 3 x 3 cells.
@@ -226,8 +236,8 @@ Action HeatMap::Impl::act() {
   if (!motion || !seen.shows_target()) return *mean;
   Places places{taken_point(network->map(seen.planes, seen.prior_or_null(), seen.text))};
   if (seen.mask) {
-    places.taken_m = onto_target(seen.mask, places.taken_m);
-    places.second_m = avoided_in(seen.mask);
+    places.taken_m = field_mask(seen).onto_target(places.taken_m);
+    places.second_m = field_mask(seen).avoided();
   }
   const std::vector<float>& groups = network->groups(places.taken_m);
   const auto likeliest = std::max_element(groups.begin(), groups.end()) - groups.begin();
@@ -251,7 +261,7 @@ const std::vector<float>& HeatMap::predict(const Samples& samples) {
   impl_->outputs.clear();
   for (int row = 0; row < samples.rows; ++row) {
     impl_->look(samples, row, impl_->seen);
-    const ActionVector action = to_vector(impl_->act());
+    const Action action = recorded(impl_->shape.actions, impl_->act());
     impl_->outputs.insert(impl_->outputs.end(), action.begin(), action.end());
   }
   return impl_->outputs;

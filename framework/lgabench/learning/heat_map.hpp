@@ -9,22 +9,24 @@
 
 namespace lgabench {
 
-/// Sees signed masks of 128 x 256 (shrink_mask()), as two planes of 32 x 64, what is to be taken and what is to be
-/// avoided apart; colours of 32 x 64, without what most pictures share; a text. At least one picture.
+/// Sees signed masks (shrink_mask()) of whole multiples of 32 x 64, mostly the native size, as two planes of 32 x 64,
+/// what is to be taken and what is to be avoided apart; colours of 32 x 64, without what most pictures share; a text.
+/// At least one picture.
 ///
-/// The taken point is, with a mask (the first), the demonstrated pose0 where most begin on the target, else (a sweep)
-/// the CentroidRule's; without a mask pose0. The map (HeatMapNetwork) is trained towards a Gaussian of .015 m about it,
-/// within the mask, with the logarithm of the target's share of a cell as prior. Acting: the peak of the map smoothed
-/// over 3x3 cells, the expectation within .05 m of it, and onto_target(). The rest is Motion's: in one group where the
-/// demonstrations' pose1 varies by at most .05 m in its frames, else in groups by direction of push, the likeliest of
-/// which the network names.
+/// The taken point is, with a mask (the first), the first place of the demonstrated action where most begin on the
+/// target, else (a sweep) the CentroidRule's; without a mask that place. The map (HeatMapNetwork) is trained towards a
+/// Gaussian of .015 m about it, within the mask, with the logarithm of the target's share of a cell as prior. Acting:
+/// the peak of the map smoothed over 3x3 cells, the expectation within .05 m of it, and onto_target(). The rest is
+/// Motion's: in one group where the demonstrations' later places vary by at most .05 m in their frames, else in groups
+/// by direction of push, the likeliest of which the network names.
 ///
 /// 300 steps of 16 samples however many there are, learning rate .003 falling as a cosine. Adam.
 class HeatMap : public Learner {
  public:
   static constexpr PictureSize rgb_size{32, 64};
 
-  /// @throws InputError for a shape without a picture, or with pictures of another size.
+  /// @throws InputError for a shape without a picture, or with pictures of another size, and for actions without a
+  /// place in the picture.
   HeatMap(const SampleShape& shape, std::uint64_t seed);
   ~HeatMap() override;
   HeatMap(const HeatMap&) = delete;

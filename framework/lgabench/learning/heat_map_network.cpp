@@ -4,9 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <lgabench/learning/places.hpp>
 #include <lgabench/learning/samples.hpp>
-#include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
 namespace {
@@ -34,8 +32,9 @@ double log_of(float probability) { return std::log(std::max(double{probability},
 
 }  // namespace
 
-HeatMapNetwork::HeatMapNetwork(int planes, bool text, std::size_t groups, std::uint64_t seed, const Kernels& kernels)
-    : kernels_(kernels), parameters_(seed), map_(cells), groups_(groups), centroids_(features) {
+HeatMapNetwork::HeatMapNetwork(const Field& field, int planes, bool text, std::size_t groups, std::uint64_t seed,
+                               const Kernels& kernels)
+    : field_(field), kernels_(kernels), parameters_(seed), map_(cells), groups_(groups), centroids_(features) {
   add_convolution(padded, planes, 5);
   for (const int layers_before : {1, 2}) {
     const Layer& before = convolutions_[size(layers_before - 1)].layer;
@@ -87,7 +86,7 @@ const std::vector<float>& HeatMapNetwork::groups(Vec2 taken_m) {
   std::fill(centroids_.begin(), centroids_.end(), Centroid{0, 0, 1e-6});
   const float* feature = convolutions_.back().outputs;
   for (int cell = 0; cell < cells; ++cell) {
-    const Vec2 away = 1 / unit_m * (middle_of(grid, cell / grid.columns, cell % grid.columns) - taken_m);
+    const Vec2 away = 1 / unit_m * (middle_of_cell(cell) - taken_m);
     for (Centroid& c : centroids_) {
       c.x += *feature * away.x;
       c.y += *feature * away.y;
@@ -112,8 +111,7 @@ void HeatMapNetwork::clear_gradients() {
   parameters_.clear_gradients();
   for (std::size_t i = 1; i < convolutions_.size(); ++i) {
     Convolution& c = convolutions_[i];
-    transpose_weights(c.layer, parameters_[c.weights], all_channels(c.layer.channels), all_channels(features),
-                      c.transposed);
+    transpose_weights(c.layer, parameters_[c.weights], c.transposed);
   }
 }
 
@@ -152,7 +150,7 @@ double HeatMapNetwork::teach_groups(Vec2 taken_m, std::size_t group, double weig
   }
   float* gradient = convolutions_.back().gradients;
   for (int cell = 0; cell < cells; ++cell) {
-    const Vec2 away = 1 / unit_m * (middle_of(grid, cell / grid.columns, cell % grid.columns) - taken_m);
+    const Vec2 away = 1 / unit_m * (middle_of_cell(cell) - taken_m);
     for (std::size_t k = 0; k < features; ++k)
       *gradient++ += static_cast<float>(
           (gradients[k].x * (away.x - centroids_[k].x) + gradients[k].y * (away.y - centroids_[k].y)) /

@@ -2,9 +2,8 @@
 #pragma once
 #include <vector>
 
-#include <lgabench/core/geometry.hpp>
-#include <lgabench/learning/inputs.hpp>
 #include <lgabench/learning/parameters.hpp>
+#include <lgabench/learning/places.hpp>
 
 namespace lgabench {
 
@@ -22,7 +21,11 @@ class HeatMapNetwork {
 
   /// Convolutions begin uniform within the root of 6/fan in (He et al. 2015), all else 0: the map begins as the prior,
   /// and groups equally likely. A function of the seed. @pre `kernels` outlives this.
-  HeatMapNetwork(int planes, bool text, std::size_t groups, std::uint64_t seed, const Kernels& kernels);
+  /// `field`: what the map shows.
+  HeatMapNetwork(const Field& field, int planes, bool text, std::size_t groups, std::uint64_t seed,
+                 const Kernels& kernels);
+
+  Vec2 middle_of_cell(int cell) const { return field_.middle_of(grid, cell / grid.columns, cell % grid.columns); }
 
   /// The map of a picture: `padded` x planes, channels last; `prior` of each cell or null; 384 numbers of text or null.
   /// Valid until the next call, as is the picture needed by teach().
@@ -56,6 +59,7 @@ class HeatMapNetwork {
   double teach_groups(Vec2 taken_m, std::size_t group, double weight);
   void backward();
 
+  const Field field_;
   const Kernels& kernels_;
   Parameters parameters_;
   std::vector<Convolution> convolutions_;

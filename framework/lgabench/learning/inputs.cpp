@@ -11,8 +11,6 @@
 namespace lgabench {
 namespace {
 
-constexpr int rows = Observation::rows, columns = Observation::columns;
-
 void expect_size(const char* what, std::size_t size, std::size_t expected) {
   if (size != expected)
     throw InputError(fmt::format("observation: {}: expected {} values, got {}", what, expected, size));
@@ -20,25 +18,26 @@ void expect_size(const char* what, std::size_t size, std::size_t expected) {
 
 }  // namespace
 
-void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize size, float* out) {
-  expect_size("rgb", rgb.size(), std::size_t{rows} * columns * 3);
+void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize native, PictureSize size, float* out) {
+  expect_size("rgb", rgb.size(), native.pixels() * 3);
   // In floating point: OpenCV would round the means of bytes to bytes.
-  cv::Mat native, small(size.rows, size.columns, CV_32FC3, out);
-  cv::Mat(rows, columns, CV_8UC3, const_cast<std::uint8_t*>(rgb.data())).convertTo(native, CV_32FC3, 1 / 255.0);
-  cv::resize(native, small, cv::Size(size.columns, size.rows), 0, 0, cv::INTER_AREA);
+  cv::Mat shares, small(size.rows, size.columns, CV_32FC3, out);
+  cv::Mat(native.rows, native.columns, CV_8UC3, const_cast<std::uint8_t*>(rgb.data()))
+      .convertTo(shares, CV_32FC3, 1 / 255.0);
+  cv::resize(shares, small, cv::Size(size.columns, size.rows), 0, 0, cv::INTER_AREA);
 }
 
-void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize size, float* out) {
-  expect_size("mask", mask.size(), std::size_t{rows} * columns);
-  const auto first = [](int small, int native, int count) { return native * small / count; };
-  const auto last = [](int small, int native, int count) { return (native * (small + 1) + count - 1) / count; };
+void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize native, PictureSize size, float* out) {
+  expect_size("mask", mask.size(), native.pixels());
+  const auto first = [](int small, int of, int count) { return of * small / count; };
+  const auto last = [](int small, int of, int count) { return (of * (small + 1) + count - 1) / count; };
   for (int r = 0; r < size.rows; ++r)
     for (int c = 0; c < size.columns; ++c) {
-      const int left = first(c, columns, size.columns), right = last(c, columns, size.columns);
+      const int left = first(c, native.columns, size.columns), right = last(c, native.columns, size.columns);
       bool target = false, second = false;
-      for (int y = first(r, rows, size.rows); y < last(r, rows, size.rows); ++y)
+      for (int y = first(r, native.rows, size.rows); y < last(r, native.rows, size.rows); ++y)
         for (int x = left; x < right; ++x) {
-          const std::uint8_t role = mask[static_cast<std::size_t>(y * columns + x)];
+          const std::uint8_t role = mask[static_cast<std::size_t>(y * native.columns + x)];
           target = target || role == target_role;
           second = second || role == second_role;
         }

@@ -18,7 +18,8 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
-/// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, 12 actions to 16.
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, the numbers of an action
+/// to 16.
 constexpr int hidden_features = 100, padded_hidden = 112, padded_action = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
@@ -44,5 +45,12 @@ constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {1, 0, 160, 1, 1, padded_hidden},
                             {1, 0, padded_hidden, 1, 1, padded_hidden}};
 constexpr int most_channels = 64;  // of a convolution's output
+
+/// Weights as Kernels::input_gradient() takes them: kernel x out_channels x (kernel x channels).
+inline void transpose_weights(const Layer& layer, const float* weights, float* transposed) {
+  for (int k = 0; k < layer.kernel; ++k, weights += layer.segment() * layer.out_channels)
+    for (int out = 0; out < layer.out_channels; ++out)
+      for (int i = 0; i < layer.segment(); ++i) *transposed++ = weights[i * layer.out_channels + out];
+}
 
 }  // namespace lgabench

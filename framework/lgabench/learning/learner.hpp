@@ -31,7 +31,7 @@ class Learner {
   /// means and frames are found here.
   /// @throws MethodError for samples that it cannot learn from.
   virtual void begin(const Samples&) {}
-  /// Actions as to_vector() has them, rows x 12, valid until the next call. Labels are not read.
+  /// Actions, rows x the numbers of one, valid until the next call. Labels are not read.
   virtual const std::vector<float>& predict(const Samples& samples) = 0;
   /// Mean loss over `batch`, which names rows of begin()'s samples; keeps the loss's gradients for update().
   virtual double backward(const Samples& samples, const std::vector<int>& batch) = 0;

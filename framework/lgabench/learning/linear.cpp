@@ -9,8 +9,6 @@ Linear::Linear(LayerKind kind, Parameters& parameters, const Kernels& kernels)
       parameters_(parameters),
       kernels_(kernels),
       weights_(parameters.take(layer_.weights())),
-      in_(all_channels(layer_.channels)),
-      out_(all_channels(layer_.out_channels)),
       transposed_(size(layer_.weights())) {}
 
 std::vector<std::size_t> Linear::places(int out) const {
@@ -39,7 +37,7 @@ void Linear::forward(const float* in, const float* bias, float* out, int rows) c
 void Linear::backward(const float* in, const float* gradient, float* in_gradient, int rows) {
   kernels_.weight_gradient(on(rows), &in, gradient, parameters_.gradient(weights_), 1);
   if (!in_gradient) return;
-  transpose_weights(layer_, parameters_[weights_], in_, out_, transposed_);
+  transpose_weights(layer_, parameters_[weights_], transposed_);
   std::fill_n(in_gradient, rows * layer_.channels, 0.f);
   kernels_.input_gradient(on(rows), gradient, transposed_, in_gradient);
 }

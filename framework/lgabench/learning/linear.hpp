@@ -3,7 +3,6 @@
 #include <vector>
 
 #include <lgabench/learning/parameters.hpp>
-#include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
 
@@ -31,7 +30,6 @@ class Linear {
   Parameters& parameters_;
   const Kernels& kernels_;
   std::size_t weights_;
-  Channels in_, out_;  // all
   Numbers transposed_;
 };
 

@@ -10,22 +10,22 @@ namespace {
 constexpr double alike = .15;          // unit vectors that are one direction
 constexpr double least_spread = 1e-3;  // m: less is none
 
-Vec2 push(const Action& action) {
-  const Vec2 way = action.pose1.position_m - action.pose0.position_m;
-  const double length = norm(way);
-  return length > 0 ? 1 / length * way : Vec2{};
-}
-
-// q and -q turn alike: the one on the sum's side is added.
-void add(Quat& sum, const Quat& q) {
-  const double sign = sum.x * q.x + sum.y * q.y + sum.z * q.z + sum.w * q.w < 0 ? -1 : 1;
-  sum = {sum.x + sign * q.x, sum.y + sign * q.y, sum.z + sign * q.z, sum.w + sign * q.w};
+// q and -q turn alike: the one on the sum's side is added. An angle's cosine and sine have no such twin.
+void add_rotation(Action& sum, const Action& label, const std::vector<std::size_t>& rotation) {
+  double dot = 0;
+  for (const std::size_t i : rotation) dot += sum[i] * label[i];
+  const double sign = rotation.size() == 4 && dot < 0 ? -1 : 1;
+  for (const std::size_t i : rotation) sum[i] += sign * label[i];
 }
 
 }  // namespace
 
-bool mostly_on_target(const std::vector<Demonstrated>& all, std::size_t pose) {
-  const auto on = std::count_if(all.begin(), all.end(), [&](const Demonstrated& d) { return d.on_target[pose]; });
+Vec2 place_of(const ActionSpace& actions, const Action& action, std::size_t place) {
+  return {action[actions.places[place].down], action[actions.places[place].across]};
+}
+
+bool mostly_on_target(const std::vector<Demonstrated>& all, std::size_t place) {
+  const auto on = std::count_if(all.begin(), all.end(), [&](const Demonstrated& d) { return d.on_target[place]; });
   return 2 * static_cast<std::size_t>(on) > all.size();
 }
 
@@ -35,7 +35,13 @@ Groups one_group(const std::vector<Demonstrated>& all) {
   return {everyone};
 }
 
-Groups by_push(const std::vector<Demonstrated>& all) {
+Groups by_push(const ActionSpace& actions, const std::vector<Demonstrated>& all) {
+  if (actions.places.size() < 2) return one_group(all);
+  const auto push = [&](const Action& action) {
+    const Vec2 way = place_of(actions, action, 1) - place_of(actions, action, 0);
+    const double length = norm(way);
+    return length > 0 ? 1 / length * way : Vec2{};
+  };
   Groups groups;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const auto& group) {
@@ -49,79 +55,86 @@ Groups by_push(const std::vector<Demonstrated>& all) {
   return groups;
 }
 
-Action mean_action(const std::vector<Action>& labels) {
+Action mean_action(const ActionSpace& actions, const std::vector<Action>& labels) {
   std::vector<Demonstrated> all;
-  for (const Action& label : labels) all.push_back({label, {}, {false, false}});
-  return Motion(all, one_group(all), false, false).act({}, 0);
+  for (const Action& label : labels) all.push_back({label, {}, std::vector<bool>(actions.places.size())});
+  return Motion(actions, all, one_group(all), false, false).act({}, 0);
 }
 
-Motion::Motion(const std::vector<Demonstrated>& all, const Groups& groups, bool takes, bool second) : takes_(takes) {
-  const Positions on_table = spread(all, groups, all_in(Frame::table)),
-                  about_taken = spread(all, groups, all_in(Frame::taken));
+Motion::Motion(const ActionSpace& actions, const std::vector<Demonstrated>& all, const Groups& groups, bool takes,
+               bool second)
+    : actions_(actions), takes_(takes), frames_(actions.size(), Frame::none) {
+  const std::vector<double> as_it_is = spread(all, groups, all_in(Frame::none)),
+                            about_taken = spread(all, groups, all_in(Frame::taken));
   second = second && std::all_of(all.begin(), all.end(), [](const auto& d) { return d.places.second_m.has_value(); });
-  const Positions about_second = second ? spread(all, groups, all_in(Frame::second)) : Positions{};
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const bool follows =
-        about_taken[i] < on_table[i] || (about_taken[i] == on_table[i] && mostly_on_target(all, i / 2));
-    frames_[i] = follows ? Frame::taken : Frame::table;
-    double least = follows ? about_taken[i] : on_table[i];
-    if (second && about_second[i] < least) {
-      frames_[i] = Frame::second;
-      least = about_second[i];
+  const std::vector<double> about_second = second ? spread(all, groups, all_in(Frame::second)) : about_taken;
+  for (std::size_t place = 0; place < actions.places.size(); ++place)
+    for (const std::size_t i : {actions.places[place].down, actions.places[place].across}) {
+      const bool follows =
+          about_taken[i] < as_it_is[i] || (about_taken[i] == as_it_is[i] && mostly_on_target(all, place));
+      frames_[i] = follows ? Frame::taken : Frame::none;
+      double least = follows ? about_taken[i] : as_it_is[i];
+      if (second && about_second[i] < least) {
+        frames_[i] = Frame::second;
+        least = about_second[i];
+      }
+      if (place > 0) spread_m_ = std::max(spread_m_, least);
     }
-    if (i >= 2) spread_m_ = std::max(spread_m_, least);
-  }
   for (const auto& group : groups) means_.push_back(means(all, group, frames_));
 }
 
 Action Motion::act(const Places& places, std::size_t group) const {
   const Means& mean = means_[group];
-  const Positions origin = origins(frames_, {places.taken_m, places.second_m.value_or(mean.second_m)});
-  Positions p = mean.positions;
-  for (std::size_t i = 0; i < p.size(); ++i) p[i] += origin[i];
-  if (takes_) p[0] = places.taken_m.x, p[1] = places.taken_m.y;
-  return executable({{{p[0], p[1]}, mean.rotations[0]}, {{p[2], p[3]}, mean.rotations[1]}});
-}
-
-Motion::Positions Motion::origins(const Frames& frames, const Places& places) {
-  Positions origin{};
-  for (std::size_t i = 0; i < origin.size(); ++i) {
-    if (frames[i] == Frame::table) continue;
-    const Vec2 of_frame = frames[i] == Frame::taken ? places.taken_m : *places.second_m;
-    origin[i] = i % 2 == 0 ? of_frame.x : of_frame.y;
+  const Places offered{places.taken_m, places.second_m.value_or(mean.second_m)};
+  Action action = mean.values;
+  for (std::size_t i = 0; i < action.size(); ++i) action[i] += origin(i, frames_, offered);
+  if (takes_) {
+    action[actions_.places[0].down] = places.taken_m.x;
+    action[actions_.places[0].across] = places.taken_m.y;
   }
-  return origin;
+  return executable(actions_, action);
 }
 
-Motion::Positions Motion::positions(const Demonstrated& one, const Frames& frames) {
-  const Vec2 p = one.label.pose0.position_m, q = one.label.pose1.position_m;
-  const Positions origin = origins(frames, one.places);
-  return {p.x - origin[0], p.y - origin[1], q.x - origin[2], q.y - origin[3]};
+Motion::Frames Motion::all_in(Frame frame) const {
+  Frames frames(actions_.size(), Frame::none);
+  for (const PicturePlace& place : actions_.places) frames[place.down] = frames[place.across] = frame;
+  return frames;
+}
+
+double Motion::origin(std::size_t number, const Frames& frames, const Places& places) const {
+  if (frames[number] == Frame::none) return 0;
+  const Vec2 of_frame = frames[number] == Frame::taken ? places.taken_m : *places.second_m;
+  const bool is_down = std::any_of(actions_.places.begin(), actions_.places.end(),
+                                   [&](const PicturePlace& place) { return place.down == number; });
+  return is_down ? of_frame.x : of_frame.y;
 }
 
 Motion::Means Motion::means(const std::vector<Demonstrated>& all, const std::vector<std::size_t>& group,
-                            const Frames& frames) {
-  Means mean;
+                            const Frames& frames) const {
+  Means mean{Action(actions_.size())};
   const auto count = static_cast<double>(group.size());
   for (const std::size_t member : group) {
     const Demonstrated& d = all[member];
-    const Positions values = positions(d, frames);
-    for (std::size_t i = 0; i < values.size(); ++i) mean.positions[i] += values[i] / count;
-    add(mean.rotations[0], d.label.pose0.rotation);
-    add(mean.rotations[1], d.label.pose1.rotation);
+    Action sums = mean.values;
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += (d.label[i] - origin(i, frames, d.places)) / count;
+    for (const auto& rotation : actions_.rotations) {
+      for (const std::size_t i : rotation) sums[i] = mean.values[i];
+      add_rotation(sums, d.label, rotation);
+    }
+    mean.values = sums;
     mean.second_m = mean.second_m + 1 / count * d.places.second_m.value_or(Vec2{});
   }
   return mean;
 }
 
-Motion::Positions Motion::spread(const std::vector<Demonstrated>& all, const Groups& groups, const Frames& frames) {
-  Positions squares{};
+std::vector<double> Motion::spread(const std::vector<Demonstrated>& all, const Groups& groups,
+                                   const Frames& frames) const {
+  std::vector<double> squares(actions_.size());
   for (const auto& group : groups) {
     const Means mean = means(all, group, frames);
-    for (const std::size_t member : group) {
-      const Positions values = positions(all[member], frames);
-      for (std::size_t i = 0; i < values.size(); ++i) squares[i] += std::pow(values[i] - mean.positions[i], 2);
-    }
+    for (const std::size_t member : group)
+      for (std::size_t i = 0; i < squares.size(); ++i)
+        squares[i] += std::pow(all[member].label[i] - origin(i, frames, all[member].places) - mean.values[i], 2);
   }
   for (double& value : squares) {
     value = std::sqrt(value / static_cast<double>(all.size()));

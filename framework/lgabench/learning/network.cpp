@@ -1,8 +1,10 @@
 #include <lgabench/learning/network.hpp>
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
 
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/learning/head.hpp>
 #include <lgabench/learning/parameters.hpp>
@@ -12,6 +14,7 @@ namespace lgabench {
 
 SampleShape NetworkShape::samples() const {
   SampleShape shape{{}, text};
+  shape.actions.numbers.resize(size(actions));
   for (const int of_picture : channels) shape.pictures.push_back({input_size, of_picture});
   return shape;
 }
@@ -21,6 +24,7 @@ struct Network::Impl {
   const Kernels& kernels;
   const bool finds_usual;
   const bool has_text;
+  const int actions;
   Parameters parameters;
   std::vector<Tower> towers;
   std::optional<Head> head;
@@ -40,8 +44,12 @@ struct Network::Impl {
         kernels(used),
         finds_usual(shape.architecture != Architecture::plain),
         has_text(shape.text),
+        actions(shape.actions),
         parameters(seed),
         pictures(shape.channels.size()) {
+    if (actions < 1 || actions > padded_action)
+      throw InputError(
+          fmt::format("actions: expected 1 to {} numbers for the network, got {}", padded_action, actions));
     for (const int channels : shape.channels) {
       towers.emplace_back(channels, shape.architecture, parameters, kernels);
       usual.emplace_back(size(channels * input_pixels));
@@ -109,7 +117,7 @@ const std::vector<float>& Network::predict(const Samples& samples) {
   const float* outputs = impl_->forward(samples, impl_->every_row, false);
   impl_->predicted.clear();
   for (int row = 0; row < samples.rows; ++row, outputs += padded_action)
-    impl_->predicted.insert(impl_->predicted.end(), outputs, outputs + action_size);
+    impl_->predicted.insert(impl_->predicted.end(), outputs, outputs + impl_->actions);
   return impl_->predicted;
 }
 
@@ -119,8 +127,8 @@ double Network::backward(const Samples& samples, const std::vector<int>& batch) 
   double total = 0;
   for (int row = 0; row < rows; ++row)
     total += loss_and_gradient(impl_->loss, outputs + row * padded_action,
-                               samples.labels.data() + size(batch[size(row)]) * action_size, 1. / rows,
-                               impl_->output_gradients + row * padded_action);
+                               samples.labels.data() + size(batch[size(row)] * impl_->actions), impl_->actions,
+                               1. / rows, impl_->output_gradients + row * padded_action);
   impl_->backward();
   return total / rows;
 }

@@ -20,6 +20,7 @@ struct NetworkShape {
   std::vector<int> channels;  // of each tower's picture: 1 or 3
   bool text = false;
   Architecture architecture = Architecture::text;
+  int actions = 12;  // numbers of an action, at most 16
 
   /// What its samples hold.
   SampleShape samples() const;

@@ -7,7 +7,7 @@
 namespace lgabench {
 
 /// Each row of `clean`, followed by `copies` of it with Gaussian noise on pictures and label: std `scale` times the
-/// population standard deviation over all values of that one picture, and over the 12 numbers of that one label.
+/// population standard deviation over all values of that one picture, and over the numbers of that one label.
 /// Nothing is clipped, no quaternion normalised, the text is as it was. A function of its arguments: the noise is a
 /// random stream per row and copy, so that further rows leave those before them as they are. Source: released code
 /// (gen_trajs.py, whose defaults are 5 copies and .05, and which adds the noise to the picture of 36 x 72 that its

@@ -18,7 +18,8 @@ Architecture architecture_of(const std::string& network) {
 }
 
 std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& options, std::uint64_t seed) {
-  NetworkShape shape{{}, rows.text, architecture_of(options.at("network").string())};
+  NetworkShape shape{
+      {}, rows.text, architecture_of(options.at("network").string()), static_cast<int>(rows.actions.size())};
   for (const SampleShape::Picture& picture : rows.pictures) {
     if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
     shape.channels.push_back(picture.channels);
@@ -30,17 +31,17 @@ std::unique_ptr<Learner> centroid(const SampleShape& rows, const JsonReader&, st
   return std::make_unique<CentroidRule>(rows);
 }
 
-PolicyInputs as_they_are(PolicyInputs inputs) { return inputs; }
+PolicyInputs as_they_are(PolicyInputs inputs, PictureSize) { return inputs; }
 
 // The first mask alone, as it is seen.
-PolicyInputs one_mask(PolicyInputs inputs) {
+PolicyInputs one_mask(PolicyInputs inputs, PictureSize native) {
   const auto mask = std::find_if(inputs.pictures.begin(), inputs.pictures.end(),
                                  [](Picture picture) { return picture != Picture::rgb; });
   if (mask == inputs.pictures.end()) throw InputError("options: /policy: centroid needs a mask among the inputs");
   inputs.pictures = {*mask};
   inputs.text = PolicyInputs::Text::none;
   inputs.signed_mask = true;
-  inputs.mask_size = native_size;
+  inputs.mask_size = native;
   return inputs;
 }
 
@@ -49,17 +50,17 @@ std::unique_ptr<Learner> heat_map(const SampleShape& rows, const JsonReader&, st
 }
 
 // All of them, at the sizes that it sees.
-PolicyInputs places(PolicyInputs inputs) {
+PolicyInputs places(PolicyInputs inputs, PictureSize native) {
   if (inputs.pictures.empty()) throw InputError("options: /policy: heat_map needs a picture among the inputs");
   inputs.signed_mask = true;
-  inputs.mask_size = native_size;
+  inputs.mask_size = native;
   inputs.rgb_size = HeatMap::rgb_size;
   return inputs;
 }
 
 struct Choice {
   const char* name;
-  PolicyInputs (*inputs)(PolicyInputs);
+  PolicyInputs (*inputs)(PolicyInputs, PictureSize native);
   std::unique_ptr<Learner> (*make)(const SampleShape&, const JsonReader& options, std::uint64_t seed);
 };
 
@@ -74,8 +75,8 @@ const Choice& choice(const std::string& policy) {
 
 }  // namespace
 
-PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs) {
-  return choice(policy).inputs(std::move(inputs));
+PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs, PictureSize native) {
+  return choice(policy).inputs(std::move(inputs), native);
 }
 
 std::unique_ptr<Learner> make_learner(const std::string& policy, const SampleShape& shape, const JsonReader& options,

@@ -10,8 +10,8 @@
 namespace lgabench {
 
 /// What the learner named `policy` is shown of a method's `inputs`: of them those that it can use, at its sizes.
-/// @throws InputError where none is.
-PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs);
+/// `native`: of the demonstrated pictures. @throws InputError where none is.
+PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs, PictureSize native);
 
 /// The learner of that name, untrained, for rows of those inputs. `options` as in Services: those of
 /// LGABENCH_CLONING_OPTIONS. @throws InputError for an unknown name or a shape that it cannot see.

@@ -10,13 +10,12 @@ Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), 
   for (const SampleShape::Picture& picture : shape.pictures)
     pictures.emplace_back(n * static_cast<std::size_t>(picture.numbers()));
   if (shape.text) text.resize(n * text_size);
-  labels.resize(n * ActionVector().size());
+  labels.resize(n * shape.actions.size());
 }
 
 Action Samples::label(int row) const {
-  ActionVector values;
-  std::copy_n(labels.data() + static_cast<std::size_t>(row) * values.size(), values.size(), values.begin());
-  return from_vector(values);
+  const float* const first = labels.data() + static_cast<std::size_t>(row) * shape.actions.size();
+  return {first, first + shape.actions.size()};
 }
 
 // A majority vote in one pass (Boyer and Moore 1991).

@@ -10,7 +10,7 @@ namespace lgabench {
 /// Numbers of a sentence embedding.
 constexpr int text_size = 384;
 
-/// Of one row: its pictures, channels last, and whether there is a text.
+/// Of one row: its pictures, channels last, whether there is a text, and what its label's numbers are.
 struct SampleShape {
   struct Picture {
     PictureSize size;
@@ -19,6 +19,7 @@ struct SampleShape {
   };
   std::vector<Picture> pictures;
   bool text = false;
+  ActionSpace actions{};
 };
 
 /// Rows of input and label, each array row-major. Copying copies all numbers.
@@ -34,14 +35,14 @@ struct Samples {
     return pictures[which].data() + std::ptrdiff_t{row} * shape.pictures[which].numbers();
   }
 
-  /// One row's label, from_vector().
+  /// One row's label.
   Action label(int row) const;
 
   SampleShape shape;
   int rows;
   std::vector<std::vector<float>> pictures;  // of each picture rows x its rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
-  std::vector<float> labels;                 // rows x 12: to_vector() of the oracle's action
+  std::vector<float> labels;                 // rows x numbers of an action: recorded(), the oracle's
 };
 
 /// The value that more than half of the rows have in picture number `which`, number by number; any where there is none.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <lgabench/core/error.hpp>
 
@@ -19,13 +18,12 @@ Tower::Tower(int channels, Architecture architecture, Parameters& parameters, co
   for (const LayerKind kind : {channels == 1 ? mask_convolution : rgb_convolution, convolution2, convolution3})
     add_convolution(layers[kind]);
   first_.emplace(convolutions_[0].layer, kernels);
-  for (Numbers* array : {&narrow_, &transposed_}) *array = Numbers(size(layers[convolution2].weights()));
+  transposed_ = Numbers(size(layers[convolution2].weights()));
 }
 
 void Tower::add_convolution(const Layer& l) {
   Convolution& c =
-      convolutions_.emplace_back(Convolution{l, parameters_.take(l.weights()), parameters_.take(l.out_channels),
-                                             all_channels(l.channels), all_channels(l.out_channels)});
+      convolutions_.emplace_back(Convolution{l, parameters_.take(l.weights()), parameters_.take(l.out_channels)});
   const double bound = 1 / std::sqrt(l.kernel * l.segment());
   std::vector<std::size_t> places;
   for (int out = 0; out < l.out_channels; ++out)
@@ -48,15 +46,8 @@ void Tower::make_room(int rows) {
   in_.resize(size(rows));
 }
 
-Layer Tower::live_layer(std::size_t i) const {
-  Layer l = convolutions_[i].layer;
-  l.channels = static_cast<int>(inputs(i).size());
-  l.out_channels = static_cast<int>(convolutions_[i].live.size());
-  return l;
-}
-
 const float* Tower::input(std::size_t i, const std::vector<const float*>& pictures, int row) const {
-  return i == 0 ? pictures[size(row)] : convolutions_[i - 1].outputs + row * live_layer(i).inputs();
+  return i == 0 ? pictures[size(row)] : convolutions_[i - 1].outputs + row * convolutions_[i].layer.inputs();
 }
 
 const float* Tower::forward(const std::vector<const float*>& pictures, const float* usual, bool training) {
@@ -64,19 +55,13 @@ const float* Tower::forward(const std::vector<const float*>& pictures, const flo
   mostly_usual_ = first_->find(pictures, usual, rows_);
   for (std::size_t i = 0; i < convolutions_.size(); ++i) {
     Convolution& c = convolutions_[i];
-    c.live = c.out;
     const int positions = c.positions(rows_), numbers = rows_ * c.layer.outputs();
     float* const values = c.norm ? c.values : c.outputs;
     convolve(i, pictures, values);
     if (architecture_ == Architecture::released && is_last(i))
       for (int k = 0; k < numbers; ++k) values[k] = values[k] > 0 ? values[k] : leak * values[k];
-    if (!c.norm) {
-      if (training && !is_last(i)) drop_closed_channels(i);
-    } else if (training) {
-      c.norm->train(values, positions, c.outputs, architecture_ == Architecture::text);
-    } else {
-      c.norm->apply(values, positions, c.outputs, architecture_ == Architecture::text);
-    }
+    if (c.norm && training) c.norm->train(values, positions, c.outputs, architecture_ == Architecture::text);
+    if (c.norm && !training) c.norm->apply(values, positions, c.outputs, architecture_ == Architecture::text);
   }
   return convolutions_.back().outputs;
 }
@@ -84,25 +69,12 @@ const float* Tower::forward(const std::vector<const float*>& pictures, const flo
 // With a ReLU where it comes next.
 void Tower::convolve(std::size_t i, const std::vector<const float*>& pictures, float* out) {
   const Convolution& c = convolutions_[i];
-  const Layer l = live_layer(i);
+  const Layer& l = c.layer;
   const bool relu = architecture_ == Architecture::plain || (architecture_ == Architecture::released && !is_last(i));
-  const float* weights = parameters_[c.weights];
+  const float* const weights = parameters_[c.weights];
   if (i == 0 && mostly_usual_) return first_->forward(weights, parameters_[c.bias], relu, out);
-  if (l.channels < c.layer.channels) {
-    gather_weights(c.layer, weights, inputs(i), narrow_);
-    weights = narrow_;
-  }
   for (int row = 0; row < rows_; ++row)
     kernels_.forward(l, input(i, pictures, row), weights, parameters_[c.bias], out + row * l.outputs(), relu);
-}
-
-void Tower::drop_closed_channels(std::size_t i) {
-  Convolution& c = convolutions_[i];
-  float sums[most_channels];
-  kernels_.sum_rows(c.outputs, sums, c.positions(rows_), c.layer.out_channels);
-  // A row of the next kernel is whole vectors.
-  live_channels(sums, c.layer.out_channels, 16 / std::gcd(16, convolutions_[i + 1].layer.kernel), c.live);
-  if (c.live.size() < c.out.size()) pack(c.outputs, c.positions(rows_), c.layer.out_channels, c.live);
 }
 
 void Tower::backward(const std::vector<const float*>& pictures) {
@@ -111,7 +83,7 @@ void Tower::backward(const std::vector<const float*>& pictures) {
 
 void Tower::backward(std::size_t i, const std::vector<const float*>& pictures) {
   Convolution& c = convolutions_[i];
-  const Layer l = live_layer(i);
+  const Layer& l = c.layer;
   const int positions = c.positions(rows_), numbers = rows_ * l.outputs();
   const bool norm_last = architecture_ == Architecture::released;
   if (c.norm)
@@ -122,29 +94,25 @@ void Tower::backward(std::size_t i, const std::vector<const float*>& pictures) {
     kernels_.relu_gradient(norm_last ? c.values : c.outputs, c.gradients, size(numbers));
 
   float* const bias_gradient = parameters_.gradient(c.bias);
-  std::fill_n(bias_gradient, c.layer.out_channels, 0.f);
-  if (architecture_ != Architecture::text) {  // there the mean takes the bias away again
-    float sums[most_channels];
-    kernels_.sum_rows(c.gradients, sums, positions, l.out_channels);
-    for (int k = 0; k < l.out_channels; ++k) bias_gradient[c.live[size(k)]] = sums[k];
-  }
+  if (architecture_ == Architecture::text)  // there the mean takes the bias away again
+    std::fill_n(bias_gradient, l.out_channels, 0.f);
+  else
+    kernels_.sum_rows(c.gradients, bias_gradient, positions, l.out_channels);
 
   if (i > 0) {
-    transpose_weights(c.layer, parameters_[c.weights], inputs(i), c.live, transposed_);
+    transpose_weights(l, parameters_[c.weights], transposed_);
     float* const in = convolutions_[i - 1].gradients;
     std::fill_n(in, rows_ * l.inputs(), 0.f);
     for (int row = 0; row < rows_; ++row)
       kernels_.input_gradient(l, c.gradients + row * l.outputs(), transposed_, in + row * l.inputs());
   }
-  const bool whole = l.weights() == c.layer.weights();
-  float* const weight_gradient = whole ? parameters_.gradient(c.weights) : static_cast<float*>(narrow_);
+  float* const weight_gradient = parameters_.gradient(c.weights);
   if (i == 0 && mostly_usual_) {
-    first_->weight_gradient(c.gradients, l.out_channels, weight_gradient);
+    first_->weight_gradient(c.gradients, weight_gradient);
   } else {
     for (int row = 0; row < rows_; ++row) in_[size(row)] = input(i, pictures, row);
     kernels_.weight_gradient(l, in_.data(), c.gradients, weight_gradient, rows_);
   }
-  if (!whole) scatter_weights(c.layer, narrow_, inputs(i), c.live, parameters_.gradient(c.weights));
 }
 
 }  // namespace lgabench

@@ -7,7 +7,6 @@
 #include <lgabench/learning/first_convolution.hpp>
 #include <lgabench/learning/network_shape.hpp>
 #include <lgabench/learning/parameters.hpp>
-#include <lgabench/learning/zeros.hpp>
 
 namespace lgabench {
 
@@ -36,22 +35,17 @@ class Tower {
   struct Convolution {
     Layer layer;
     std::size_t weights, bias;
-    Channels in, out;     // all
-    Channels live = out;  // what is kept of the outputs: the others are 0 in all of this batch
     std::optional<BatchNorm> norm{};
     Numbers values{};                // what is normalised, as the outputs
-    Numbers outputs{}, gradients{};  // batch x out rows x out columns x live channels
+    Numbers outputs{}, gradients{};  // batch x out rows x out columns x channels
 
     int positions(int rows) const { return rows * layer.out_rows() * layer.out_columns(); }
   };
 
-  const Channels& inputs(std::size_t i) const { return i > 0 ? convolutions_[i - 1].live : convolutions_[0].in; }
-  Layer live_layer(std::size_t i) const;  // convolution number `i` between the channels that are left
   bool is_last(std::size_t i) const { return i + 1 == convolutions_.size(); }
   const float* input(std::size_t i, const std::vector<const float*>& pictures, int row) const;
   void add_convolution(const Layer& layer);
   void convolve(std::size_t i, const std::vector<const float*>& pictures, float* out);
-  void drop_closed_channels(std::size_t i);
   void backward(std::size_t i, const std::vector<const float*>& pictures);
 
   const Architecture architecture_;
@@ -61,7 +55,7 @@ class Tower {
   std::optional<FirstConvolution> first_;
   bool mostly_usual_ = false;
   int rows_ = 0;                  // of the last batch
-  Numbers narrow_, transposed_;   // one layer's weights or their gradient
+  Numbers transposed_;            // one layer's weights
   std::vector<const float*> in_;  // pictures that a convolution sees
 };
 

@@ -54,7 +54,7 @@
 #define LGABENCH_SANITIZER "none"
 #endif
 
-// Defined by whoever links LibTorch, by its CMakeLists.txt (examples/own_network).
+// Defined by lgabench_add_plugin() for a plugin that links LibTorch, whose find_package() comes before it.
 #if defined(LGABENCH_TORCH_VERSION)
 #define LGABENCH_TORCH LGABENCH_TORCH_VERSION
 #else

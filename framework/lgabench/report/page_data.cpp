@@ -7,25 +7,26 @@
 #include <tuple>
 
 #include <lgabench/core/environments.hpp>
-#include <lgabench/core/geometry.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
 namespace {
 
-// Column and row of the picture where a pose lies; positions are carried out clipped to the workspace.
-Json pixel(double x_m, double y_m) {
+// Columns and rows of the picture where the action's places lie, to a tenth of a pixel; none for another environment's.
+Json places_of(const std::string& id, const Action& action) {
+  static const std::vector<std::string> installed = environment_ids();
+  Json all = Json::array();
+  if (std::find(installed.begin(), installed.end(), id) == installed.end()) return all;
+  const EnvironmentType& environment = find_environment(id);
+  const ActionSpace& space = environment.action_space();
+  if (action.size() != space.size()) return all;
   const auto tenths = [](double value) { return std::round(value * 10) / 10; };
-  const double x = std::clamp(x_m, Workspace::x_min, Workspace::x_max),
-               y = std::clamp(y_m, Workspace::y_min, Workspace::y_max);
-  return {tenths((y - Workspace::y_min) / (Workspace::y_max - Workspace::y_min) * Workspace::columns),
-          tenths((x - Workspace::x_min) / (Workspace::x_max - Workspace::x_min) * Workspace::rows)};
-}
-
-// From where the action takes hold to where it lets go.
-Json way(const std::vector<double>& action) {
-  return {pixel(action.at(0), action.at(1)), pixel(action.at(6), action.at(7))};
+  for (const PicturePlace& place : space.places) {
+    const Vec2 at = in_picture(space, place, action, environment.picture_size());
+    all.push_back({tenths(at.x), tenths(at.y)});
+  }
+  return all;
 }
 
 std::string title_of(const Table& table, const Row& row) {
@@ -83,7 +84,8 @@ Json page_data(const Material& material) {
         blamed += e.attribution.empty() ? '.' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);
-        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0) actions[std::to_string(i)] = way(e.action);
+        if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
+          actions[std::to_string(i)] = places_of(cell.environment, e.action);
         if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
           ends[std::to_string(i)] = end->second;
       }
@@ -114,7 +116,7 @@ Json page_data(const Material& material) {
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
   Json oracle = Json::object();
-  for (const auto& [scene, action] : pictures.oracle) oracle[scene] = way(action);
+  for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
   return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
           {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
           {"oracle", oracle}};

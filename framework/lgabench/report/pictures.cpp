@@ -27,6 +27,7 @@ struct Request {
   std::vector<std::string> ends{};  // end_key of each of its ends
   std::string before{};             // end_key of the scene itself, where engines disagree about its end
   bool failed = false;              // a method in it
+  std::string environment{};        // whose actions these are
 };
 
 // All that a goal mask depends on beside the scene.
@@ -48,6 +49,7 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const auto [known, is_new] = place.emplace(episode.scene, all.size());
         if (is_new)
           all.push_back({{run / "cells" / cell.key / "cell.json", arm, static_cast<int>(i), episode.scene}, {}});
+        all[known->second].environment = cell.environment;
         Request& request = all[known->second];
         request.failed = request.failed || !episode.success;
         const CommandResult& command = cell.commands[episode.command];
@@ -64,14 +66,6 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   return all;
 }
 
-std::optional<ActionVector> action_of(const PlayedEpisode& episode) {
-  ActionVector action{};
-  if (episode.action.size() != action.size()) return std::nullopt;
-  std::transform(episode.action.begin(), episode.action.end(), action.begin(),
-                 [](double number) { return static_cast<float>(number); });
-  return action;
-}
-
 // How the methods' episodes in these scenes ended, each row's in turn.
 void add_ends(const RunResults& results, std::vector<Request>& requests) {
   std::map<std::string, Request*> request_of;  // by the scene's hash
@@ -81,7 +75,7 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
     const CellResult* cell;
     const std::string* arm;
     std::size_t index;
-    ActionVector action;
+    const PlayedEpisode& episode() const { return cell->episodes.at(*arm)[index]; }
   };
   std::vector<Candidate> all;
   std::map<std::tuple<std::string, std::string, std::string, std::string, int, std::string, bool>, int> so_far;
@@ -90,11 +84,10 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
         const PlayedEpisode& episode = cell.episodes.at(arm)[i];
-        const auto action = action_of(episode);
-        if (!action || request_of.count(episode.scene) == 0) continue;
+        if (episode.action.empty() || request_of.count(episode.scene) == 0) continue;
         int& before =
             so_far[{cell.layout, cell.engine, cell.scenario, cell.method, cell.demonstrations, arm, episode.success}];
-        all.push_back({before++, cell.demonstrations, &cell, &arm, i, *action});
+        all.push_back({before++, cell.demonstrations, &cell, &arm, i});
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
@@ -102,8 +95,8 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
   });
   if (all.size() > most_ends) all.resize(most_ends);
   for (const Candidate& c : all) {
-    Request& request = *request_of.at(c.cell->episodes.at(*c.arm)[c.index].scene);
-    request.scene.ends.push_back({c.cell->engine, c.action});
+    Request& request = *request_of.at(c.episode().scene);
+    request.scene.ends.push_back({c.cell->engine, c.episode().action});
     request.ends.push_back(end_key(*c.cell, *c.arm, c.index, c.cell->engine));
   }
 }
@@ -114,15 +107,13 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
   for (const EngineAgreement& agreement : agreements)
     for (const Disagreement& d : agreement.disagreements) {
       if (added++ == most_disagreements) return;
-      const auto action = action_of(d.episode());
-      if (!action) continue;
       const auto key = [&d](const std::string& engine) { return end_key(*d.cell, d.arm, d.index, engine); };
       requests.push_back({{run / "cells" / d.cell->key / "cell.json",
                            d.arm,
                            static_cast<int>(d.index),
                            d.episode().scene,
                            {},
-                           {{agreement.first, *action}, {agreement.second, *action}}},
+                           {{agreement.first, d.episode().action}, {agreement.second, d.episode().action}}},
                           {},
                           {key(agreement.first), key(agreement.second)},
                           key("")});
@@ -193,7 +184,7 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     const std::string& scene = request.scene.scene;
     pictures.scenes[scene] = drawn.at("picture");
     pictures.targets[scene] = drawn.at("targets");
-    if (drawn.at("oracle").is_array()) pictures.oracle[scene] = drawn.at("oracle").get<std::vector<double>>();
+    if (drawn.at("oracle").is_array()) pictures.oracle[scene] = {request.environment, drawn.at("oracle").get<Action>()};
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
   }
   return pictures;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/action.hpp>
 #include <lgabench/report/engines.hpp>
 #include <lgabench/report/results.hpp>
 
@@ -17,9 +18,9 @@ struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action
   std::map<std::string, std::string> masks;   // mask_key -> PNG in base64
   std::map<std::string, std::string> ends;    // end_key -> PNG in base64; "" where nothing moved
-  // The scene's hash -> the targets' outline, an SVG path in pixels; and what the oracle would do, 12 numbers.
+  // The scene's hash -> the targets' outline, an SVG path in pixels; and its environment with what the oracle would do.
   std::map<std::string, std::string> targets;
-  std::map<std::string, std::vector<double>> oracle;
+  std::map<std::string, std::pair<std::string, Action>> oracle;
   std::size_t wanted = 0;  // scenes that a method played
   std::string problem;     // why one that was asked for is missing; empty if none is
 };

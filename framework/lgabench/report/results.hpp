@@ -11,9 +11,8 @@
 
 namespace lgabench::report {
 
-/// Members of timing.json, in the order of the pipeline.
-constexpr std::array<const char*, 6> phases{"select_s", "sample_s",   "demonstrate_s",
-                                            "learn_s",  "evaluate_s", "total_s"};
+/// Members of timing.json: of cell_phases in their order, then "total_s".
+const std::vector<std::string>& phases();
 
 /// A command of the cell's scenario, and what the method selected for it.
 struct CommandResult {
@@ -29,13 +28,14 @@ struct PlayedEpisode {
   bool success = false;
   std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
   std::string scene;           // the scene's hash, 16 hexadecimal digits
-  std::vector<double> action;  // the policy's 12 numbers; empty where it gave none
+  std::vector<double> action;  // the policy's numbers; empty where it gave none
   std::optional<bool> input_seen;  // its input stood in training; none where the policy does not tell
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
+  std::string environment;                                  // whose scenario it is; may be one that is not installed
   std::string space;                                        // the scenario's feature space
   std::string id;                                           // of the plugin, or of the reference row
   Json options = Json::object();                            // of the method, all of them

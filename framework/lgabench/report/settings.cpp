@@ -12,14 +12,37 @@
 namespace lgabench::report {
 namespace {
 
-// Names of the rows that have this option at this value, in the order of tables.
-std::vector<std::string> rows_with(const RunResults& run, const std::string& option, const std::string& value) {
+// Names of the run's rows that a description of methods.json fits, {"id"?, "options"?}, in the order of tables.
+std::vector<std::string> rows_like(const RunResults& run, const JsonReader& description) {
   std::set<std::string, ByRank> rows;
-  for (const CellResult& cell : run.cells)
-    if (cell.options.value(option, Json()) == value) rows.insert(cell.method);
+  for (const CellResult& cell : run.cells) {
+    bool fits = !description.has("id") || cell.id == description.at("id").string();
+    if (description.has("options"))
+      for (const auto& [option, value] : description.at("options").json().items())
+        fits = fits && cell.options.value(option, Json()) == value;
+    if (fits) rows.insert(cell.method);
+  }
   std::vector<std::string> names;
   for (const std::string& row : rows) names.push_back(display_name(row));
   return names;
+}
+
+// What methods.json says of rows that are no reading of the paper, or are one method under two names.
+std::vector<std::string> remarks(const RunResults& run) {
+  const fs::path file = data_directory() / "paper" / "methods.json";
+  const Json json = read_json(file);
+  std::vector<std::string> lines;
+  for (const JsonReader& remark : JsonReader(json, file.string()).at("remarks").elements()) {
+    std::vector<std::string> all;
+    bool applies = true;
+    for (const JsonReader& description : remark.at("rows").elements()) {
+      const std::vector<std::string> names = rows_like(run, description);
+      applies = applies && !names.empty();
+      all.insert(all.end(), names.begin(), names.end());
+    }
+    if (applies) lines.push_back(fmt::format("{}: {}", remark.at("text").string(), fmt::join(all, ", ")));
+  }
+  return lines;
 }
 
 // "loss=squared: LGA, Human": rows with the same options together, in the order of tables.
@@ -51,16 +74,7 @@ std::vector<std::string> settings(const RunResults& run) {
     lines.push_back("beside the plugins' defaults, " + line);
   if (run.json.value("request", Json::object()).value("test_scenes", Json()) == "per_seed")
     lines.emplace_back("each training seed plays test scenes of its own");
-  if (const auto rows = rows_with(run, "network", "plain"); !rows.empty())
-    lines.push_back(
-        fmt::format("network=plain has no batch normalisation, a deviation from the paper and from its code: {}",
-                    fmt::join(rows, ", ")));
-  bool lga = false, lga_s = false;
-  for (const CellResult& cell : run.cells) {
-    lga = lga || (cell.id == "lga" && cell.options.value("picture", Json()) == "rgb");
-    lga_s = lga_s || cell.id == "lga_s";
-  }
-  if (lga && lga_s) lines.emplace_back("LGA and LGA-S are one method here: with picture=rgb LGA sees the picture too");
+  for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;
 }
 

@@ -37,7 +37,8 @@ class Cheat : public Policy {
     };
     const auto scene = std::find_if(known_.begin(), known_.end(), shows);
     if (scene == known_.end()) throw MethodError("a scene that is not known");
-    return {{scene->find(role::target)->position_m, {}}, {scene->find(role::goal)->position_m, {}}};
+    const Vec2 from = scene->find(role::target)->position_m, to = scene->find(role::goal)->position_m;
+    return fixture::from_to(from.x, from.y, to.x, to.y);
   }
 
  private:

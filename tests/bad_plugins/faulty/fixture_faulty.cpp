@@ -101,7 +101,7 @@ class Once : public fixture::StayPolicy {
     const std::string how = std::exchange(how_, "");
     misbehave(how);
     Action action = StayPolicy::act(observation, instruction);
-    if (how == "nan") action.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
+    if (how == "nan") action[7] = std::numeric_limits<double>::quiet_NaN();
     return action;
   }
 

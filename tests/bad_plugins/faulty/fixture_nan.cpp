@@ -8,7 +8,7 @@ class P : public fixture::StayPolicy {
  public:
   lgabench::Action act(const lgabench::Observation& observation, const lgabench::Instruction& instruction) override {
     lgabench::Action action = StayPolicy::act(observation, instruction);
-    action.pose1.position_m.y = std::numeric_limits<double>::quiet_NaN();
+    action[7] = std::numeric_limits<double>::quiet_NaN();
     return action;
   }
 };

@@ -12,8 +12,8 @@ namespace {
 using namespace lgabench;
 
 Action at_place(double share) {
-  const PlanarPose pose{{.3 + .4 * share, 0}, {}};
-  return {pose, pose};
+  const double x = .3 + .4 * share;
+  return fixture::from_to(x, 0, x, 0);
 }
 
 class Unsound : public Policy {

@@ -23,9 +23,17 @@ function episodesOf(row) {
   return all.sort((a, b) => !a.failure - !b.failure);
 }
 
-const picture = (bytes, alt, over = "") =>
-  `<svg viewBox="0 0 256 128" role="img" aria-label="${escaped(alt)}">` +
-  `<image href="data:image/png;base64,${bytes}" width="256" height="128"/>${over}</svg>`;
+// A PNG's width and height, from its header.
+function sizeOf(base64) {
+  const bytes = Uint8Array.from(atob(base64.slice(0, 32)), (c) => c.charCodeAt(0)), view = new DataView(bytes.buffer);
+  return [view.getUint32(16), view.getUint32(20)];
+}
+
+function picture(bytes, alt, over = "") {
+  const [width, height] = sizeOf(bytes);
+  return `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escaped(alt)}">` +
+    `<image href="data:image/png;base64,${bytes}" width="${width}" height="${height}"/>${over}</svg>`;
+}
 
 // From pose0 to pose1, on black, so that it shows on every texture.
 function arrow(action, colour, dashes = "none") {
