@@ -69,8 +69,8 @@ void inspect(const std::string& file) {
     std::vector<std::string> objects;
     for (const Instance& instance : steps.front().observation.instances)
       objects.push_back(instance.texture + " " + instance.object_type);
-    to_stdout("demo_{}: {} steps; \"{}\"; {}; action {:.3f}\n", i, steps.size(), instruction.utterance,
-              fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
+    to_stdout("demo_{}: {} step{}; \"{}\"; {}; action {:.3f}\n", i, steps.size(), steps.size() == 1 ? "" : "s",
+              instruction.utterance, fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
   }
 }
 

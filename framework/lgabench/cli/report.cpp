@@ -81,8 +81,8 @@ void add_report(CLI::App& app, int& exit) {
       ->required();
   verb->add_option("--index", options->index,
                    "That page (default: index.html beside the first run; other directories are left out)");
-  verb->add_option("--format", options->format, "What to print: text, md, json or csv")
-      ->check(one_of("format", {"text", "md", "json", "csv"}))
+  verb->add_option("--format", options->format, "What to print: text, md, latex (every table), json or csv")
+      ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
@@ -92,7 +92,7 @@ void add_report(CLI::App& app, int& exit) {
       ->delimiter(',')
       ->expected(2);
   arrange(*verb, "",
-          {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|json|csv"}, {"--difference", "A,B"}});
+          {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|latex|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
@@ -123,6 +123,9 @@ void add_report(CLI::App& app, int& exit) {
     }
     if (options->format == "text")
       print_tables(report);
+    else if (options->format == "latex")
+      for (const report::Grid* grid : report.document.grids())
+        to_stdout("% {}\n{}\n", grid->caption, report::latex(*grid));
     else if (options->format == "md")
       to_stdout("{}", read_file(run / "report.md"));
     else
