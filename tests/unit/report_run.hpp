@@ -51,6 +51,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell is based on
     double human_seconds = 0;                              // of each command
+    std::map<std::string, double> curves{};                // of training.jsonl, beside the loss: their first value
     int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
@@ -160,7 +161,11 @@ class FabricatedRun : public TemporaryDirectory {
         if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
         episodes += canonical(episode) + '\n';
       }
-    for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
+    for (int e = 1; e <= 3; ++e) {
+      Json line{{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}};
+      for (const auto& [name, first] : s.curves) line[name] = first / e;
+      training += canonical(line) + '\n';
+    }
     const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},
                       {"learn_s", s.learn_s}, {"evaluate_s", 2.0}, {"total_s", 7.75}};
     const fs::path cell = new_cell(s);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -59,6 +60,9 @@ inline CLI::Validator within(double low, double high) {
       },
       fmt::format("FLOAT in [{} - {}]", low, high), "");
 }
+
+/// The rows that every run has beside its methods, and what they do: {"id", "summary"} each.
+Json reference_rows();
 
 /// A check for an option: one of those words.
 inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {

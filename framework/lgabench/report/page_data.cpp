@@ -14,11 +14,11 @@ namespace lgabench::report {
 namespace {
 
 // Columns and rows of the picture where the action's places lie, to a tenth of a pixel; none for another environment's.
-Json places_of(const CellResult& cell, const Action& action) {
+Json places_of(const std::string& id, const Action& action) {
   static const std::vector<std::string> installed = environment_ids();
   Json all = Json::array();
-  if (std::find(installed.begin(), installed.end(), cell.environment) == installed.end()) return all;
-  const EnvironmentType& environment = find_environment(cell.environment);
+  if (std::find(installed.begin(), installed.end(), id) == installed.end()) return all;
+  const EnvironmentType& environment = find_environment(id);
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;
   const auto tenths = [](double value) { return std::round(value * 10) / 10; };
@@ -75,7 +75,7 @@ Json page_data(const Material& material) {
     for (const std::string& arm : cell.arms) {
       std::string outcomes, blamed;  // a character an episode
       std::vector<std::string> hashes;
-      Json given = Json::array(), actions = Json::object();
+      Json given = Json::array(), actions = Json::object(), ends = Json::object();
       const std::vector<PlayedEpisode>& all = cell.episodes.at(arm);
       for (std::size_t i = 0; i < all.size(); ++i) {
         const PlayedEpisode& e = all[i];
@@ -85,7 +85,9 @@ Json page_data(const Material& material) {
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
-          actions[std::to_string(i)] = places_of(cell, e.action);
+          actions[std::to_string(i)] = places_of(cell.environment, e.action);
+        if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
+          ends[std::to_string(i)] = end->second;
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
       const auto row = [&](const std::string& scenario) {
@@ -97,7 +99,8 @@ Json page_data(const Material& material) {
                         {"commands", given},
                         {"outcomes", outcomes},
                         {"attribution", blamed},
-                        {"actions", actions}});
+                        {"actions", actions},
+                        {"ends", ends}});
     }
     cells.push_back({{"cell", cell.key},
                      {"scenario", cell.scenario},
@@ -112,8 +115,11 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  return {{"failures", words}, {"phi", selections},           {"titles", titles},       {"cells", cells},
-          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}};
+  Json oracle = Json::object();
+  for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
+  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
+          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
+          {"oracle", oracle}};
 }
 
 }  // namespace lgabench::report

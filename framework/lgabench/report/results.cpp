@@ -62,6 +62,17 @@ void read_episodes(const fs::path& file, CellResult& cell) {
   }
 }
 
+void read_training(const fs::path& file, CellResult& cell) {
+  int line = 0;
+  for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
+    const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
+    const long long epoch = reader.at("epoch").integer(1, std::numeric_limits<long long>::max());
+    for (const auto& item : json.items())
+      if (item.key() != "epoch" && item.key() != "steps")
+        cell.training[one_line(item.key())][epoch] = reader.at(item.key()).number();
+  }
+}
+
 // Members of run.json that a report shows, where they are there.
 void expect_shown(const JsonReader& run) {
   const auto expect_object = [](const JsonReader& value) {
@@ -176,6 +187,7 @@ CellResult read_cell(const fs::path& directory) {
   }
   if (reader.has("method_error")) cell.method_error = shown(reader.at("method_error"));
   read_selections(directory / "selection.json", cell);
+  read_training(directory / "training.jsonl", cell);
   read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
   cell.timing = read_json(timing_file, Links::refused);

@@ -57,7 +57,7 @@ Cell test_cell(const Placed& of, const Tested& t, const std::string& member, boo
     spans.push_back(Span::number("], p < 0.001"));
   } else {
     spans.push_back(Span::number("], p = "));
-    spans.push_back(Span::number(fmt::format("{:.3f}", t.p_holm), of.place + member + "/p_holm"));
+    spans.push_back(Span::number(fixed(t.p_holm, 3), of.place + member + "/p_holm"));
   }
   return spans;
 }
@@ -117,7 +117,7 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
 
 Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
   Grid grid = differences_grid("claims_differences", "The differences behind the claims");
-  for (const char* head : {"these scenarios", "", "scenarios like these", "", "based on"})
+  for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict", "based on"})
     grid.heads.emplace_back(head);
   grid.align += "lllll";
   for (const Placed& of : all) {
@@ -143,7 +143,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   Grid verdicts;
   verdicts.name = "claims";
   verdicts.caption = title;
-  verdicts.heads = {"claim", "", "layout", "engine", "these scenarios", "scenarios like these"};
+  verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
   List lines;
   std::vector<Placed> all, tested;

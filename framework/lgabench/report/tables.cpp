@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
@@ -110,9 +111,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     if (const auto& near = table.nearness)
       lines.push_back(
           fmt::format("Beside the paper, {}, {}: {} of {} points of {} lie within 1.5 of its error bars; the mean "
-                      "distance is {:.3f}.",
+                      "distance is {}.",
                       table.title(), table.title(mean_scenario), near->near, near->points, listed(near->methods),
-                      near->mean_distance));
+                      fixed(near->mean_distance, 3)));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   for (const std::string& model : live)
