@@ -32,7 +32,7 @@ class Drawing {
   double x_of(double at) const {
     return left + (at - chart_.left) / (chart_.right - chart_.left) * (chart_.width - left - right);
   }
-  double y_of(double rate) const { return top_ + (1 - rate) * (chart_.height - top_ - bottom); }
+  double y_of(double rate) const { return top_ + (1 - rate / chart_.top) * (chart_.height - top_ - bottom); }
   // Points between two ticks.
   double gap() const {
     return chart_.ticks.size() < 2 ? chart_.width - left - right : x_of(chart_.ticks[1].at) - x_of(chart_.ticks[0].at);
@@ -44,9 +44,10 @@ class Drawing {
 
   void axes() {
     for (int tenth = 0; tenth <= 10; tenth += 2) {
-      const double y = y_of(tenth / 10.0);
+      const double value = chart_.top * tenth / 10, y = y_of(value);
       canvas_.path({{'m', {left, y}}, {'l', {chart_.width - right, y}}}, grid);
-      canvas_.text(fmt::format("{:.1f}", tenth / 10.0), left - 7, y + 4, Anchor::end, small_text, false, Ink::soft);
+      canvas_.text(chart_.top == 1 ? fmt::format("{:.1f}", value) : fmt::format("{:g}", value), left - 7, y + 4,
+                   Anchor::end, small_text, false, Ink::soft);
     }
     const double foot = chart_.height - bottom;
     const bool slanted = std::any_of(chart_.ticks.begin(), chart_.ticks.end(), [this](const Chart::Tick& tick) {

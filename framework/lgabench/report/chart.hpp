@@ -26,7 +26,7 @@ struct Series {
   std::vector<ChartPoint> points{};
 };
 
-/// Success, from 0 to 1, over places along an axis.
+/// Success, from 0 to 1, or another quantity from 0 to `top`, over places along an axis.
 struct Chart {
   struct Tick {
     double at = 0;
@@ -36,6 +36,7 @@ struct Chart {
   std::string title, subtitle, axis, alternative;  // alternative: the text for those who do not see it
   double width = 640, height = 400;                // in points, without the legend
   double left = 0, right = 1;                      // of the axis
+  double top = 1;                                  // of the upright one, with five equal steps
   std::vector<Tick> ticks{};
   std::vector<Series> series{};
   bool legend = true;
