@@ -22,7 +22,7 @@ OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("own_network", "my_stack", "my_statistic")
 LONGEST = 300 if os.environ.get("LGABENCH_FULL") else 10  # seconds, as --dry-run expects them
-ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin"}  # run_test, verify_test, consumer_test
+ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin", "study"}  # run_test, verify_test, consumer_test, study_test
 
 
 def commands(page):
@@ -74,7 +74,7 @@ class DocumentedCommands(Case):
                 verb = shown[0]
                 asks_a_server = any(word.startswith(WITH_A_SERVER) for word in shown)
                 own = any(name in word for word in shown for name in BUILT_BY_A_READER)
-                if not verb.islower() or verb in ELSEWHERE or own or verb == "select" and asks_a_server:
+                if not verb.islower() or verb in ELSEWHERE or own or "--humans" in shown or verb == "select" and asks_a_server:
                     continue
                 words = self.here(shown)
                 with self.subTest(page=page.name, command=" ".join(shown)):

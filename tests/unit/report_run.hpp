@@ -50,6 +50,7 @@ class FabricatedRun : public TemporaryDirectory {
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell is based on
+    bool rehearsal = false;                                // that was no person
     double human_seconds = 0;                              // of each command
     std::map<std::string, double> curves{};                // of training.jsonl, beside the loss: their first value
     int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
@@ -109,6 +110,7 @@ class FabricatedRun : public TemporaryDirectory {
     const std::map<std::string, std::string> asks{{"human", "specify"}, {"lga_hill", "edit"}};
     if (const auto whom = asks.find(s.method); whom != asks.end()) cell["method"]["asks"] = whom->second;
     if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
+    if (s.rehearsal) cell["participant"]["rehearsal"] = true;
     return cell;
   }
 

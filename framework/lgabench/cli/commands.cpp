@@ -44,6 +44,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
+  add_study(app, exit);
   add_cache(app, exit);
 }
 
@@ -52,6 +53,7 @@ void arrange_commands(CLI::App& app) {
       {"To look at what there is", {"list", "info", "select", "render", "demos", "replay"}},
       {"To run and to compare", {"run", "report", "compare", "verify", "merge"}},
       {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
+      {"To ask people", {"study"}},
       {"To clean up", {"cache"}}};
   for (const auto& [title, names] : titles)
     for (const char* name : names)

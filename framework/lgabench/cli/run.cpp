@@ -30,7 +30,8 @@ struct Arguments {
   std::optional<int> episodes;
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
-  bool unconfined = false, resume = false, fresh = false, dry_run = false, no_reference = false, json = false;
+  bool unconfined = false, rehearsal = false, resume = false, fresh = false, dry_run = false, no_reference = false,
+       json = false;
 };
 
 // 0,1,2 or 0:3 (without its end). @throws InputError for anything else, which names the option.
@@ -198,8 +199,9 @@ int run(Arguments a) {
   } else if (a.answers != no_answers) {
     check_recorded(a.answers, grid.scenarios);
   }
+  if (a.rehearsal && a.humans.empty()) throw InputError("--rehearsal: expected --humans DIR with it");
   if (!a.humans.empty())
-    for (AnswerFile& file : read_participants(a.humans, variation.participants))
+    for (AnswerFile& file : read_participants(a.humans, a.rehearsal, variation.participants))
       plan.answers.push_back(std::move(file));
   plan.shard = read_shard(a.shard);
   plan.cells = expand(suite, grid, variation, catalogue);
@@ -318,6 +320,9 @@ void add_run(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--humans", a->humans,
                    "A directory of participants' .json files: methods that ask people then have a cell for each");
+  verb->add_flag("--rehearsal", a->rehearsal,
+                 "With --humans: take files of a rehearsal or of simulated people; run, tables and claims are marked, "
+                 "and it is not for the leaderboard");
   verb->add_flag("--unconfined", a->unconfined,
                  "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
   verb->add_option("--debug", a->debug,
@@ -345,6 +350,7 @@ void add_run(CLI::App& app, int& exit) {
            {"--max-queries", "N"},
            {"--truth", "released|printed"},
            {"--humans", "DIR"},
+           {"--rehearsal", ""},
            {"--no-reference", ""}});
   arrange(
       *verb, "How much of it",

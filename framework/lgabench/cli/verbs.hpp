@@ -39,6 +39,7 @@ void add_new_plugin(CLI::App& app, int& exit);
 void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
+void add_study(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);

@@ -17,7 +17,7 @@ Answering participants(const Competitor& method, const Scenario& scenario, const
   const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
-    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
+    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256, one.rehearsal});
   return some;
 }
 

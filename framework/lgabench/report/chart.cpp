@@ -47,8 +47,10 @@ class Drawing {
 
   void axes() {
     std::vector<Chart::Tick> levels = chart_.levels;
-    for (int tenth = 0; tenth <= 10 && chart_.levels.empty(); tenth += 2)
-      levels.push_back({tenth / 10.0, fmt::format("{:.1f}", tenth / 10.0)});
+    for (int tenth = 0; tenth <= 10 && chart_.levels.empty(); tenth += 2) {
+      const double value = chart_.bottom + (chart_.top - chart_.bottom) * tenth / 10;
+      levels.push_back({value, chart_.top == 1 ? fmt::format("{:.1f}", value) : fmt::format("{:g}", value)});
+    }
     for (const Chart::Tick& level : levels) {
       const double y = y_of(level.at);
       canvas_.path({{'m', {left, y}}, {'l', {chart_.width - right, y}}}, grid);

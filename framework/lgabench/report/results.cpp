@@ -151,7 +151,10 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
-  if (reader.has("participant")) cell.participant = shown(reader.at("participant").at("id"));
+  if (reader.has("participant")) {
+    cell.participant = shown(reader.at("participant").at("id"));
+    cell.rehearsal = reader.at("participant").has("rehearsal") && reader.at("participant").at("rehearsal").boolean();
+  }
   cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
 }
 
@@ -229,6 +232,7 @@ RunResults read_run(const fs::path& run) {
       continue;
     }
     results.cells.push_back(read_cell(run / "cells" / key));
+    if (results.cells.back().rehearsal) results.rehearsal = true;
     if (divided) results.cells.back().demonstrated_commands = 1;
     order.emplace(results.cells.back().scenario, order.size());
   }

@@ -9,8 +9,9 @@
 namespace lgabench::report {
 namespace {
 
-Cell verdict_cell(Verdict verdict, const std::string& reason) {
+Cell verdict_cell(Verdict verdict, const std::string& reason, bool rehearsal) {
   Cell cell(Span(to_string(verdict), Emphasis::strong));
+  if (rehearsal) cell.spans.emplace_back(fmt::format(" ({})", rehearsal_words));
   if (!reason.empty()) cell.spans.emplace_back(": " + reason);
   return cell;
 }
@@ -133,7 +134,9 @@ Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
   return grid;
 }
 
-std::string with_reason(Verdict verdict, const std::string& reason) { return verdict_cell(verdict, reason).text(); }
+std::string with_reason(Verdict verdict, const std::string& reason, bool rehearsal) {
+  return verdict_cell(verdict, reason, rehearsal).text();
+}
 
 }  // namespace
 
@@ -151,13 +154,15 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
     const Claim& claim = claims[c];
     verdicts.rows.push_back(
         {{},
-         {claim.id, claim.statement, claim.layout, claim.engine, verdict_cell(claim.verdict, claim.reason),
-          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike)}});
+         {claim.id, claim.statement, claim.layout, claim.engine,
+          verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
+          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
-    lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason)});
+    lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});
     if (!claim.differences.empty())
-      lines.items.push_back({"      scenarios like these: " + with_reason(claim.alike, claim.reason_alike)});
+      lines.items.push_back(
+          {"      scenarios like these: " + with_reason(claim.alike, claim.reason_alike, claim.rehearsal)});
     for (std::size_t d = 0; d < claim.differences.size(); ++d) {
       all.push_back({claim, claim.differences[d], fmt::format("/claims/{}/differences/{}", c, d)});
       if (claim.differences[d].these.change) tested.push_back(all.back());

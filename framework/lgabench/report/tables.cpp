@@ -90,11 +90,13 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         if (provenance == "live") live.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
-        people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+        people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                         run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
                                          edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
   }
   std::vector<std::string> lines;
+  if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   if (run.not_run > 0)
     lines.push_back(fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run,
