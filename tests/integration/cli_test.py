@@ -10,7 +10,7 @@ import unittest
 
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line
 
-VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "new-plugin",
+VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "cluster", "status", "leaderboard", "new-plugin",
          "check-plugin", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.

@@ -19,7 +19,7 @@ OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "
        "runs/AFTER": "run", "RUN": "run", "runs/q1": "run"}
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("own_network", "my_stack", "my_statistic")
-ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin"}  # run_test, verify_test, consumer_test
+ELSEWHERE = {"install", "merge", "verify", "leaderboard", "cluster", "status", "new-plugin", "check-plugin"}  # run_test, verify_test, leaderboard_test, cluster_test, consumer_test
 
 
 def commands(page):
