@@ -36,7 +36,10 @@ struct Span {
   /// /claims, else into summary.json; "" for a number that stands in neither.
   static Span number(std::string text, std::string pointer = "", Emphasis how = Emphasis::none);
 
-  std::string text, pointer;
+  /// Words that lead to a page.
+  static Span link(std::string words, std::string url);
+
+  std::string text, pointer, url{};
   Emphasis emphasis = Emphasis::none;
   bool numeric = false;  // the program's own, and needs no escape in Markdown
 };

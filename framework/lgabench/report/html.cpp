@@ -24,6 +24,7 @@ std::string span_html(const Span& span) {
   const auto& [open, close] = around[static_cast<std::size_t>(span.emphasis)];
   std::string text = escaped(span.text);
   if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
+  if (!span.url.empty()) text = fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
   return open + text + close;
 }
 
@@ -199,7 +200,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string html(const Document& document, const Json& data) {
+std::string html(const Document& document, const Json& data, const std::string& script) {
   std::string body;
   if (!document.headline.empty()) body += "<p class=headline>" + spans_html(document.headline) + "</p>\n";
   body += notes_html(document);
@@ -212,13 +213,16 @@ std::string html(const Document& document, const Json& data) {
         fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
                     section.id, escaped(section.title), blocks);
   }
+  const auto first = std::find_if(document.sections.begin(), document.sections.end(),
+                                  [](const Section& section) { return (section.in & on_page) != 0; });
   const fs::path installed = data_directory() / "page";
   return filled(read_file(installed / "page.html"),
                 {{"{{title}}", escaped(document.title)},
+                 {"{{first}}", first == document.sections.end() ? "" : first->id},
                  {"{{style}}", read_file(installed / "page.css")},
                  {"{{body}}", body},
                  {"{{data}}", embedded(data)},
-                 {"{{script}}", read_file(installed / "page.js") + read_file(installed / "episodes.js")}});
+                 {"{{script}}", read_file(installed / "page.js") + read_file(installed / script)}});
 }
 
 }  // namespace lgabench::report

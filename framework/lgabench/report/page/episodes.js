@@ -82,22 +82,6 @@ function single(e) {
     `</div><p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
 }
 
-// The first `most` of a list, and a button for more of it.
-function growing(list, most, render) {
-  const box = document.createElement("div");
-  const draw = (count) => {
-    box.innerHTML = render(list.slice(0, count));
-    if (count >= list.length) return;
-    const more = document.createElement("button");
-    more.type = "button";
-    more.textContent = `Show more (${count} of ${list.length})`;
-    more.onclick = () => draw(count * 4);
-    box.append(more);
-  };
-  draw(most);
-  return box;
-}
-
 function listOf(shown) {
   const seen = shown.filter((e) => e.picture), list = document.createElement("div");
   list.innerHTML = `<p>${shown.length} episodes, ${shown.filter((e) => e.failure).length} failed; ${seen.length} with a ` +
@@ -149,7 +133,6 @@ $("previous").onclick = () => step(-1);
 $("next").onclick = () => step(1);
 $("all").onclick = () => show(now.row, now.outcome);
 $("outcome").onchange = () => show(now.row, $("outcome").value);
-$("close").onclick = () => panel.close();
 panel.onkeydown = (event) => {
   const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
   if (by && event.target.tagName !== "SELECT") step(by);

@@ -1,4 +1,6 @@
 "use strict";
+// What all pages do.
+
 const data = JSON.parse(document.getElementById("data").textContent);
 const $ = (id) => document.getElementById(id);
 const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
@@ -126,3 +128,21 @@ for (const point of document.querySelectorAll(".point[aria-label]")) {
   point.onmouseenter = point.onfocus = show;
   point.onmouseleave = point.onblur = () => { tip.hidden = true; };
 }
+
+// The first `most` of a list, and a button for more of it.
+function growing(list, most, render) {
+  const box = document.createElement("div");
+  const draw = (count) => {
+    box.innerHTML = render(list.slice(0, count));
+    if (count >= list.length) return;
+    const more = document.createElement("button");
+    more.type = "button";
+    more.textContent = `Show more (${count} of ${list.length})`;
+    more.onclick = () => draw(count * 4);
+    box.append(more);
+  };
+  draw(most);
+  return box;
+}
+
+$("close").onclick = () => $("panel").close();
