@@ -80,7 +80,7 @@ class Board(Case):
         file = self.dir / run / "run.json"
         file.write_text(json.dumps({**json.loads(file.read_text()), **members}))
 
-    def fail(self, cell, fault):
+    def mark_failed(self, cell, fault):
         status = {"state": "failed", "reason": "ended by signal 11", "signal": 11, "fault": fault, "build": {}, "files": {},
                   "log_tail": []}
         for name in ("selection.json", "training.jsonl", "episodes.jsonl", "timing.json"):
@@ -148,7 +148,7 @@ class Submissions(Board):
 
     def test_a_cell_that_the_method_failed_counts_as_lost(self):
         self.take_run()
-        self.fail(self.cell(demonstrations=4), "plugin")
+        self.mark_failed(self.cell(demonstrations=4), "plugin")
         self.add()
         lines = [json.loads(line) for file in (self.dir / "board").glob("entries/fixture_constant/*/*/cells.jsonl")
                  for line in file.read_text().splitlines()]
@@ -210,7 +210,7 @@ class Refusals(Board):
         self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
 
     def test_a_cell_that_the_host_failed(self):
-        self.fail(self.cell(), "host")
+        self.mark_failed(self.cell(), "host")
         self.assertRegex(self.refused()[0], "^failed by the host, not by the method: fixture_constant.*: ended by signal 11$")
 
     def test_an_edited_file(self):
@@ -246,7 +246,7 @@ class Refusals(Board):
 
     def test_what_authors_must_say(self):
         (self.dir / "me.json").write_text(json.dumps({k: v for k, v in META.items() if k != "license"}))
-        self.assertIn("me.json: /license", self.add(expect=2).stderr)
+        self.assertIn('me.json: /: expected a member "license"', self.add(expect=2).stderr)
         (self.dir / "me.json").write_text(json.dumps({**META, "source": {"repository": "r", "commit": "main"}}))
         self.assertIn("/source/commit: expected 40 hexadecimal digits", self.add(expect=2).stderr)
 
