@@ -111,9 +111,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     Cell name(Span(display_name(table.names[i])));
     name.style = reference ? MethodStyle() : styles(table.names[i]);
     Grid::Row row{
-        {},
-        {Span::number(rank_text(s)), name, rate_button(score_text(s), s.score, (first_row + i) * scenarios_of_a_row)},
-        reference};
+        {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
     for (const int n : setting.demonstrations) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
       row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(rate_text(at->second))));
