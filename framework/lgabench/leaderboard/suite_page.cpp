@@ -86,7 +86,7 @@ std::string tier_and_marks(const Standing& s) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// The table, with a column for each number of demonstrations, or for each arm where there is one number alone.
+// The table, with a column for each number of demonstrations, and for each arm where there are several.
 Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   const Setting& setting = table.setting;
   std::set<std::string> arms;
@@ -102,9 +102,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
     grid.heads.emplace_back(head);
   grid.align = "rl" + std::string(grid.heads.size() - 2, 'r');
-  std::vector<std::string> names;
-  for (const std::string& name : table.names) names.push_back(name);
-  const MethodStyles styles(names);
+  const MethodStyles styles(table.names);
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
     const bool reference = s.entry->identity.row.is_reference();
