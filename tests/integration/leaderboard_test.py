@@ -106,6 +106,17 @@ class Submissions(Board):
         said = self.add(expect=1).stderr
         self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
 
+    def test_two_shards_make_the_same_entries(self):
+        self.take_run()
+        for shard in 1, 2:
+            self.play(f"part{shard}", "--shard", f"{shard}/2")
+        self.call("merge", "whole", "part1", "part2")
+        self.add()
+        cells = {file: file.read_bytes() for file in (self.dir / "board").rglob("cells.jsonl")}
+        self.assertEqual(self.add("whole").stdout.count("evidence added to"), 5)
+        self.assertEqual({file: file.read_bytes() for file in cells}, cells)
+        self.assertIn("missing: ", self.add("part1", 1).stderr)
+
     def test_the_page_names_the_command_that_plays_a_cell_again(self):
         self.take_run()
         self.add()
