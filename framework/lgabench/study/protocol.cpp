@@ -181,7 +181,8 @@ Protocol read_protocol(const fs::path& file) {
 
 std::vector<std::string> blanks(const Protocol& protocol) {
   std::vector<std::string> found;
-  for (const auto& [place, value] : protocol.json.flatten().items())  // texts alone: lists begin with [[ as well
+  const Json flat = protocol.json.flatten();
+  for (const auto& [place, value] : flat.items())  // texts alone: lists begin with [[ as well
     if (value.is_string()) find_blanks(value.get<std::string>(), "protocol", found);
   find_blanks(protocol.consent, "consent", found);
   return found;
