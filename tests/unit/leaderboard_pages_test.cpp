@@ -1,8 +1,8 @@
 // A board's pages, and what `leaderboard check` finds: with 200 entries of q1's size, in seconds.
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <cstdlib>
+#include <ctime>
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
