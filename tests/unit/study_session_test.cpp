@@ -93,7 +93,8 @@ TEST_F(StudySession, AnEventCountsOnceAndOnlyWhereItFits) {
   familiarise();
   post("start"), post("shown");
   const Json once = page.event("edit", edit("object_types", {"ring"}, current().condition == Condition::human));
-  session->post(once, at), session->post(once, at);
+  EXPECT_FALSE(session->post(once, at));
+  EXPECT_FALSE(session->post(once, at)) << "a page that is told where it is would begin its trial anew";
   EXPECT_EQ(current().edits, 1);
   for (const auto& [event, expected] : std::vector<std::pair<Json, std::string>>{
            {page.event("edit", edit("object_types", {"hart"})), "/values: expected words of the space"},

@@ -33,6 +33,12 @@ double without(double from, double to, std::vector<std::pair<double, double>> in
   return left;
 }
 
+// Whether the page is to show something else; what is sent again must not: the page would begin its trial anew.
+bool turns_the_page(const Json& event) {
+  const auto within = {"shown", "edit", "blur", "focus", "idle", "active"};
+  return std::none_of(within.begin(), within.end(), [&](const char* kind) { return event.at("kind") == kind; });
+}
+
 double page_ms(const Json& event) { return event.at("page_ms").get<double>(); }
 
 }  // namespace
@@ -87,20 +93,18 @@ bool Session::post(const Json& event, std::int64_t now_ms) {
   const JsonReader reader(event, "event");
   try {
     if (reader.at("key").string().empty() || reader.at("page").string().empty()) reader.fail("key and page");
-    if (keys_.count(reader.at("key").string()) != 0) return true;
+    if (keys_.count(reader.at("key").string()) != 0) return turns_the_page(event);
     if (reader.at("kind").string() != "opened" && reader.at("page").string() != page_)
       throw Refused(Refused::conflict, "this session goes on in another page");
     check(reader);
   } catch (const InputError& e) {
     throw Refused(Refused::bad, e.what());
   }
-  const auto before = std::pair(step(), next_);
-  const bool was_running = running();
   Json stored = event;
   stored["at"] = now_ms;
   log_.append(stored);
   apply(stored);
-  return std::pair(step(), next_) != before || running() != was_running || event.at("kind") == "opened";
+  return turns_the_page(event);
 }
 
 void Session::check(const JsonReader& event) const {
