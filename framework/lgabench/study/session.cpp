@@ -36,7 +36,8 @@ double without(double from, double to, std::vector<std::pair<double, double>> in
 // Whether the page is to show something else; what is sent again must not: the page would begin its trial anew.
 bool turns_the_page(const Json& event) {
   const auto within = {"shown", "edit", "blur", "focus", "idle", "active"};
-  return std::none_of(within.begin(), within.end(), [&](const char* kind) { return event.at("kind") == kind; });
+  const Json kind = event.value("kind", Json());
+  return std::none_of(within.begin(), within.end(), [&kind](const char* one) { return kind == one; });
 }
 
 double page_ms(const Json& event) { return event.at("page_ms").get<double>(); }
