@@ -71,8 +71,8 @@ class Mistakes(Case):
             (["select", "heart", "--answer", "claude"], r'^lgabench: unknown option --answer \(did you mean "--answers"'),
             (["run"], r"^lgabench: SUITE is missing; usage: lgabench run \[OPTIONS\] SUITE$"),
             (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
-            (["compare", "a"], r"B is missing; usage: lgabench compare \[OPTIONS\] A B$"),
-            (["report", "a", "b"], r'"b" is a word too many; usage: lgabench report \[OPTIONS\] RUN$'),
+            (["compare", "a"], r"compare: expected A B, or A --rows ROW_A,ROW_B$"),
+            (["verify", "a", "b"], r'"b" is a word too many; usage: lgabench verify \[OPTIONS\] RUN$'),
             (["run", "q11"], r'no suite "q11".*expected one of: .*q1.*or a \.json file'),
             (["run", "q1", "--preset", "smokey"], r'q1.json: no preset "smokey" \(did you mean "smoke"\?\)'),
             (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)'),
@@ -83,7 +83,7 @@ class Mistakes(Case):
             (["run", "q1", "--truth", "realeased"], r'--truth: no truth "realeased" \(did you mean "released"\?\)'),
             (["info", "lag"], r'"lag" \(did you mean "lga"\?\); .*--plugin-path'),
             (["demos", "hart", "--out", "x"], r'no scenario "hart" \(did you mean "heart"\?\)'),
-            (["report", "x", "--format", "latex"], r'--format: no format "latex", expected one of: text, md, json, csv'),
+            (["report", "x", "--format", "yaml"], r'--format: no format "yaml", expected one of: text, md, latex, json, csv'),
             (["select", "Bring me the unicorn."], r"expected some for .*; --answers openai asks a model"),
             (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
         ]:
@@ -248,7 +248,7 @@ class Completion(Case):
         self.assertEqual(self.completed("run", "fac"), ["factorial"])
         self.assertEqual(self.completed("run", "q1", "--methods", "lga,hu"), ["lga,human"])
         self.assertEqual(self.completed("run", "q1", "--scenarios", "red_"), ["red_heart"])
-        self.assertEqual(self.completed("report", "out", "--format", ""), ["text", "md", "json", "csv"])
+        self.assertEqual(self.completed("report", "out", "--format", ""), ["text", "md", "latex", "json", "csv"])
         self.assertIn("mujoco" if (BUILD / "lib/lgabench/plugins/mujoco.so").exists() else "kinematic",
                       self.completed("demos", "heart", "--engine", ""))
         self.assertEqual(self.completed("info", "human"), ["human"])
