@@ -207,7 +207,7 @@ class Compare(unittest.TestCase):
         page = (self.base / "index.html").read_text()
         self.assertIn('href="a/report.html"', page)
         self.assertIn('href="b/report.html"', page)
-        self.assertNotIn("notes", page)
+        self.assertNotIn("notes.txt", page)
         self.call("report", "a", "b", "--index", "all.html")
         self.assertEqual((self.base / "all.html").read_text(), page)
         self.call("report", "a", "b", "--claims", expect=2)
