@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import unittest
 
-from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM
+from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM, command_line
 
 # Small but real: both shipped methods train, for seconds.
 SMALL = ["q1", "--scenarios", "heart,letter", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
@@ -344,6 +344,13 @@ class Demonstrations(Case):
 
 
 class Commands(Case):
+    def test_both_streams_in_one_file_are_in_order(self):
+        with open(self.dir / "log", "w") as log:
+            subprocess.run(command_line("run", *SMALL, "--limit", "1", "--out", "run"), stdout=log, stderr=log, check=True,
+                           env=self.environment, cwd=self.dir)
+        log = (self.dir / "log").read_text()
+        self.assertLess(log.index("report: "), log.index("1 cells computed"), log)
+
     def test_demonstrations_are_per_seen_command(self):
         arguments = ["--scenarios", "q3_fruit,q3_utensil", "--methods", "lga", "--demos", "10", "--seeds", "0",
                      "--episodes", "2", "--set", "lga.epochs=1", "--no-reference"]

@@ -60,6 +60,8 @@ std::string printable(std::string_view text) { return shown(text, "\n\t"); }
 std::string one_line(std::string_view text) { return shown(text, ""); }
 
 void put(std::FILE* stream, std::string_view bytes) noexcept {
+  // In the order in which it was said, where both streams go to one file.
+  if (stream == stderr && std::fflush(stdout) != 0 && stdout_error == 0) stdout_error = errno;
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream) == bytes.size()) return;
   if (stream == stdout && stdout_error == 0) stdout_error = errno;
 }
