@@ -36,7 +36,7 @@ TEST(LearningCurves, AreMeansOfTheCellsWithTheMostDemonstrations) {
   EXPECT_EQ(loss.series[0].name, "LGA");
   ASSERT_EQ(loss.series[0].points.size(), 3u);
   EXPECT_EQ(loss.series[0].points[2].x, 3);
-  EXPECT_EQ(loss.series[0].points[2].y, 1. / 3) << "a loss that falls to a third stands on a plain scale";
+  EXPECT_EQ(loss.series[0].points[2].y, 1. / 3) << "a loss that falls to a third is on a plain scale";
 
   // The mean of 2 and 4, then of 1 and 2; a curve that one method alone logs.
   const report::Chart& validation = chart_named(report.document, "training_validation_cells_mujoco");

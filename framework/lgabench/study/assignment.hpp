@@ -18,7 +18,7 @@ struct Assignment {
 /// the rows of a Williams square within each set, all of them once in as many blocks. Both from the seed.
 Assignment assign(const Protocol& protocol, int slot);
 
-/// A Williams square of an even order n (Williams 1949): every row an order of 0..n-1; each number stands once in each
+/// A Williams square of an even order n (Williams 1949): every row an order of 0..n-1; each number occurs once in each
 /// column, and right after each other one once.
 std::vector<std::vector<int>> williams_square(int n);
 
