@@ -47,7 +47,7 @@ class CheckPlugin(Case):
 
     def test_outlives_what_crashes_throws_and_never_returns(self):
         for where, how, check, says in [
-            ("act", "nan", "act", "expected finite numbers, got nan"),
+            ("act", "nan", "act", "expected a finite number, got nan"),
             ("act", "throw", "act", "the fixture's own failure"),
             ("learn", "throw_int", "learn", "threw int"),
             ("select", "segfault", "process", r"signal 11 \(Segmentation fault\) in phase select"),

@@ -18,7 +18,7 @@ SOURCE = pathlib.Path(__file__).parents[2]
 PAGES = sorted([SOURCE / "README.md", *(SOURCE / "docs").glob("*.md")])
 # A reader's own things -> what stands for them here.
 OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "run", "runs/BEFORE": "run",
-       "runs/AFTER": "run", "RUN": "run", "runs/q1": "run"}
+       "runs/AFTER": "run", "RUN": "run", "runs/q1": "run", "runs/*": "run"}
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("own_network", "my_stack", "my_statistic")
 LONGEST = 300 if os.environ.get("LGABENCH_FULL") else 10  # seconds, as --dry-run expects them
@@ -92,8 +92,8 @@ class DocumentedCommands(Case):
                         carried_out += 1
                         self.call(*with_options(words, "--out", f"out{carried_out}"), *own, timeout=1800)
                     else:
-                        if "--difference" in words:
-                            words[words.index("--difference") + 1] = "lga,lga_s"
+                        for pair in {"--difference", "--rows"}.intersection(words):
+                            words[words.index(pair) + 1] = "lga,lga_s"
                         if verb == "replay":
                             words[2] = next(key for key, (cell, _) in self.cells("run").items()) + "/0"
                         if verb == "new-scenario":
