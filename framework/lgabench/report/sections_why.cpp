@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
 #include <lgabench/core/environments.hpp>
@@ -65,6 +66,46 @@ Cell bar(const std::vector<BarPart>& parts, int of) {
   cell.bar_of = of;
   return cell;
 }
+
+// How episodes ended, a bar beside its numbers: over all scenarios, and in groups of one scenario each.
+struct Endings {
+  Grid mean, each;
+
+  Endings(const std::string& name, const char* bars, std::string caption, std::string each_caption) {
+    mean.heads = {"table", "arm", "method", "demonstrations", bars};
+    mean.bars = mean.heads.size() - 1;
+    mean.align = "lllrr";
+    mean.name = name;
+    mean.caption = std::move(caption);
+    each.name = name + "_scenarios";
+    each.caption = std::move(each_caption);
+    each.group_head = "scenario";
+  }
+
+  // A column of numbers; the bars' parts of that `kind`, if any, are what it counts.
+  void column(Cell head, const std::string& kind = "") {
+    if (!kind.empty()) head.bar = {{kind, "", 1}};
+    mean.heads.push_back(std::move(head));
+    mean.align += 'r';
+  }
+
+  // Of the row: its bar, and the columns' numbers.
+  void add(const Material& material, const Table& table, const Row& row, Cell bar, std::vector<Cell> numbers) {
+    std::vector<Cell> cells{table.title(), row.arm, named(material, row.method),
+                            count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};
+    std::move(numbers.begin(), numbers.end(), std::back_inserter(cells));
+    Grid& grid = row.is_mean() ? mean : each;
+    grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
+  }
+
+  void put_into(Section& section) {
+    each.heads = mean.heads;
+    each.bars = mean.bars;
+    each.align = "l" + mean.align;
+    section.add(reading, std::move(mean));
+    section.add(on_page, std::move(each), "Each scenario");
+  }
+};
 
 }  // namespace
 
@@ -135,92 +176,58 @@ Section failures(const Material& material) {
     for (const Row& row : table.rows)
       for (const auto& item : row.failures) used.insert(item.first);
   if (used.empty()) return section;
-  Grid mean;
-  mean.heads = {"table", "arm", "method", "demonstrations", "failures of all episodes", "episodes", "success"};
-  mean.bars = 4;
+  Endings endings("failures", "failures of all episodes", "Episodes over all scenarios, by how they ended",
+                  "Each scenario's episodes, by how they ended, with the most demonstrations");
+  endings.column("episodes");
+  endings.column("success");
   const std::vector<std::string> all = failure_words();  // in the order of their colours
-  for (const std::string& word : used) {
-    mean.heads.emplace_back(words(word));
-    mean.heads.back().bar = {{fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin()), "", 1}};
-  }
-  mean.align = "lllr" + std::string(mean.heads.size() - 4, 'r');
-  Grid each = mean;
-  each.group_head = "scenario";
-  each.align = "l" + mean.align;
-  mean.name = "failures";
-  mean.caption = "Episodes over all scenarios, by how they ended";
-  each.name = "failures_scenarios";
-  each.caption = "Each scenario's episodes, by how they ended, with the most demonstrations";
+  const auto kind = [&all](const std::string& word) {
+    return fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin());
+  };
+  for (const std::string& word : used) endings.column(words(word), kind(word));
   for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
       if (row.episodes == 0) continue;
       if (!row.is_mean() && (row.is_reference() || row.demonstrations != table.demonstrations().back())) continue;
-      std::vector<Cell> cells{table.title(),
-                              row.arm,
-                              named(material, row.method),
-                              count_cell(row, "demonstrations", row.demonstrations),
-                              {},
-                              count_cell(row, "episodes", row.episodes),
-                              count_cell(row, "successes", row.successes)};
+      std::vector<Cell> numbers{count_cell(row, "episodes", row.episodes), count_cell(row, "successes", row.successes)};
       std::vector<BarPart> parts;
       for (const std::string& word : used) {
         const auto found = row.failures.find(word);
         const int n = found == row.failures.end() ? 0 : found->second;
-        parts.push_back({mean.heads[cells.size()].bar.front().kind, words(word), n});
-        cells.push_back(n == 0 ? Cell(Span::number("0")) : count_cell(row, "failures/" + word, n));
+        parts.push_back({kind(word), words(word), n});
+        numbers.push_back(n == 0 ? Cell(Span::number("0")) : count_cell(row, "failures/" + word, n));
         if (n == 0) continue;
-        cells.back().episodes = row.index;
-        cells.back().outcome = words(word);
+        numbers.back().episodes = row.index;
+        numbers.back().outcome = words(word);
       }
-      cells[*mean.bars] = bar(parts, row.episodes);
-      Grid& grid = row.is_mean() ? mean : each;
-      grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
+      endings.add(material, table, row, bar(parts, row.episodes), std::move(numbers));
     }
   section.add(in_markdown, Paragraph{{"Episodes over all scenarios."}});
-  section.add(reading, std::move(mean));
-  section.add(on_page, std::move(each), "Each scenario");
+  endings.put_into(section);
   return section;
 }
 
 Section attribution(const Material& material) {
   Section section{"attribution", "What failures are attributed to"};
-  Grid mean;
-  mean.heads = {"table", "arm", "method", "demonstrations", "share of failures"};
-  mean.bars = 4;
-  for (const char* to : attributions) {
-    mean.heads.emplace_back(to);
-    mean.heads.back().bar = {{to, "", 1}};
-  }
-  mean.align = "lllrrrr";
-  Grid each = mean;
-  each.group_head = "scenario";
-  each.align = "l" + mean.align;
-  mean.name = "attribution";
-  mean.caption = "Failures attributed to abstraction or policy, over all scenarios";
-  each.name = "attribution_scenarios";
-  each.caption = "Each scenario's failures, attributed to abstraction or policy";
+  Endings endings("attribution", "share of failures",
+                  "Failures attributed to abstraction or policy, over all scenarios",
+                  "Each scenario's failures, attributed to abstraction or policy");
+  for (const char* to : attributions) endings.column(to, to);
   for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
       if (row.attributed() == 0) continue;
       std::vector<BarPart> parts;
-      std::vector<Cell> cells{table.title(),
-                              row.arm,
-                              named(material, row.method),
-                              count_cell(row, "demonstrations", row.demonstrations),
-                              {}};
+      std::vector<Cell> numbers;
       for (const char* to : attributions) {
         parts.push_back({to, to, row.attribution.at(to)});
-        cells.push_back(count_cell(row, fmt::format("attribution/{}", to), row.attribution.at(to)));
+        numbers.push_back(count_cell(row, fmt::format("attribution/{}", to), row.attribution.at(to)));
       }
-      cells[*mean.bars] = bar(parts, row.attributed());
-      Grid& grid = row.is_mean() ? mean : each;
-      grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
+      endings.add(material, table, row, bar(parts, row.attributed()), std::move(numbers));
     }
-  if (mean.rows.empty()) return section;
+  if (endings.mean.rows.empty()) return section;
   section.add(reading, Paragraph{{"The abstraction, where the same policy succeeds in the same scene with the true "
                                   "mask; else the policy. Episodes over all scenarios, of methods that select."}});
-  section.add(reading, std::move(mean));
-  section.add(on_page, std::move(each), "Each scenario");
+  endings.put_into(section);
   return section;
 }
 
