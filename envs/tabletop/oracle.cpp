@@ -1,7 +1,7 @@
 #include <tabletop/oracle.hpp>
 
 #include <tabletop/motions.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 namespace lgabench::tabletop {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {

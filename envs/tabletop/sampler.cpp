@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include <lgabench/core/random.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {

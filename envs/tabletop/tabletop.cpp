@@ -8,7 +8,7 @@
 #include <lgabench/core/error.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/raster.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>

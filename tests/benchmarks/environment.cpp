@@ -6,7 +6,7 @@
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <mujoco/mujoco_world.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>

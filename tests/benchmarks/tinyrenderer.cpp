@@ -9,10 +9,10 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
-#include <tabletop/textures.hpp>
+#include <common/textures.hpp>
 
 #include "benchmarks.hpp"
 

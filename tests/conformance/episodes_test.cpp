@@ -7,7 +7,7 @@
 
 #include <lgabench/core/random.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 

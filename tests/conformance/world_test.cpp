@@ -6,7 +6,7 @@
 #include <limits>
 
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/tabletop.hpp>
 
 #include "../engine_under_test.hpp"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 namespace lgabench {
 namespace {

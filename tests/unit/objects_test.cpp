@@ -11,7 +11,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/random.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 namespace lgabench::tabletop {
 namespace {

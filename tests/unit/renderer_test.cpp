@@ -7,9 +7,9 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/renderer.hpp>
-#include <tabletop/textures.hpp>
+#include <common/textures.hpp>
 #include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {

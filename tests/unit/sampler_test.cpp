@@ -9,7 +9,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <tabletop/content.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 

@@ -9,7 +9,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>

@@ -7,7 +7,7 @@
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 #include "testing.hpp"
 

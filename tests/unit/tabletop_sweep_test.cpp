@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
 
 #include "../tabletop_bench.hpp"

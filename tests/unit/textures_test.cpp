@@ -7,7 +7,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/feature_space.hpp>
-#include <tabletop/textures.hpp>
+#include <common/textures.hpp>
 
 namespace lgabench::tabletop {
 namespace {

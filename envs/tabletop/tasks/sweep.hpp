@@ -4,7 +4,7 @@
 
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
-#include <tabletop/outline.hpp>
+#include <common/outline.hpp>
 
 namespace lgabench::tabletop {
 
