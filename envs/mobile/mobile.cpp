@@ -197,6 +197,12 @@ class MobileType final : public EnvironmentType {
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
     return sample_scene(scenario, request, index);
   }
+  Perceive perception(const SceneContent& scenes) const override {
+    const std::optional<double> error = dynamic_cast<const Content&>(scenes).caption_error;
+    if (!error) return nullptr;
+    return
+        [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, std::move(stream)); };
+  }
   Observation draw(const Scene& scene) const override {
     static Renderer& renderer = *new Renderer(front_camera());
     return renderer.render(visible_objects(scene));

@@ -43,9 +43,9 @@ struct Played {
   std::map<std::string, int> failures;  // word -> how often
 };
 
-Played play(Environment& environment, const Scenario& scenario, const std::vector<TestScene>& scenes, const char* who) {
+Played play(Environment& environment, const std::vector<TestScene>& scenes, const char* who) {
   Played played;
-  for (const Episode& e : evaluate(environment, scenario.space, scenes, reference_actor(who), [](int) {}))
+  for (const Episode& e : evaluate(environment, scenes, reference_actor(who), [](int) {}))
     e.failure == failure::none ? ++played.successes : ++played.failures[e.failure];
   return played;
 }
@@ -65,8 +65,8 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     return report.problem(where, reason.size() > most ? reason.substr(0, most) + "..." : reason,
                           "the sets of target, avoid and distractors must leave something to show");
   }
-  const Played oracle = play(environment, scenario, scenes, "oracle");
-  const Played any = play(environment, scenario, scenes, "random_object");
+  const Played oracle = play(environment, scenes, "oracle");
+  const Played any = play(environment, scenes, "random_object");
   std::string fault;
   for (const auto& [failure, times] : oracle.failures)
     if (100 * (count - oracle.successes) > 2 * count)

@@ -54,9 +54,8 @@ class Pictures {
     if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
 
     const Observation seen = find_environment(played.scenario.environment).draw(scene);
-    const Arm& test = played.scenario.arm(request.arm);
-    const Observation perceived = imperfect_textualization(
-        seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
+    const Perception perception = perception_of(played.scenario, played.scenario.arm(request.arm));
+    const Observation perceived = perception ? perception(seen, scene) : seen;
     Json masks = Json::array();
     for (const Json& one : request.selections) {
       const JsonReader selection(one, "selection");

@@ -81,7 +81,7 @@ Json page_data(const Material& material) {
         const PlayedEpisode& e = all[i];
         const auto word = std::find(words.begin(), words.end(), e.failure) - words.begin();
         outcomes += e.success ? '.' : static_cast<char>('a' + word);
-        blamed += e.attribution.empty() ? '.' : e.attribution.front();
+        blamed += e.attribution.empty() ? '.' : e.attribution == "perception" ? 's' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)

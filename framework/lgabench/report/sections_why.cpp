@@ -167,7 +167,12 @@ Section attribution(const Material& material) {
   Grid mean;
   mean.heads = {"table", "arm", "method", "demonstrations", "share of failures"};
   mean.bars = 4;
-  for (const char* to : attributions) {
+  const auto perceived = [](const Row& row) { return row.attributed_to("perception") > 0; };
+  const bool any_perceived =
+      std::any_of(material.summary.tables.begin(), material.summary.tables.end(),
+                  [&](const Table& table) { return std::any_of(table.rows.begin(), table.rows.end(), perceived); });
+  std::vector<const char*> causes(attributions.begin(), attributions.end() - (any_perceived ? 0 : 1));
+  for (const char* to : causes) {
     mean.heads.emplace_back(to);
     mean.heads.back().bar = {{to, "", 1}};
   }
@@ -188,17 +193,23 @@ Section attribution(const Material& material) {
                               named(material, row.method),
                               count_cell(row, "demonstrations", row.demonstrations),
                               {}};
-      for (const char* to : attributions) {
-        parts.push_back({to, to, row.attribution.at(to)});
-        cells.push_back(count_cell(row, fmt::format("attribution/{}", to), row.attribution.at(to)));
+      for (const char* to : causes) {
+        const int n = row.attributed_to(to);
+        parts.push_back({to, to, n});
+        cells.push_back(row.attribution.count(to) == 0 ? Cell(Span::number("0"))
+                                                       : count_cell(row, fmt::format("attribution/{}", to), n));
       }
       cells[*mean.bars] = bar(parts, row.attributed());
       Grid& grid = row.is_mean() ? mean : each;
       grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
     }
   if (mean.rows.empty()) return section;
-  section.add(reading, Paragraph{{"The abstraction, where the same policy succeeds in the same scene with the true "
-                                  "mask; else the policy. Episodes over all scenarios, of methods that select."}});
+  section.add(reading, Paragraph{{fmt::format("{}he abstraction, where the same policy succeeds in the same scene "
+                                              "with the true mask; else the policy. Episodes over all scenarios, of "
+                                              "methods that select.",
+                                              any_perceived ? "Perception, where the same policy succeeds in the same "
+                                                              "scene seen without error; else t"
+                                                            : "T")}});
   section.add(reading, std::move(mean));
   section.add(on_page, std::move(each), "Each scenario");
   return section;

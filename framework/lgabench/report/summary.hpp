@@ -33,7 +33,8 @@ struct Row {
                                   // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
-  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each
+  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each;
+                                                                              // "perception" where any is
   std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
   int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
   int n_error = 0;                       // episodes not played: the engine or the host failed
@@ -46,7 +47,15 @@ struct Row {
   std::optional<double> seen_share() const {
     return inputs_told > 0 ? std::optional(static_cast<double>(inputs_seen) / inputs_told) : std::nullopt;
   }
-  int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
+  int attributed_to(const std::string& what) const {
+    const auto found = attribution.find(what);
+    return found == attribution.end() ? 0 : found->second;
+  }
+  int attributed() const {
+    int all = 0;
+    for (const auto& [what, n] : attribution) all += n;
+    return all;
+  }
 };
 
 /// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;

@@ -63,7 +63,7 @@ function episodesOf(row) {
           all.push({
             cell, arm: played.arm, index, scene, command: cell.commands[command],
             failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
-            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : "",
+            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : "",
             action: played.actions[index], picture: data.pictures[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
             phi: data.phi[cell.phi[command]],
