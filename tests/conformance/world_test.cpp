@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <lgabench/core/error.hpp>
 #include <common/objects.hpp>
+#include <lgabench/core/error.hpp>
 #include <tabletop/tabletop.hpp>
 
 #include "../engine_under_test.hpp"
