@@ -24,7 +24,7 @@ namespace {
 
 struct Arguments {
   std::string file, engine;
-  std::vector<std::string> layouts{"cells", "continuous"};
+  std::vector<std::string> layouts;
   fs::path out;
   int scenes = 50;
   std::vector<fs::path> plugin_path;
@@ -104,7 +104,12 @@ int check_scenario(const Arguments& a) {
                                 scenario.commands.size(), scenario.tests.size()));
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
-  for (const std::string& layout : a.layouts)
+  std::vector<std::string> layouts = a.layouts;
+  if (layouts.empty()) {
+    layouts = layouts_of(scenario);
+    layouts.resize(std::min<std::size_t>(layouts.size(), 2));
+  }
+  for (const std::string& layout : layouts)
     for (const std::string& arm : arms) judge_arm(scenario, layout, arm, a.scenes, *environment, report);
   judge_answers(scenario, report);
   to_stdout("{}\n", scenario.id);
@@ -126,7 +131,7 @@ void add_check_scenario(CLI::App& app, int& exit) {
   verb->add_option("--scenes", a->scenes, "How many of each arm and layout")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->add_option("--layout", a->layouts, "cells, continuous or released; several with commas")
+  verb->add_option("--layout", a->layouts, "One of the task's, several with commas; its first two if not given")
       ->delimiter(',')
       ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();

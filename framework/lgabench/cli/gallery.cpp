@@ -10,7 +10,7 @@
 namespace lgabench::cli {
 namespace {
 
-constexpr int zoom = 2, gutter = 8;
+constexpr int zoom = 2, gutter = 8, widest_picture = 256;
 
 struct Tile {
   std::string caption;
@@ -39,26 +39,31 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
 
 Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const std::string layout = find_task(environment, scenario.task).layouts.front();
+  const std::string layout = layouts_of(scenario).front();
   const Scene scene = environment.sample(scenario, {layout, "test", arm, 0}, 0);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
   const Observation seen = environment.draw(scene);
   const auto mask = goal_mask(seen, command.truth);
-  Tile tile{
-      fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * seen.size.columns, seen.size.rows, {}};
-  for (int row = 0; row < seen.size.rows; ++row) {
-    for (int column = 0; column < seen.size.columns; ++column)
-      tile.pixels.push_back(pixel_colour(seen, pixel(seen, column, row)));
-    for (int column = 0; column < seen.size.columns; ++column)
-      tile.pixels.push_back(mask_colour(mask[pixel(seen, column, row)] != 0));
+  const int step = std::max(1, seen.size.columns / widest_picture);  // of a large picture every step-th pixel
+  const int rows = seen.size.rows / step, columns = seen.size.columns / step;
+  Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * columns, rows, {}};
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      tile.pixels.push_back(pixel_colour(seen, pixel(seen, step * column, step * row)));
+    for (int column = 0; column < columns; ++column)
+      tile.pixels.push_back(mask_colour(mask[pixel(seen, step * column, step * row)] != 0));
   }
   return tile;
 }
 
-// Row by row; all tiles have one size.
+// Row by row, in cells of the largest tile's size.
 Sheet sheet(const std::vector<Tile>& tiles, int across) {
   const int count = static_cast<int>(tiles.size()), down = (count + across - 1) / across;
-  const int width = zoom * tiles[0].columns + gutter, height = zoom * tiles[0].rows + gutter;
+  int width = 0, height = 0;  // of the largest tile
+  for (const Tile& tile : tiles) {
+    width = std::max(width, zoom * tile.columns + gutter);
+    height = std::max(height, zoom * tile.rows + gutter);
+  }
   Picture picture(across * width - gutter, down * height - gutter);
   std::string header, rule, body;
   for (int i = 0; i < across; ++i) header += "| ", rule += "| --- ";

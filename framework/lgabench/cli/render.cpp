@@ -19,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, layout = "cells", split = "test", truth = "released", arm, out;
+  std::string scenario, gallery, layout, split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -61,10 +61,11 @@ void render_gallery(const Arguments& arguments) {
 
 void render(const Arguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
+  const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
   const Scene scene = environment.sample(
-      scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+      scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
@@ -96,9 +97,8 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
-  verb->add_option("--layout", arguments->layout, "How objects are placed")
-      ->check(one_of("layout", installed_layouts()))
-      ->capture_default_str();
+  verb->add_option("--layout", arguments->layout, "How objects are placed; the scenario's first layout if not given")
+      ->check(one_of("layout", installed_layouts()));
   verb->add_option("--split", arguments->split, "Whose scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
       ->capture_default_str();

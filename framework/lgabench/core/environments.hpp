@@ -96,6 +96,8 @@ std::vector<std::string> installed_layouts();
 /// Words for a failure, in a report's order: of all environments, then the framework's.
 std::vector<std::string> failure_words();
 
+/// The layouts of the scenario's task; the first is meant where none is named.
+const std::vector<std::string>& layouts_of(const Scenario& scenario);
 /// The environment's task of that id. @throws InputError that lists the known ones.
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id);
 
