@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 
+#include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/environments.hpp>
@@ -202,8 +203,8 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
   const std::vector<Instruction> instructions{{"u", {}}};
   for (int way = 0; way < 5; ++way) {
     Sometimes policy(way);
-    const auto episodes = evaluate(*environment, tests(*scenario, 6),
-                                   policy_actor(policy, instructions, "p"), [](int) {});
+    const auto episodes =
+        evaluate(*environment, tests(*scenario, 6), policy_actor(policy, instructions, "p"), [](int) {});
     ASSERT_EQ(episodes.size(), 6u);
     EXPECT_EQ(policy.resets, 6);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -283,8 +284,7 @@ TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
     const std::vector<Instruction> instructions{{"u", selected}}, true_ones{{"u", true_one}};
     auto scenes = tests(*scenario, 3);
     scenes[2].abstraction_empty = true;
-    auto episodes =
-        evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    auto episodes = evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
     EXPECT_TRUE(to_json(episodes[0]).at("attribution").is_null());
     attribute_failures(*environment, scenes, policy_actor(policy, instructions, "p"),
                        policy_actor(policy, true_ones, "p"), episodes);
@@ -296,6 +296,38 @@ TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
   EXPECT_EQ(attributions(other, other), (Words{"", "", "abstraction"})) << "won, or nothing selected";
   EXPECT_EQ(attributions(truth, other), (Words{"abstraction", "abstraction", "abstraction"}));
   EXPECT_EQ(attributions(third, other), (Words{"policy", "policy", "abstraction"}));
+}
+
+// Wins where it sees anything.
+class Seeing : public Policy {
+ public:
+  explicit Seeing(std::function<Action()> oracle) : oracle_(std::move(oracle)) {}
+  Action act(const Observation& seen, const Instruction&) override {
+    TwoPoses nothing;
+    nothing.pose0.position_m = nothing.pose1.position_m = {.26, .49};
+    return seen.instances.empty() ? Action(nothing) : oracle_();
+  }
+
+ private:
+  std::function<Action()> oracle_;
+};
+
+TEST_F(Play, AFailureIsPerceptionsWhereThePolicySucceedsOnceItSees) {
+  Seeing policy([] { return environment->expert_action(); });
+  const std::vector<Instruction> instructions{{"u", {}}};
+  auto scenes = tests(*scenario, 3);
+  scenes[1].perception = [](Observation seen, const Scene&) {
+    seen.instances.clear();
+    std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
+    return seen;
+  };
+  const Actor actor = policy_actor(policy, instructions, "p");
+  auto episodes = evaluate(*environment, scenes, actor, [](int) {});
+  attribute_failures(*environment, scenes, actor, actor, episodes);
+  std::vector<std::string> all;
+  for (const Episode& e : episodes) all.push_back(e.attribution);
+  EXPECT_EQ(all, (std::vector<std::string>{"", "perception", ""}));
+  EXPECT_FALSE(perception_of(*scenario, scenario->tests.front())) << "no errors: the environment's observation itself";
 }
 
 // Takes note of what it is given.
@@ -344,8 +376,7 @@ TEST_F(Play, ImperfectTextualizationChangesWhatAPolicySeesAndNothingElse) {
     for (TestScene& scene : scenes) scene.perception = perception_of(*scenario, arm);
     Witness policy;
     const std::vector<Instruction> instructions{{"u", {}}};
-    const auto episodes =
-        evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    const auto episodes = evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
     for (std::size_t i = 0; i < episodes.size(); ++i) EXPECT_EQ(episodes[i].scene, scenes[i].scene.hash());
     return policy.observations;
   };

@@ -1,6 +1,7 @@
 // lgabench check-scenario FILE.json: whether a scenario can be shown and solved, before a run depends on it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
