@@ -1,4 +1,4 @@
-// Success and failure of a plan that was carried out (docs/protocol.md, section 8).
+// Success and failure of a plan that was carried out (docs/protocol.md, section 7).
 #pragma once
 #include <vector>
 

@@ -1,5 +1,5 @@
 // What a segmenter and a captioner would make of a picture: errors of the kinds that they make (docs/protocol.md,
-// section 8). A model, whose numbers are assumed.
+// section 7). A model, whose numbers are assumed.
 #pragma once
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/random.hpp>

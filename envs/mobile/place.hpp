@@ -1,4 +1,4 @@
-// The room: where the robot starts, and what stands in it for good (docs/protocol.md, section 8). z = 0 is the floor.
+// The room: where the robot starts, and what stands in it for good (docs/protocol.md, section 7). z = 0 is the floor.
 #pragma once
 #include <string>
 #include <vector>

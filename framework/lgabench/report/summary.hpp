@@ -33,8 +33,7 @@ struct Row {
                                   // several); none without episodes
   Interval interval;              // 95 %; docs/formats says which
   std::map<std::string, int> failures;
-  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each;
-                                                                              // "perception" where any is
+  std::map<std::string, int> attribution{{"abstraction", 0}, {"policy", 0}};  // failures attributed to each
   std::optional<Shift> shift;            // none in the first arm, nor where the arms give different commands
   int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
   int n_error = 0;                       // episodes not played: the engine or the host failed
