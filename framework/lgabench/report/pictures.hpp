@@ -1,8 +1,10 @@
 // Pictures of the scenes in which a method failed, drawn by lgabench-worker: the report links no renderer.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <string>
 
+#include <lgabench/core/observation.hpp>
 #include <lgabench/report/engines.hpp>
 #include <lgabench/report/results.hpp>
 
@@ -10,6 +12,9 @@ namespace lgabench::report {
 
 constexpr std::size_t most_pictures = 150;  // in one page: about 4 MB
 constexpr std::size_t most_ends = 30;       // disagreements of engines that are shown
+
+/// Of a picture a page shows every so manyth pixel, of its rows and of its columns.
+constexpr int page_step(PictureSize picture) { return std::max(1, picture.columns / 256); }
 
 struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action
