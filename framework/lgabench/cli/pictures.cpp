@@ -17,6 +17,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/pictures.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -31,9 +32,11 @@ std::string base64(const std::string& bytes) {
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {
-  Picture picture(size.columns, size.rows);
-  picture.paste(0, 0, size.columns, size.rows, 1,
-                [&](int column, int row) { return colour_at(static_cast<std::size_t>(row * size.columns + column)); });
+  const int step = report::page_step(size), columns = size.columns / step, rows = size.rows / step;
+  Picture picture(columns, rows);
+  picture.paste(0, 0, columns, rows, 1, [&](int column, int row) {
+    return colour_at(static_cast<std::size_t>(step * row * size.columns + step * column));
+  });
   return base64(picture.png());
 }
 

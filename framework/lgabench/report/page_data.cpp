@@ -21,12 +21,25 @@ Json places_of(const CellResult& cell, const Action& action) {
   const EnvironmentType& environment = find_environment(cell.environment);
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;
-  const auto tenths = [](double value) { return std::round(value * 10) / 10; };
+  const double step = page_step(environment.picture_size());
+  const auto tenths = [step](double value) { return std::round(value / step * 10) / 10; };
   for (const PicturePlace& place : space.places) {
     const Vec2 at = in_picture(space, place, action, environment.picture_size());
     all.push_back({tenths(at.x), tenths(at.y)});
   }
   return all;
+}
+
+// Columns and rows of the page's pictures; those of an environment that is not installed are not drawn.
+Json size_of_pictures(const RunResults& run) {
+  const std::vector<std::string> installed = environment_ids();
+  for (const CellResult& cell : run.cells)
+    if (std::find(installed.begin(), installed.end(), cell.environment) != installed.end()) {
+      const PictureSize size = find_environment(cell.environment).picture_size();
+      const int step = page_step(size);
+      return {size.columns / step, size.rows / step};
+    }
+  return {256, 128};
 }
 
 std::string title_of(const Table& table, const Row& row) {
@@ -112,8 +125,10 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  return {{"failures", words}, {"phi", selections},           {"titles", titles},       {"cells", cells},
-          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}};
+  return {{"failures", words},       {"phi", selections},
+          {"titles", titles},        {"cells", cells},
+          {"scenes", lists},         {"pictures", pictures.scenes},
+          {"masks", pictures.masks}, {"size", size_of_pictures(material.run)}};
 }
 
 }  // namespace lgabench::report

@@ -73,15 +73,15 @@ function episodesOf(row) {
 }
 
 const picture = (bytes, alt, over) =>
-  `<svg viewBox="0 0 256 128" role="img" aria-label="${escaped(alt)}">` +
-  `<image href="data:image/png;base64,${bytes}" width="256" height="128"/>${over}</svg>`;
+  `<svg viewBox="0 0 ${data.size.join(" ")}" role="img" aria-label="${escaped(alt)}">` +
+  `<image href="data:image/png;base64,${bytes}" width="${data.size[0]}" height="${data.size[1]}"/>${over}</svg>`;
 
-// From pose0 to pose1, white on black, so that it shows on every texture.
+// From the action's first place to its last, if it has two, white on black, so that it shows on every texture.
 function arrow(action) {
   if (!action) return "";
-  const [[x0, y0], [x1, y1]] = action, angle = Math.atan2(y1 - y0, x1 - x0);
+  const [x0, y0] = action[0], [x1, y1] = action[action.length - 1], angle = Math.atan2(y1 - y0, x1 - x0);
   const wing = (turn) => `${x1 - 9 * Math.cos(angle + turn)} ${y1 - 9 * Math.sin(angle + turn)}`;
-  const path = `M${x0} ${y0}L${x1} ${y1}M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
+  const path = action.length < 2 ? "" : `M${x0} ${y0}L${x1} ${y1}M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
   return `<g fill="none" stroke-linecap="round"><path d="${path}" stroke="#000" stroke-width="4.5"/>` +
     `<path d="${path}" stroke="#fff" stroke-width="2"/>` +
     `<circle cx="${x0}" cy="${y0}" r="3.5" fill="#fff" stroke="#000" stroke-width="1.5"/></g>`;
@@ -96,7 +96,7 @@ const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`
 function card(e) {
   const where = `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
   const told = `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
-  const way = e.action ? `, action from ${e.action[0].join(",")} to ${e.action[1].join(",")}` : ", no action";
+  const way = e.action ? `, action from ${e.action.map((place) => place.join(",")).join(" to ")}` : ", no action";
   return `<figure><div class="pair">${picture(e.picture, `scene: ${where}${way}`, arrow(e.action))}` +
     (e.mask ? picture(e.mask, `goal mask: ${where}`, arrow(e.action)) : "") +
     `</div><figcaption>${told}<br>${escaped(e.command)}${chips(e)}` +
