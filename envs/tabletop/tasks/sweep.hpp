@@ -5,6 +5,7 @@
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
 #include <common/outline.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
 
