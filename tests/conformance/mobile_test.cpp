@@ -35,7 +35,7 @@ TEST_P(MobileOracle, Succeeds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, MobileOracle, testing::Values("bring_fruit", "throw_away_drink"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& tested) { return tested.param; });
 
 }  // namespace
 }  // namespace lgabench::mobile

@@ -9,7 +9,7 @@
 #include <lgabench/core/feature_space.hpp>
 #include <common/textures.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr int size = Texture::size;
@@ -126,4 +126,4 @@ TEST(Textures, UnknownNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common
