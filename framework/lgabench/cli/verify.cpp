@@ -107,13 +107,13 @@ Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   return cell;
 }
 
-struct Verdict {
+struct Recomputed {
   std::string key, title, row;
   report::CellAgreement agreement;
 };
 
-Verdict judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
-  Verdict verdict{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
+Recomputed judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
+  Recomputed verdict{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
   const Json status = read_json(recomputed / "status.json");
   verdict.agreement = status.at("state") == "failed"
                           ? report::CellAgreement{report::Agreement::differs,
@@ -123,35 +123,35 @@ Verdict judge(const Recorded& recorded, const fs::path& recomputed, bool excused
 }
 
 // "14 bit-identical, 2 same outcomes"
-std::string counts(const std::vector<Verdict>& verdicts) {
+std::string counts(const std::vector<Recomputed>& verdicts) {
   using report::Agreement;
   std::vector<std::string> parts;
   for (const Agreement one :
        {Agreement::identical, Agreement::same_outcomes, Agreement::within_interval, Agreement::differs})
     if (const auto n = std::count_if(verdicts.begin(), verdicts.end(),
-                                     [one](const Verdict& v) { return v.agreement.agreement == one; }))
+                                     [one](const Recomputed& v) { return v.agreement.agreement == one; }))
       parts.push_back(fmt::format("{} {}", n, to_string(one)));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::vector<report::PooledAgreement> pooled(const std::vector<Verdict>& verdicts) {
+std::vector<report::PooledAgreement> pooled(const std::vector<Recomputed>& verdicts) {
   std::vector<std::pair<std::string, report::CellAgreement>> cells;
-  for (const Verdict& verdict : verdicts) cells.emplace_back(verdict.row, verdict.agreement);
+  for (const Recomputed& verdict : verdicts) cells.emplace_back(verdict.row, verdict.agreement);
   return report::pooled(cells);
 }
 
-std::ptrdiff_t other_bytes(const std::vector<Verdict>& verdicts) {
+std::ptrdiff_t other_bytes(const std::vector<Recomputed>& verdicts) {
   return std::count_if(verdicts.begin(), verdicts.end(),
-                       [](const Verdict& v) { return v.agreement.agreement != report::Agreement::identical; });
+                       [](const Recomputed& v) { return v.agreement.agreement != report::Agreement::identical; });
 }
 
-std::ptrdiff_t differing(const std::vector<Verdict>& verdicts) {
+std::ptrdiff_t differing(const std::vector<Recomputed>& verdicts) {
   return std::count_if(verdicts.begin(), verdicts.end(),
-                       [](const Verdict& v) { return v.agreement.agreement == report::Agreement::differs; });
+                       [](const Recomputed& v) { return v.agreement.agreement == report::Agreement::differs; });
 }
 
 // What the words of the cells' lines come to, where not all of them are "bit-identical".
-void print_other_bytes(const std::vector<Verdict>& verdicts) {
+void print_other_bytes(const std::vector<Recomputed>& verdicts) {
   const std::ptrdiff_t others = other_bytes(verdicts);
   if (others == 0) return;
   for (const report::PooledAgreement& pool : pooled(verdicts))
@@ -167,10 +167,10 @@ void print_other_bytes(const std::vector<Verdict>& verdicts) {
 }
 
 void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
-           const std::set<std::string>& why, const std::vector<Verdict>& verdicts) {
+           const std::set<std::string>& why, const std::vector<Recomputed>& verdicts) {
   if (a.json) {
     Json cells = Json::array();
-    for (const Verdict& v : verdicts)
+    for (const Recomputed& v : verdicts)
       cells.push_back({{"cell", v.key},
                        {"title", v.title},
                        {"agreement", to_string(v.agreement.agreement)},
@@ -197,7 +197,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
             verdicts.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
   to_stdout("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
   for (const std::string& line : why) to_stdout("  {}\n", line);
-  for (const Verdict& v : verdicts)
+  for (const Recomputed& v : verdicts)
     to_stdout("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
               v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
   if (verdicts.size() > 1) to_stdout("{}\n", counts(verdicts));
@@ -223,7 +223,7 @@ int verify(const Arguments& a) {
   const std::size_t of = inventory.cells.size();
   const std::vector<Recorded> cells = sampled(inventory.cells, a.all ? of : static_cast<std::size_t>(a.sample), seed);
   std::set<std::string> why;  // of all cells
-  std::vector<Verdict> verdicts;
+  std::vector<Recomputed> verdicts;
   if (!cells.empty()) {
     const Scratch scratch("verify");
     RunPlan plan;

@@ -130,7 +130,7 @@ std::vector<ComparedTime> compare_times(const std::vector<CellPair>& pairs) {
   std::vector<ComparedTime> times;
   std::vector<double> p;
   for (const auto& [place, cells] : methods)
-    for (const char* phase : phases) {
+    for (const std::string& phase : phases()) {
       ComparedTime time;
       std::tie(time.layout, time.engine, std::ignore, time.method) = place;
       time.phase = phase;

@@ -25,8 +25,8 @@ void count(const PlayedEpisode& a, const PlayedEpisode& b, AgreementRow& row) {
   row.agreed += a.success == b.success;
 }
 
-void pair_cells(const CellResult& a, const CellResult& b, EngineAgreement& out, AgreementRow& row, AgreementRow& all,
-                Seen& seen) {
+void pair_episodes(const CellResult& a, const CellResult& b, EngineAgreement& out, AgreementRow& row, AgreementRow& all,
+                   Seen& seen) {
   for (const std::string& arm : a.arms) {
     const auto found = b.episodes.find(arm);
     if (found == b.episodes.end()) continue;
@@ -61,7 +61,7 @@ EngineAgreement compare(const RunResults& run, const std::string& layout, const 
     if (other == others.end()) continue;
     AgreementRow& row = rows[{cell.is_reference(), display_rank(cell.method), cell.method}];
     row.method = cell.method;
-    pair_cells(cell, *other->second, out, row, all, seen);
+    pair_episodes(cell, *other->second, out, row, all, seen);
   }
   for (auto& [key, row] : rows) out.rows.push_back(row);
   if (!rows.empty()) out.rows.push_back(all);

@@ -146,6 +146,16 @@ void read_configuration(const fs::path& file, CellResult& cell) {
 
 }  // namespace
 
+const std::vector<std::string>& phases() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> members;
+    for (const std::string& phase : cell_phases) members.push_back(phase + "_s");
+    members.emplace_back("total_s");
+    return members;
+  }();
+  return all;
+}
+
 CellResult read_cell(const fs::path& directory) {
   CellResult cell;
   cell.key = directory.filename().string();
@@ -169,7 +179,7 @@ CellResult read_cell(const fs::path& directory) {
   read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
   cell.timing = read_json(timing_file, Links::refused);
-  for (const char* phase : phases) JsonReader(cell.timing, timing_file.string()).at(phase).number();
+  for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
   if (const fs::path changed = changed_file(directory, reader); !changed.empty())
     throw InputError(

@@ -11,9 +11,8 @@
 
 namespace lgabench::report {
 
-/// Members of timing.json, in the order of the pipeline.
-constexpr std::array<const char*, 6> phases{"select_s", "sample_s",   "demonstrate_s",
-                                            "learn_s",  "evaluate_s", "total_s"};
+/// Members of timing.json: of cell_phases in their order, then "total_s".
+const std::vector<std::string>& phases();
 
 /// A command of the cell's scenario, and what the method selected for it.
 struct CommandResult {

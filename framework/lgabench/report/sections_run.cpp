@@ -64,8 +64,8 @@ Section times(const Material& material) {
   grid.name = "times";
   grid.caption = "Seconds of a cell, mean";
   grid.heads = {"layout", "engine", "method", "cells"};
-  for (const char* phase : phases) grid.heads.emplace_back(std::string(phase).substr(0, std::string(phase).size() - 2));
-  grid.align = "lllr" + std::string(phases.size(), 'r');
+  for (const std::string& phase : phases()) grid.heads.emplace_back(phase.substr(0, phase.size() - 2));
+  grid.align = "lllr" + std::string(phases().size(), 'r');
   for (const PhaseTimes& one : all) {
     Grid::Row row{{}, {one.layout, one.engine, named(material, one.method), Span::number(std::to_string(one.cells))}};
     for (const double s : one.mean_s) row.cells.emplace_back(Span::number(fmt::format("{:.2f}", s)));

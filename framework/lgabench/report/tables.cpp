@@ -154,7 +154,7 @@ std::vector<PhaseTimes> phase_times(const RunResults& run) {
     PhaseTimes& times = all[{cell.layout, cell.engine, display_rank(cell.method), cell.method}];
     times.layout = cell.layout, times.engine = cell.engine, times.method = cell.method;
     ++times.cells;
-    for (std::size_t i = 0; i < phases.size(); ++i) times.mean_s[i] += cell.timing.at(phases[i]).get<double>();
+    for (std::size_t i = 0; i < phases().size(); ++i) times.mean_s[i] += cell.timing.at(phases()[i]).get<double>();
   }
   std::vector<PhaseTimes> list;
   for (auto& item : all) {

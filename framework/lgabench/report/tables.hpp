@@ -54,11 +54,11 @@ struct MethodError {
 /// One for each row's name that has such episodes, over all of its cells.
 std::vector<MethodError> method_errors(const RunResults& run);
 
-/// Mean seconds of each of `phases` over the finished cells of a row's name, in the order of tables.
+/// Mean seconds of each of phases() over the finished cells of a row's name, in the order of tables.
 struct PhaseTimes {
   std::string layout, engine, method;
   int cells = 0;
-  std::array<double, phases.size()> mean_s{};
+  std::vector<double> mean_s = std::vector<double>(phases().size());
 };
 std::vector<PhaseTimes> phase_times(const RunResults& run);
 
