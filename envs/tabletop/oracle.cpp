@@ -1,7 +1,7 @@
 #include <tabletop/oracle.hpp>
 
-#include <tabletop/motions.hpp>
 #include <common/objects.hpp>
+#include <tabletop/motions.hpp>
 
 namespace lgabench::tabletop {
 namespace {

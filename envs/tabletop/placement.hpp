@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <common/outline.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scene.hpp>
-#include <common/outline.hpp>
 #include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <cstring>
 
-#include <lgabench/core/error.hpp>
 #include <common/objects.hpp>
 #include <common/solids.hpp>
 #include <common/textures.hpp>
+#include <lgabench/core/error.hpp>
 #include <tabletop/raster.hpp>
 #include <tabletop/zones.hpp>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include <lgabench/core/random.hpp>
 #include <common/objects.hpp>
+#include <lgabench/core/random.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {

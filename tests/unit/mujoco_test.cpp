@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <lgabench/core/error.hpp>
 #include <common/objects.hpp>
+#include <lgabench/core/error.hpp>
 
 namespace lgabench {
 namespace {

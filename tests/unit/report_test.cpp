@@ -107,10 +107,15 @@ TEST(Summary, CountsWhatFailuresAreAttributedTo) {
   }
   run.add({"lga", 20, "letter"});
   run.add({"gcbc_dart", 2});
+  FabricatedRun::Spec human{"human", 14};
+  human.attribution = "perception";
+  run.add(human);
   const Json summary = summary_of(run), attributed{{"abstraction", 5}, {"policy", 4 + 3}};
   EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
+  EXPECT_EQ(row_of(summary, "heart", "human").at("attribution"),
+            (Json{{"abstraction", 0}, {"policy", 0}, {"perception", 6}}));
 }
 
 TEST(Summary, SharesTheTestInputsThatStoodInTraining) {

@@ -7,9 +7,9 @@
 #include <set>
 #include <tuple>
 
+#include <common/objects.hpp>
 #include <lgabench/core/hash.hpp>
 #include <tabletop/content.hpp>
-#include <common/objects.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tabletop/judge.hpp>
 #include <common/objects.hpp>
+#include <tabletop/judge.hpp>
 #include <tabletop/oracle.hpp>
 
 #include "../tabletop_bench.hpp"

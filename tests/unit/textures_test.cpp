@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <set>
 
+#include <common/textures.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/feature_space.hpp>
-#include <common/textures.hpp>
 
 namespace lgabench::common {
 namespace {
