@@ -13,39 +13,63 @@ namespace {
 constexpr double merge_probability = .1, most_missed = .5, missed_pixels = 40;
 constexpr int border_pixels = 2;
 
-// Calls visit(a, b) for each two neighbouring pixels, by edges.
+// Rows and columns, the last ones included.
+struct Box {
+  int top, bottom, left, right;
+};
+
+// Calls visit(a, b) for each two pixels of the box that are neighbours, by edges.
 template <typename Visit>
-void for_each_neighbours(PictureSize size, const Visit& visit) {
+void for_each_neighbours(PictureSize size, const Box& box, const Visit& visit) {
   const auto at = [&](int row, int column) { return static_cast<std::size_t>(row * size.columns + column); };
-  for (int row = 0; row < size.rows; ++row)
-    for (int column = 0; column < size.columns; ++column) {
-      if (column + 1 < size.columns) visit(at(row, column), at(row, column + 1));
-      if (row + 1 < size.rows) visit(at(row, column), at(row + 1, column));
+  for (int row = box.top; row <= box.bottom; ++row)
+    for (int column = box.left; column <= box.right; ++column) {
+      if (column < box.right) visit(at(row, column), at(row, column + 1));
+      if (row < box.bottom) visit(at(row, column), at(row + 1, column));
     }
 }
 
 // Ids of pairs that touch, the lower first.
 std::set<std::pair<std::uint8_t, std::uint8_t>> touching(const Observation& seen) {
   std::set<std::pair<std::uint8_t, std::uint8_t>> pairs;
-  for_each_neighbours(seen.size, [&](std::size_t a, std::size_t b) {
+  for_each_neighbours(seen.size, {0, seen.size.rows - 1, 0, seen.size.columns - 1}, [&](std::size_t a, std::size_t b) {
     const std::uint8_t i = seen.ids[a], k = seen.ids[b];
     if (i != k && i != 0 && k != 0) pairs.insert(std::minmax(i, k));
   });
   return pairs;
 }
 
-// Moves the segment's border by one pixel: outwards over what is no object, or inwards.
-void move_border(Observation& seen, std::uint8_t id, bool outwards) {
+// The segment's, with `margin` pixels more on every side, as far as the picture goes.
+Box box_of(const Observation& seen, std::uint8_t id, int margin) {
+  Box box{seen.size.rows, -1, seen.size.columns, -1};
+  for (int row = 0; row < seen.size.rows; ++row) {
+    const auto first = seen.ids.begin() + std::ptrdiff_t{row} * seen.size.columns, end = first + seen.size.columns;
+    const auto found = std::find(first, end, id);
+    if (found == end) continue;
+    int last = seen.size.columns - 1;
+    while (first[last] != id) --last;
+    box = {std::min(box.top, row), row, std::min(box.left, static_cast<int>(found - first)), std::max(box.right, last)};
+  }
+  return {std::max(box.top - margin, 0), std::min(box.bottom + margin, seen.size.rows - 1),
+          std::max(box.left - margin, 0), std::min(box.right + margin, seen.size.columns - 1)};
+}
+
+// Moves the segment's border by so many pixels: outwards over what is no object, or inwards.
+void move_border(Observation& seen, std::uint8_t id, int by) {
+  const Box box = box_of(seen, id, std::abs(by));
   std::vector<std::size_t> changed;
-  for_each_neighbours(seen.size, [&](std::size_t a, std::size_t b) {
-    if ((seen.ids[a] == id) == (seen.ids[b] == id)) return;
-    const std::size_t inside = seen.ids[a] == id ? a : b, outside = inside == a ? b : a;
-    if (!outwards)
-      changed.push_back(inside);
-    else if (seen.ids[outside] == 0)
-      changed.push_back(outside);
-  });
-  for (const std::size_t pixel : changed) seen.ids[pixel] = outwards ? id : 0;
+  for (int i = 0; i < std::abs(by); ++i) {
+    changed.clear();
+    for_each_neighbours(seen.size, box, [&](std::size_t a, std::size_t b) {
+      if ((seen.ids[a] == id) == (seen.ids[b] == id)) return;
+      const std::size_t inside = seen.ids[a] == id ? a : b, outside = inside == a ? b : a;
+      if (by < 0)
+        changed.push_back(inside);
+      else if (seen.ids[outside] == 0)
+        changed.push_back(outside);
+    });
+    for (const std::size_t pixel : changed) seen.ids[pixel] = by > 0 ? id : 0;
+  }
 }
 
 void merge_touching(Observation& seen, RandomStream& stream) {
@@ -88,7 +112,7 @@ Observation perceive(Observation seen, double caption_error, RandomStream stream
     missed[instance.id] = stream.uniform() < p;
     const int border = static_cast<int>(stream.below(2 * border_pixels + 1)) - border_pixels;
     caption(instance, caption_error, stream);
-    for (int i = 0; i < std::abs(border); ++i) move_border(seen, instance.id, border > 0);
+    move_border(seen, instance.id, border);
   }
   auto& table = seen.instances;
   table.erase(std::remove_if(table.begin(), table.end(), [&](const Instance& i) { return missed[i.id]; }), table.end());
