@@ -78,6 +78,7 @@ function(lgabench_link_data)
   foreach(pair mobile:envs/mobile/tables answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
+               study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
                python:python)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)

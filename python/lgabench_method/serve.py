@@ -60,17 +60,22 @@ class _Log:
     def __init__(self, channel):
         self.channel, self.waiting, self.sent = channel, [], time.monotonic()
 
-    def epoch(self, epochs, steps, loss):
-        """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass."""
-        self.waiting.append((int(epochs), int(steps), float(loss)))
+    def epoch(self, epochs, steps, loss, **curves):
+        """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass, and other values of it
+        by name, as validation=.2: a report draws a curve of each."""
+        self.waiting.append((int(epochs), int(steps), float(loss), {name: float(value) for name, value in curves.items()}))
         if len(self.waiting) == 1000 or time.monotonic() - self.sent > .5:
             self.flush()
 
     def flush(self):
         if self.waiting:
-            epochs, steps, losses = zip(*self.waiting)
+            epochs, steps, losses, curves = zip(*self.waiting)
             self.waiting, self.sent = [], time.monotonic()
-            self.channel.send({"type": "log", "epochs": epochs, "steps": steps}, struct.pack(f"<{len(losses)}d", *losses))
+            values = [value for loss, named in zip(losses, curves) for value in (loss, *named.values())]
+            header = {"type": "log", "epochs": epochs, "steps": steps}
+            if any(curves):
+                header["curves"] = [list(named) for named in curves]
+            self.channel.send(header, struct.pack(f"<{len(values)}d", *values))
 
 
 class _Beside:

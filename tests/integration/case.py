@@ -42,9 +42,9 @@ class Case(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
         self.environment = dict(os.environ, LGABENCH_CACHE=str(self.dir / "cache"), TMPDIR=str(self.dir))
 
-    def call(self, *arguments, expect=0, **more):
+    def call(self, *arguments, expect=0, timeout=300, **more):
         done = subprocess.run(command_line(*arguments), capture_output=True, text=True, env=self.environment,
-                              cwd=self.dir, timeout=300, **more)
+                              cwd=self.dir, timeout=timeout, **more)
         self.assertEqual(done.returncode, expect, done.stderr[-3000:])
         return done
 

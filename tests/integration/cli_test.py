@@ -10,8 +10,8 @@ import unittest
 
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line
 
-VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "new-plugin",
-         "check-plugin", "cache"]
+VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "cluster", "status",
+         "leaderboard", "new-plugin", "check-plugin", "study", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",

@@ -58,7 +58,9 @@ class Mine:
     def learn(self, demonstrations, services):
         assert demonstrations[0].steps[0].observation.rgb.shape == (128, 256, 3)
         assert not demonstrations[0].steps[0].observation.rgb.flags.writeable
-        services.log.epoch(1, 10, float("nan") if services.options["how"] == "nan_loss" else 0.5)
+        services.log.epoch(1, 10, float("nan") if services.options["how"] == "nan_loss" else 0.5, validation=0.25)
+        if services.options["how"] == "curve_name":
+            services.log.epoch(2, 10, 0.5, epoch=1)
         open(os.path.join(services.files, "curve.csv"), "w").write("1")
         if services.options["how"] == "exit":
             os._exit(5)
@@ -105,6 +107,10 @@ class PythonMethods(Case):
         other = json.loads((self.dir / "out/cells" / own["lga"][0] / "selection.json").read_text())["commands"][0]
         self.assertEqual(selection, other["selection"])
         self.assertEqual((self.dir / "out/cells" / key / "files/curve.csv").read_text(), "1")
+        logged = (self.dir / "out/cells" / key / "training.jsonl").read_text()
+        self.assertEqual(json.loads(logged), {"epoch": 1, "steps": 10, "loss": .5, "validation": .25})
+        for curve in ("loss", "validation"):
+            self.assertTrue((self.dir / "out/figures" / f"training_{curve}_continuous_{cell['engine']}.svg").exists())
         again = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "again")
         self.assert_same_results("out", "again")
         self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
@@ -122,7 +128,8 @@ class PythonMethods(Case):
 
     def test_what_fails_costs_its_own_cell(self):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
-                   "exit": "exited with 5 in phase learn", "nan_loss": "training diverged", "read": "PermissionError"}
+                   "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
+                   "curve_name": "a curve's name", "read": "PermissionError"}
         found, _ = self.how("", "nan", "short", *reasons, expect=3)
         for how in ("nan", "short"):
             episodes = [json.loads(line) for line in (found[how][0] / "episodes.jsonl").read_text().splitlines()]

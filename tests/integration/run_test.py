@@ -315,10 +315,25 @@ class Demonstrations(Case):
         lines = self.call("demos", "--inspect", "a.hdf5").stdout.splitlines()
         self.assertEqual(len(lines), 3)
         for i, line in enumerate(lines):
-            self.assertRegex(line, rf'^demo_{i}: [123] steps; "Bring me the heart."; .*heart')
+            self.assertRegex(line, rf'^demo_{i}: (1 step|[23] steps); "Bring me the heart."; .*heart')
         # What a method is given names no role, scene or seed.
         for word in (b"role", b"target", b"distractor", b"goal", b"seed", b"scene", b"split", b"index"):
             self.assertIsNone(re.search(rb"\b" + word, data), word)
+
+    def test_of_what_a_method_selected(self):
+        self.call("run", "q1", "--scenarios", "red_heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes",
+                  "1", "--layout", "cells", "--set", "lga.epochs=1", "--no-reference", "--out", "out")
+        (key, _), = self.cells("out").items()
+        selection = self.dir / "out/cells" / key / "selection.json"
+        textures = json.loads(selection.read_text())["commands"][0]["selection"]["target"]["textures"]
+        self.assertEqual(len(textures), 2, "of the five that count as red")
+        self.call("demos", "red_heart", "--selection", selection, "--n", "10", "--out", "own.hdf5")
+        for line in self.call("demos", "--inspect", "own.hdf5").stdout.splitlines():
+            self.assertRegex(line, "|".join(f"{texture} heart" for texture in textures))
+        self.call("demos", "red_heart", "--n", "10", "--out", "true.hdf5")
+        self.assertNotEqual((self.dir / "own.hdf5").read_bytes(), (self.dir / "true.hdf5").read_bytes())
+        said = self.call("demos", "q3_fruit", "--selection", selection, "--out", "no.hdf5", expect=2).stderr
+        self.assertIn("one for each of the 3 commands of q3_fruit", said)
 
     def test_smoke_is_stamped(self):
         for flags, stamped in ([["--limit", "1"], True], [["--scenarios", "heart", "--seeds", "0", "--demos", "10"], False]):
@@ -345,24 +360,39 @@ class Page(Case):
         page = (self.dir / run / "report.html").read_text()
         return page, json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.S)[1])
 
-    def test_pictures_of_the_scenes_in_which_a_method_failed(self):
+    def test_pictures_of_the_scenes_that_methods_played(self):
         self.call("run", "q1", "--scenarios", "heart,red_heart", "--methods", "lga,gcbc_dart", "--demos", "10",
                   "--seeds", "0", "--episodes", "5", "--set", "lga.epochs=2", "--set", "gcbc_dart.epochs=1", "--out", "out")
         page, data = self.data("out")
-        failed, masked = set(), set()
+        played, masked, ends = set(), set(), {}
         for key, (cell, _) in self.cells("out").items():
             if cell["method"]["kind"] == "method":
                 for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines():
                     episode = json.loads(line)
-                    if not episode["success"]:
-                        failed.add(episode["scene"])
-                        masked |= {episode["scene"]} if cell["method"]["id"] == "lga" else set()
+                    played.add(episode["scene"])
+                    masked |= {episode["scene"]} if cell["method"]["id"] == "lga" else set()
+                    if episode["action"]:
+                        ends[key, episode["index"]] = episode["failure"], episode["scene"]
         self.assertTrue(masked)
-        self.assertEqual(set(data["pictures"]), failed)
+        self.assertEqual(set(data["pictures"]), played)
         self.assertEqual({name.split("/")[0] for name in data["masks"]}, masked)
         for bytes_ in [*data["pictures"].values(), *data["masks"].values()]:
             self.assertTrue(base64.b64decode(bytes_).startswith(b"\x89PNG"))
-        self.assertEqual(len(set(data["pictures"].values())), len(failed), "two scenes look alike")
+        self.assertEqual(len(set(data["pictures"].values())), len(played), "two scenes look alike")
+
+        # The oracle takes the target, whose outline surrounds where it does.
+        for scene in played:
+            (x, y), _ = data["oracle"][scene]
+            edges = [tuple(map(int, edge)) for edge in re.findall(r"M(\d+) (\d+)", data["targets"][scene])]
+            self.assertTrue(min(edges)[0] <= x <= max(edges)[0] + 1, scene)
+            self.assertTrue(min(y for _, y in edges) <= y <= max(y for _, y in edges) + 1, scene)
+        # The scene after the action: where an object was taken, another one than before.
+        shown = {(cell["cell"], int(index)): end for cell in data["cells"] for arm in cell["arms"]
+                 for index, end in arm["ends"].items()}
+        self.assertEqual(set(shown), set(ends))
+        for episode, (failure, scene) in ends.items():
+            self.assertEqual(shown[episode] == "", failure == "missed_object", failure)
+            self.assertNotEqual(shown[episode], data["pictures"][scene])
         self.call("report", "out")
         self.assertEqual(self.data("out")[0], page)
 

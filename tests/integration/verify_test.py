@@ -193,7 +193,24 @@ class Compare(unittest.TestCase):
         self.make("a", "oracle", True)
         self.make("worse", "oracle", False)
         self.assertRegex(self.call("compare", "a", "worse", expect=1).stdout, r"oracle .* -1.00 \[.* worse\n")
-        self.assertRegex(self.call("compare", "worse", "a").stdout, r"oracle .* better\n")
+        self.assertRegex(self.call("compare", "worse", "a").stdout, r"\AB is better: oracle .*\n\n[^$]*oracle .* better\n")
+        rows = self.call("compare", "a", "--rows", "gcbc_dart,lga").stdout
+        self.assertRegex(rows, r"\A.*LGA|No difference")
+        self.assertEqual(self.call("compare", "a", expect=2).stderr.count("A --rows ROW_A,ROW_B"), 1)
+        self.assertIn("did you mean \"lga\"", self.call("compare", "a", "--rows", "lg,gcbc_dart", expect=2).stderr)
+
+    def test_a_page_over_several_runs(self):
+        shutil.copytree(self.base / "a", self.base / "b")
+        (self.base / "notes.txt").write_text("no run")
+        said = self.call("report", "a", "b", "notes.txt")
+        self.assertIn("LGA", said.stdout)
+        page = (self.base / "index.html").read_text()
+        self.assertIn('href="a/report.html"', page)
+        self.assertIn('href="b/report.html"', page)
+        self.assertNotIn("notes", page)
+        self.call("report", "a", "b", "--index", "all.html")
+        self.assertEqual((self.base / "all.html").read_text(), page)
+        self.call("report", "a", "b", "--claims", expect=2)
 
     def test_compare_refuses_other_episodes(self):
         self.run_small("b", episodes="2")

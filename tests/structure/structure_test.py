@@ -30,7 +30,8 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "job", "cell", "harness", "report", "cli"):
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "job", "cell", "harness", "report", "study",
+                       "leaderboard", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
@@ -76,8 +77,13 @@ class IncludeGraph(unittest.TestCase):
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
-        self.forbid("framework/lgabench/harness", r"lgabench/cell/")
+        self.forbid("framework/lgabench/harness", r"lgabench/(cell|report|leaderboard|cli)/")
+        self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|cli)/")
         self.forbid("framework/lgabench/cell", r"lgabench/(harness|report|cli)/")
+
+
+    def test_the_study_knows_core_abstraction_and_report(self):
+        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|report/|study/)|tabletop/|torch|opencv")
 
 
 class Needed(unittest.TestCase):

@@ -473,5 +473,29 @@ TEST(Schedules, GiveLongCellsFirstOnceTheyAreKnown) {
   EXPECT_EQ(order, "slow50 slow50 slow10 slow10 slow10 quick50 quick50 quick10 quick10 quick10 ");
 }
 
+// Would take minutes if each cell were looked for among all.
+TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
+  std::vector<Cell> cells(100'000);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i].method.name = fmt::format("row{}", i % 20);
+    cells[i].demonstrations = static_cast<int>(i % 50);
+  }
+  std::vector<const Cell*> left;
+  for (const Cell& cell : cells) left.push_back(&cell);
+  const auto begin = std::chrono::steady_clock::now();
+  Schedule schedule(left);
+  std::set<const Cell*> given;
+  double seconds_left = schedule.left_s();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const Cell* cell = schedule.next();
+    given.insert(cell);
+    if (i % 3 == 0) schedule.learn(*cell, 1 + .1 * static_cast<double>(i % 20));
+    seconds_left = schedule.left_s();
+  }
+  EXPECT_EQ(given.size(), cells.size());
+  EXPECT_NEAR(seconds_left, 0, 1e-3);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);
+}
+
 }  // namespace
 }  // namespace lgabench

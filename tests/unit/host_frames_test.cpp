@@ -170,6 +170,18 @@ TEST(Messages, a_log_arrives_as_it_was_reported) {
   EXPECT_SAYS(refusal({{"epochs", {1, 2}}, {"steps", {1}}}, frame.payload), "/steps: expected as many as epochs");
   EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}}, frame.payload), "a double for each epoch");
   EXPECT_SAYS(refusal({{"epochs", {-1}}, {"steps", {1}}}, std::string(8, 0)), "/epochs/0");
+
+  const Frame curves = protocol::log_frame({{1, 4, .1, {{"validation", .2}, {"picked", nan}}}, {2, 8, .05}});
+  const auto with = protocol::read_log(curves);
+  ASSERT_EQ(with.size(), 2u);
+  ASSERT_EQ(with[0].curves.size(), 2u);
+  EXPECT_EQ(with[0].curves[0], std::pair(std::string("validation"), .2));
+  EXPECT_TRUE(std::isnan(with[0].curves[1].second));
+  EXPECT_EQ(with[1].loss, .05);
+  EXPECT_TRUE(with[1].curves.empty());
+  EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}, {"curves", {{"a"}, {"b"}}}}, std::string(24, 0)),
+              "/curves: expected as many as epochs");
+  EXPECT_SAYS(refusal({{"epochs", {1}}, {"steps", {1}}, {"curves", {{"a"}}}}, std::string(8, 0)), "and curve");
 }
 
 // No environment's that there is.

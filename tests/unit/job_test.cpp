@@ -51,8 +51,7 @@ TEST(Jobs, NameThePluginsThatTheyWereWrittenWith) {
 TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
-  request.engines = {"mujoco", "bullet"};
-  request.action = Action{.1, .2};
+  request.ends = {{"mujoco", {.1, .2}}, {"bullet", {.3}}};
   const Json json = to_json(request);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }

@@ -126,11 +126,11 @@ TEST_F(ParticipantFile, StandsInForThePerson) {
 
 TEST_F(ParticipantFile, EveryParticipantHasOne) {
   std::vector<Participant> all;
-  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, all); }), "there are none");
-  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path / "none", all); }), "No such file");
+  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }), "there are none");
+  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path / "none", false, all); }), "No such file");
   read(invented());
   write_file(path / "p02.json", invented().dump());
-  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, all); }), "\"made-up-01\" has another file there");
+  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }), "\"made-up-01\" has another file there");
 }
 
 }  // namespace

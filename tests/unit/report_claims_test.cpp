@@ -259,7 +259,47 @@ TEST(Claims, C5NeedsPeopleInBothRows) {
   EXPECT_EQ(claim_of(run, "C5").reason, "no human data");
   add_person(run, "lga_hill", "p01", 18, 50);
   EXPECT_EQ(claim_of(run, "C5").verdict, Verdict::not_tested);
-  EXPECT_EQ(claim_of(run, "C5").reason, "1 participants answered a command in both ways, expected 2 or more");
+  EXPECT_EQ(claim_of(run, "C5").reason, "1 participants answered in both ways, expected 2 or more");
+}
+
+TEST(Claims, C5OfACrossoverComparesPeoplesMeans) {
+  FabricatedRun run;
+  const auto answered = [&run](const char* method, const char* scenario, const char* id, double seconds) {
+    Spec spec{method, 18, scenario, 50, 0};
+    spec.provenance = "human";
+    spec.participant = id;
+    spec.human_seconds = seconds;
+    run.add(spec);
+  };
+  for (const auto& [id, slow, fast] : {std::tuple("p01", 150., 50.), {"p02", 160., 59.}, {"p03", 170., 71.}}) {
+    const bool first = std::string(id) == "p02";  // nobody saw a command twice
+    for (const char* scenario : {"heart", "letter"})
+      answered(first ? "human" : "lga_hill", scenario, id, first ? slow : fast);
+    for (const char* scenario : {"bowl", "ring"})
+      answered(first ? "lga_hill" : "human", scenario, id, first ? fast : slow);
+  }
+  const Claim c5 = claim_of(run, "C5");
+  EXPECT_EQ(c5.verdict, Verdict::held);
+  EXPECT_NEAR(c5.differences.at(0).these.change->difference, 100, 1e-9);
+  EXPECT_EQ(c5.differences.at(0).scenarios, 4);
+}
+
+TEST(Claims, C2IsOnTheCommandsThatPeopleWereAsked) {
+  FabricatedRun run;
+  for (const char* scenario : {"heart", "letter", "bowl", "ring", "star", "pan", "line"})
+    for (int seed = 0; seed < 2; ++seed) run.add({"lga", 18, scenario, 50, seed});
+  add_person(run, "human", "p01", 18, 150);
+  add_person(run, "human", "p02", 17, 160);
+  const Claim c2 = claim_of(run, "C2");
+  EXPECT_EQ(c2.verdict, Verdict::held) << c2.reason;
+  EXPECT_EQ(c2.differences.at(0).by_scenario.size(), 5u);
+  EXPECT_FALSE(c2.rehearsal);
+
+  Spec spec{"human", 17, "star", 50, 0};
+  spec.provenance = "human", spec.participant = "p03", spec.rehearsal = true;
+  run.add(spec);
+  EXPECT_TRUE(claim_of(run, "C2").rehearsal);
+  EXPECT_FALSE(claim_of(run, "C1").rehearsal);
 }
 
 // As q2: three seeds of two scenarios, two arms.

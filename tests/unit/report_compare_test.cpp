@@ -203,6 +203,48 @@ report::CellAgreement agreement(const Spec& there, const Spec& here, bool excuse
   return report::compare_cells(a.add(there), b.add(here), excused);
 }
 
+TEST(Compare, ARowOfOneMethodWithARowOfAnother) {
+  FabricatedRun a, b;
+  for (int seed = 0; seed < 3; ++seed) {
+    a.add({"lga", 8, "heart", 20, seed});
+    a.add({"gcbc_dart", 2, "heart", 20, seed});
+    b.add({"my_method", 18, "heart", 20, seed});
+  }
+  const report::RunResults in_a = report::read_run(a.save().path), in_b = report::read_run(b.save().path);
+  const RunComparison comparison = report::compare_runs(in_a, in_b, report::RowPair{"lga", "my_method"});
+  ASSERT_EQ(comparison.rows.size(), 1u);
+  EXPECT_EQ(comparison.rows[0].method_a, "lga");
+  EXPECT_EQ(comparison.rows[0].method, "my_method");
+  EXPECT_NEAR(comparison.rows[0].change.difference, .5, 1e-12);
+  EXPECT_EQ(comparison.rows[0].cells, 3);
+  EXPECT_EQ(comparison.only_a, 0);  // the other rows are left out, not missed
+  EXPECT_EQ(verdict(comparison), "B is better: my_method against LGA (cells, 20 demonstrations, test) +0.50.");
+  EXPECT_EQ(comparison_text(comparison).rfind("B is better: ", 0), 0u) << "the verdict comes first";
+  EXPECT_EQ(to_json(comparison).at("verdict"), verdict(comparison));
+
+  const RunComparison within = report::compare_runs(in_a, in_a, report::RowPair{"lga", "gcbc_dart"});
+  EXPECT_NEAR(within.rows.at(0).change.difference, -.3, 1e-12);
+  EXPECT_SAYS(message_of<InputError>([&] {
+                report::compare_runs(in_a, in_b, report::RowPair{"lga", "my_methd"});
+              }),
+              "no row \"my_methd\" (did you mean \"my_method\"?)");
+}
+
+TEST(Compare, ItsVerdictIsOneLine) {
+  FabricatedRun a, b;
+  a.add({"lga", 15}), a.add({"gcbc_dart", 15});
+  b.add({"lga", 15}), b.add({"gcbc_dart", 14});
+  EXPECT_EQ(verdict(compared(a, a)), "B acts as A does in every scene (2 rows).");
+  EXPECT_EQ(verdict(compared(a, b)), "No difference: 2 of 2 rows do not differ beyond chance.");
+  b.add({"gcbc_seg", 3}), a.add({"gcbc_seg", 17});
+  EXPECT_EQ(verdict(compared(a, b)),
+            "B is worse: GCBC-SEG (cells, 20 demonstrations, test) -0.70. 2 of 3 rows do not differ beyond chance.");
+  const std::string text = comparison_text(compared(a, b));
+  EXPECT_SAYS(text, " total ");
+  EXPECT_SILENT(text, " learn ");
+  EXPECT_SAYS(comparison_text(compared(a, b), true), " learn ");
+}
+
 TEST(CompareCells, SameBytes) {
   EXPECT_EQ(agreement({"lga", 15}, {"lga", 15}, false).agreement, Agreement::identical);
   EXPECT_EQ(agreement({"lga", 15}, {"lga", 15}, false).detail, "");

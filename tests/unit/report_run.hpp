@@ -50,7 +50,9 @@ class FabricatedRun : public TemporaryDirectory {
     double learn_s = 4;
     std::string provenance{};                              // of the Selections; "": the method's own
     std::string participant{};                             // whose answers the cell is based on
+    bool rehearsal = false;                                // that was no person
     double human_seconds = 0;                              // of each command
+    std::map<std::string, double> curves{};                // of training.jsonl, beside the loss: their first value
     int inputs_seen = -1;                                  // of 20 in each arm: the first; -1: the policy does not tell
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
@@ -108,6 +110,7 @@ class FabricatedRun : public TemporaryDirectory {
     const std::map<std::string, std::string> asks{{"human", "specify"}, {"lga_hill", "edit"}};
     if (const auto whom = asks.find(s.method); whom != asks.end()) cell["method"]["asks"] = whom->second;
     if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
+    if (s.rehearsal) cell["participant"]["rehearsal"] = true;
     return cell;
   }
 
@@ -160,7 +163,11 @@ class FabricatedRun : public TemporaryDirectory {
         if (s.inputs_seen >= 0) episode["input_seen"] = static_cast<int>(i) < s.inputs_seen;
         episodes += canonical(episode) + '\n';
       }
-    for (int e = 1; e <= 3; ++e) training += canonical({{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}}) + '\n';
+    for (int e = 1; e <= 3; ++e) {
+      Json line{{"epoch", e}, {"steps", 2 * e}, {"loss", 1.0 / e}};
+      for (const auto& [name, first] : s.curves) line[name] = first / e;
+      training += canonical(line) + '\n';
+    }
     const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},
                       {"learn_s", s.learn_s}, {"evaluate_s", 2.0}, {"total_s", 7.75}};
     const fs::path cell = new_cell(s);

@@ -1,7 +1,9 @@
-"""Prints the values that report_statistics_test.cpp expects, computed by SciPy and statsmodels.
+"""Prints the values that report_statistics_test.cpp and study_results_test.cpp expect, computed by SciPy and statsmodels.
 
 Needs scipy 1.17.1 and statsmodels 0.15.0 in a scratch environment: python3 statistics_reference.py
 """
+import numpy as np
+import statsmodels.api as sm
 from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
@@ -23,3 +25,17 @@ for d in tied:
 for d in (tied[0], exact[1]):
     t = stats.ttest_rel(d, [0] * len(d))
     print("t", repr(float(sum(d) / len(d))), *(repr(float(v)) for v in (*t.confidence_interval(), t.pvalue)))
+
+welch = stats.ttest_ind(tied[0], [0.1, -1.2, 0.4, 0.9], equal_var=False)
+print("welch", *(repr(float(v)) for v in (*welch.confidence_interval(), welch.pvalue)))
+
+# Senn (2002), table 3.1: the treatment effect of a two-period crossover is half the difference of two samples.
+senn = stats.ttest_ind([40, 50, 70, 20, 40, 30, -35], [-15, -90, -30, -30, -80, -130])
+print("crossover of two columns", repr(float(senn.pvalue)))
+
+people = range(12)
+columns = np.array([[1 if i % 2 == 0 else -1, 1, 1 if i % 4 < 2 else -1] for i in people], float)
+values = [(1 if i % 2 == 0 else -1) * 1.05 + .1 * (1 if i % 4 < 2 else -1) - .2 + .3 * np.sin(1 + 5 * i) for i in people]
+fit = sm.OLS(values, columns).fit()
+for i in range(3):
+    print("ols", *(repr(float(v)) for v in (fit.params[i], *fit.conf_int()[i], fit.pvalues[i])))

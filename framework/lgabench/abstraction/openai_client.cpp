@@ -125,6 +125,10 @@ OpenAiClient::OpenAiClient(OpenAiOptions options) : options_(std::move(options))
 }
 
 ChatReply OpenAiClient::complete(const Json& request) {
+  if (options_.base_url == openai_server && options_.api_key.empty())
+    throw MethodError(
+        "OPENAI_API_KEY is not set, and neither is OPENAI_BASE_URL, the address of another server; see "
+        "docs/language-models.md");
   using Clock = std::chrono::steady_clock;
   constexpr double longest_wait_s = 60;
   const Clock::time_point start = Clock::now();

@@ -10,7 +10,7 @@ OpenAiOptions openai_from_environment() {
     return std::string(value && *value ? value : usual);
   };
   OpenAiOptions options;
-  options.base_url = named("OPENAI_BASE_URL", "https://api.openai.com/v1");
+  options.base_url = named("OPENAI_BASE_URL", openai_server);
   options.api_key = named("OPENAI_API_KEY", "");
   while (!options.base_url.empty() && options.base_url.back() == '/') options.base_url.pop_back();
   return options;

@@ -15,6 +15,9 @@ struct OpenAiOptions {
   std::function<void(const std::string&)> waiting{};
 };
 
+/// OpenAI's own server, which answers nobody without a key.
+constexpr const char* openai_server = "https://api.openai.com/v1";
+
 /// Options from OPENAI_BASE_URL (by default OpenAI's own) and OPENAI_API_KEY.
 OpenAiOptions openai_from_environment();
 

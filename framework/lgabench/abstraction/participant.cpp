@@ -77,11 +77,12 @@ bool Participant::answered_all(const Scenario& scenario, std::optional<Selection
 Participant read_participant(const fs::path& file) {
   const Json json = read_json(file);
   const JsonReader reader(json, file.string());
-  reader.only({"participant", "study", "consent", "license", "answers"});
+  reader.only({"participant", "study", "consent", "license", "answers", "rehearsal"});
   Participant participant;
   participant.id = reader.at("participant").string();
   if (participant.id.empty()) reader.at("participant").fail("a pseudonym");
   participant.sha256 = sha256_file(file);
+  if (reader.has("rehearsal")) participant.rehearsal = reader.at("rehearsal").boolean();
   reader.at("study").string();
   reader.at("license").string();
   const JsonReader consent = reader.at("consent");

@@ -19,8 +19,9 @@ struct Participant {
     Selection proposal;                          // what was edited
   };
 
-  std::string id;                                                 // a pseudonym
-  std::string sha256;                                             // of the file
+  std::string id;          // a pseudonym
+  std::string sha256;      // of the file
+  bool rehearsal = false;  // made in a rehearsal or simulated: no person's answers
   std::map<std::pair<std::string, std::string>, Answer> answers;  // by scenario (its answers_of) and utterance
 
   /// nullptr where the participant was not asked.

@@ -84,9 +84,11 @@ std::vector<std::string> RecordedLanguageModel::known() const {
 
 const RecordedLanguageModel::Recorded& RecordedLanguageModel::expect(const std::string& utterance) const {
   if (const Recorded* found = find(utterance)) return *found;
-  throw InputError(fmt::format("answers of {}: expected some for {}\"{}\" in the space {}; there are: {}", source_,
-                               scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance, space_.id,
-                               fmt::join(known(), " | ")));
+  throw InputError(
+      fmt::format("answers of {}: expected some for {}\"{}\" in the space {}; there are: {}; a model is "
+                  "asked with --answers openai (docs/language-models.md)",
+                  source_, scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance, space_.id,
+                  fmt::join(known(), " | ")));
 }
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -20,8 +22,24 @@ bool Selected::nothing_for(int command) const {
 void TrainingLines::epoch(int epochs, long long steps, double loss) {
   if (!std::isfinite(loss))
     throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epochs, loss));
-  lines += canonical({{"epoch", epochs}, {"steps", steps}, {"loss", loss}}) + '\n';
+  for (const auto& [name, value] : curves_.items())
+    if (!std::isfinite(value.get<double>()))
+      throw MethodError(fmt::format("training diverged: the {} of epoch {} is {}", name, epochs, value.get<double>()));
+  Json line = std::exchange(curves_, Json::object());
+  line.update({{"epoch", epochs}, {"steps", steps}, {"loss", loss}});
+  lines += canonical(line) + '\n';
   if (counted_) counted_(epochs);
+}
+
+void TrainingLines::curve(const std::string& name, double value) {
+  constexpr std::size_t most = 16;
+  const bool plain = !name.empty() && name.size() <= 40 &&
+                     std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+  if (!plain || name == "epoch" || name == "steps" || name == "loss")
+    throw MethodError(
+        "training log: a curve's name has 1 to 40 letters, digits and \"_\", and is not epoch, steps or loss");
+  curves_[name] = value;
+  if (curves_.size() > most) throw MethodError(fmt::format("training log: more than {} curves", most));
 }
 
 Selected select(Method* method, const std::string& id, const Scenario& scenario, Services& services) {

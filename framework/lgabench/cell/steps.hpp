@@ -26,12 +26,14 @@ class TrainingLines : public TrainingLog {
  public:
   /// `counted(epochs)` after each line.
   explicit TrainingLines(std::function<void(int epochs)> counted = {}) : counted_(std::move(counted)) {}
-  /// @throws MethodError for a loss that is infinite or no number.
+  /// @throws MethodError for a value that is infinite or no number, and for a curve's name that is none.
   void epoch(int epochs, long long steps, double loss) override;
+  void curve(const std::string& name, double value) override;
 
   std::string lines;
 
  private:
+  Json curves_ = Json::object();  // of the pass that epoch() ends
   std::function<void(int)> counted_;
 };
 

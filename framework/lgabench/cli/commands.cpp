@@ -18,7 +18,7 @@ constexpr const char* surroundings =
     "\n"
     "Exit status\n"
     "  0    all went well\n"
-    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`\n"
+    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`; refused by `leaderboard`\n"
     "  2    a command line, a file or a directory is not as expected; nothing was overwritten\n"
     "  3    a cell failed\n"
     "  4    a plugin is missing or was refused\n"
@@ -34,6 +34,7 @@ constexpr const char* surroundings =
 void add_commands(CLI::App& app, int& exit) {
   app.formatter(help_formatter());
   app.footer(surroundings);
+  app.require_subcommand(0, 1);  // a word behind a command is its own, also where it reads like another command
   add_list(app, exit);
   add_info(app, exit);
   add_run(app, exit);
@@ -41,17 +42,24 @@ void add_commands(CLI::App& app, int& exit) {
   add_compare(app, exit);
   add_verify(app, exit);
   add_merge(app, exit);
+  add_cluster(app, exit);
+  add_status(app, exit);
+  add_leaderboard(app, exit);
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
+  add_study(app, exit);
   add_cache(app, exit);
 }
 
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
       {"To look at what there is", {"list", "info", "select", "render", "demos", "replay"}},
-      {"To run and to compare", {"run", "report", "compare", "verify", "merge"}},
+      {"To run and to compare", {"run", "report", "compare", "verify"}},
+      {"To run on many machines", {"cluster", "status", "merge"}},
+      {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
+      {"To ask people", {"study"}},
       {"To clean up", {"cache"}}};
   for (const auto& [title, names] : titles)
     for (const char* name : names)

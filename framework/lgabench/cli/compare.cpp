@@ -12,27 +12,39 @@ namespace lgabench::cli {
 void add_compare(CLI::App& app, int& exit) {
   struct Options {
     std::string a, b;
-    bool json = false;
+    std::vector<std::string> rows;
+    bool json = false, times = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
       "compare",
       "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
   verb->add_option("A", options->a, "A run's directory")->required();
-  verb->add_option("B", options->b, "Another's, of the same suite and number of episodes")->required();
+  verb->add_option("B", options->b,
+                   "Another's, of the same suite and number of episodes; with --rows it may be left out: A again");
+  verb->add_option("--rows", options->rows, "Compare a row of A with a row of B, whatever their methods and options")
+      ->delimiter(',')
+      ->expected(2);
+  verb->add_flag("--times", options->times, "Seconds of each phase, not only of whole cells");
   verb->add_flag("--json", options->json, "Print JSON instead of tables");
-  arrange(*verb, "", {{"A", "A"}, {"B", "B"}});
+  arrange(*verb, "", {{"A", "A"}, {"B", "B"}, {"--rows", "ROW_A,ROW_B"}});
   verb->footer(
       "Example: lgabench compare runs/before runs/after\n"
+      "         lgabench compare runs/paper runs/mine --rows lga,my_method\n"
+      "The verdict comes first: is a row worse, or a cell of A's gone, beyond chance?\n"
       "Rows are paired by method and options, whatever they are named, also with those of a run of 0.1. Cells that "
       "played other scenes are named and not compared.");
   verb->callback([options, &exit] {
+    std::optional<report::RowPair> rows;
+    if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};
+    if (options->b.empty() && !rows) throw InputError("compare: expected A B, or A --rows ROW_A,ROW_B");
     expect_run(options->a);
-    expect_run(options->b);
+    const report::RunResults a = report::read_run(options->a);
+    if (!options->b.empty()) expect_run(options->b);
     const report::RunComparison comparison =
-        report::compare_runs(report::read_run(options->a), report::read_run(options->b));
-    to_stdout("{}",
-              options->json ? canonical(report::to_json(comparison)) + '\n' : report::comparison_text(comparison));
+        report::compare_runs(a, options->b.empty() ? a : report::read_run(options->b), rows);
+    to_stdout("{}", options->json ? canonical(report::to_json(comparison)) + '\n'
+                                  : report::comparison_text(comparison, options->times));
     exit = comparison.regressed() ? regression : ok;
   });
 }

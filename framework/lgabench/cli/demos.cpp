@@ -18,12 +18,30 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, layout, engine, out, inspect;
+  std::string scenario, layout, engine, out, inspect, selection;
   int n = 10, noisy = 0;
   double noise = .2;
   std::uint64_t seed = 0;
   std::vector<fs::path> plugin_path;
 };
+
+// The Selections of a cell's selection.json, one for each of the scenario's commands.
+std::vector<Selection> selections_of(const std::string& file, const Scenario& scenario) {
+  const Json json = read_json(file);
+  const JsonReader list = JsonReader(json, file).at("commands");
+  const std::vector<JsonReader> commands = list.elements();
+  if (commands.size() != scenario.commands.size())
+    list.fail(fmt::format("one for each of the {} commands of {}", scenario.commands.size(), scenario.id));
+  std::vector<Selection> all;
+  for (const JsonReader& command : commands) {
+    command.at("selection").at("target");
+    const Json distribution = distribution_of(command.at("selection").json());
+    all.push_back(read_distribution(JsonReader(distribution, file), scenario.space, scenario.second));
+    if (all.back().empty())
+      command.at("selection").fail("something selected: there is nothing to demonstrate for this command");
+  }
+  return all;
+}
 
 void write(const Arguments& a) {
   if (a.scenario.empty() || a.out.empty())
@@ -34,7 +52,9 @@ void write(const Arguments& a) {
   const auto environment = make_environment(scenario, load_engine(engine));
   const std::string layout = a.layout.empty() ? layouts_of(scenario).front() : a.layout;
   std::vector<Scene> scenes;
-  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, {}, a.seed, i));
+  const std::vector<Selection> selections =
+      a.selection.empty() ? std::vector<Selection>() : selections_of(a.selection, scenario);
+  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, selections, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
   const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
   write_file(a.out,
@@ -50,8 +70,8 @@ void inspect(const std::string& file) {
     std::vector<std::string> objects;
     for (const Instance& instance : steps.front().observation.instances)
       objects.push_back(instance.texture + " " + instance.object_type);
-    to_stdout("demo_{}: {} steps; \"{}\"; {}; action {:.3f}\n", i, steps.size(), instruction.utterance,
-              fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
+    to_stdout("demo_{}: {} step{}; \"{}\"; {}; action {:.3f}\n", i, steps.size(), steps.size() == 1 ? "" : "s",
+              instruction.utterance, fmt::join(objects, ", "), fmt::join(steps.front().label, " "));
   }
 }
 
@@ -61,6 +81,8 @@ void add_demos(CLI::App& app, int&) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
+  verb->add_option("--selection", a->selection,
+                   "Draw targets from what a method selected, a cell's selection.json, instead");
   verb->add_option("--layout", a->layout, "How objects are placed; the scenario's first layout if not given")
       ->check(one_of("layout", installed_layouts()));
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
@@ -79,7 +101,8 @@ void add_demos(CLI::App& app, int&) {
   verb->add_option("--inspect", a->inspect, "Print what is in a file of demonstrations")->excludes(out);
   arrange(*verb, "", {{"scenario", "SCENARIO"}});
   arrange(*verb, "What is demonstrated",
-          {{"--layout", "cells|continuous|released"},
+          {{"--selection", "FILE"},
+           {"--layout", "cells|continuous|released"},
            {"--n", "N"},
            {"--seed", "N"},
            {"--noisy", "N"},
@@ -88,7 +111,10 @@ void add_demos(CLI::App& app, int&) {
            {"--plugin-path", "PATH"},
            {"--scenario-path", "DIR"}});
   arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
-  verb->footer("Example: lgabench demos heart --n 10 --out heart.hdf5");
+  verb->footer(
+      "Example: lgabench demos heart --n 10 --out heart.hdf5\n"
+      "What a method of a run was shown: lgabench demos heart --selection runs/NAME/cells/KEY/selection.json --out "
+      "lga.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
 }
 

@@ -66,6 +66,8 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
   }
   Picture picture(across * width - gutter, down * height - gutter);
   std::string header, rule, body;
+  Json names = Json::array();
+  for (const Tile& tile : tiles) names.push_back(tile.caption);
   for (int i = 0; i < across; ++i) header += "| ", rule += "| --- ";
   for (int i = 0; i < across * down; ++i) {
     const bool ends_row = i % across == across - 1;
@@ -80,7 +82,9 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
     }
     if (ends_row) body += "|\n";
   }
-  return {picture.png(), header + "|\n" + rule + "|\n" + body};
+  return {picture.png(),
+          header + "|\n" + rule + "|\n" + body,
+          {{"names", std::move(names)}, {"tile", width - gutter}, {"step", width}, {"across", across}}};
 }
 
 }  // namespace

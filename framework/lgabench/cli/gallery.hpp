@@ -9,6 +9,7 @@ namespace lgabench::cli {
 struct Sheet {
   std::string png;
   std::string legend;  // a Markdown table, cell by cell what the sheet shows
+  Json cells;          // where the pictures lie: {"names", "tile", "step", "across"}, row by row, in pixels
 };
 
 /// `what`: "objects" (every type), "textures" (every one, on a pallet) or "scenes" (a test scene of every scenario,

@@ -62,10 +62,16 @@ void print(const Scenario& scenario) {
 
 void print(const Suite& suite) {
   to_stdout("{}, a suite in {}\n  file  {}\n", suite.id, suite.environment, suite.file);
-  const auto print_members = [](const Json& members) {
-    for (const auto& [name, value] : members.items()) to_stdout("    {} = {}\n", name, canonical(value));
+  const auto words_of = [](const Json& value) {
+    if (!value.is_array()) return value.is_string() ? value.get<std::string>() : canonical(value);
+    std::vector<std::string> words;
+    for (const Json& one : value) words.push_back(one.is_string() ? one.get<std::string>() : canonical(one));
+    return fmt::format("{}", fmt::join(words, ", "));
   };
-  to_stdout("  grid\n");
+  const auto print_members = [&words_of](const Json& members) {
+    for (const auto& [name, value] : members.items()) to_stdout("    {:<14}  {}\n", name, words_of(value));
+  };
+  to_stdout("  how many cells, and how long they take: lgabench run {} --dry-run\n  grid\n", suite.id);
   print_members(to_json(suite.grid));
   for (const auto& [name, members] : suite.presets.items()) {
     to_stdout("  preset {}\n", name);
@@ -139,11 +145,20 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
     const EnvironmentType& environment = find_environment(name);
     return show(environment, to_json(environment), json);
   }
+  for (const Json& row : reference_rows())
+    if (row.at("id") == name) {
+      if (json) return to_stdout("{}\n", row.dump(2));
+      return to_stdout(
+          "{}, a reference row\n  {}\n  Every run has it beside its methods, unless with --no-reference; it has no "
+          "options.\n",
+          name, row.at("summary").get<std::string>());
+    }
   for (const auto& [file, reason] : catalogue.refused)
     if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
   std::vector<std::string> known = scenario_ids();
   for (const PluginInfo& plugin : catalogue.plugins) known.push_back(plugin.id);
   for (const std::string& environment : environment_ids()) known.push_back(environment);
+  for (const Json& row : reference_rows()) known.push_back(row.at("id"));
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list)) known.push_back(suite);
   throw InputError(

@@ -13,7 +13,7 @@
 namespace lgabench::cli {
 namespace {
 
-constexpr const char* sections[] = {"methods", "engines", "suites", "scenarios"};
+constexpr const char* sections[] = {"methods", "reference rows", "engines", "suites", "scenarios"};
 
 // Shipped suites with what each says it is for, sorted by id.
 Json suites() {
@@ -39,11 +39,9 @@ Json scenarios() {
 }
 
 Json listing(const Catalogue& catalogue) {
-  Json all{{"methods", Json::array()},
-           {"engines", Json::array()},
-           {"refused", Json::array()},
-           {"suites", suites()},
-           {"scenarios", scenarios()}};
+  Json all{{"methods", Json::array()}, {"reference rows", reference_rows()},
+           {"engines", Json::array()}, {"refused", Json::array()},
+           {"suites", suites()},       {"scenarios", scenarios()}};
   for (const PluginInfo& plugin : catalogue.plugins)
     all[plugin.kind + "s"].push_back(
         {{"id", plugin.id}, {"version", plugin.version}, {"summary", plugin.summary}, {"file", plugin.file.string()}});
@@ -67,6 +65,13 @@ void print(const Json& all) {
 }
 
 }  // namespace
+
+Json reference_rows() {
+  return {{{"id", "constant_action"},
+           {"summary", "The best constant action: the same in every scene, from the training actions alone"}},
+          {{"id", "oracle"}, {"summary", "The expert, who knows the target: what success there can be"}},
+          {{"id", "random_object"}, {"summary", "A visible object, drawn at random and handled as the expert would"}}};
+}
 
 void add_list(CLI::App& app, int& exit) {
   struct Arguments {

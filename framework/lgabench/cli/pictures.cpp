@@ -1,11 +1,14 @@
-// lgabench-worker pictures: test scenes and goal masks for report.html, as a request on stdin lists them.
+// lgabench-worker pictures: what report.html shows of test scenes, as a request on stdin lists them.
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <functional>
 #include <iostream>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/cell/environments.hpp>
@@ -40,6 +43,38 @@ std::string png(PictureSize size, ColourAt colour_at) {
   return base64(picture.png());
 }
 
+// The edges of all pixels that are `inside`, as an SVG path in pixels.
+std::string outline(PictureSize size, const std::function<bool(int column, int row)>& inside) {
+  std::string path;
+  const auto edges = [&path](int lines, int length, const auto& is_edge, const auto& step) {
+    for (int line = 0; line <= lines; ++line)
+      for (int begin = 0, end = 0; begin < length; begin = end + 1) {
+        for (end = begin; end < length && is_edge(line, end);) ++end;
+        if (end > begin) path += step(line, begin, end - begin);
+      }
+  };
+  edges(
+      size.rows, size.columns, [&](int y, int x) { return inside(x, y) != inside(x, y - 1); },
+      [](int y, int x, int n) { return fmt::format("M{} {}h{}", x, y, n); });
+  edges(
+      size.columns, size.rows, [&](int x, int y) { return inside(x, y) != inside(x - 1, y); },
+      [](int x, int y, int n) { return fmt::format("M{} {}v{}", x, y, n); });
+  return path;
+}
+
+// The targets' outline, as far as they are in view.
+std::string targets(const Scene& scene, const Observation& seen) {
+  std::set<std::uint8_t> ids;
+  for (const SceneObject& object : scene.objects)
+    if (object.role == role::target) ids.insert(object.instance_id);
+  const int step = report::page_step(seen.size);
+  const PictureSize size{seen.size.rows / step, seen.size.columns / step};
+  return outline(size, [&](int column, int row) {
+    if (column < 0 || row < 0 || column >= size.columns || row >= size.rows) return false;
+    return ids.count(seen.ids[static_cast<std::size_t>(step * row * seen.size.columns + step * column)]) != 0;
+  });
+}
+
 struct Played {
   Cell cell;
   Scenario scenario;
@@ -47,9 +82,10 @@ struct Played {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...]}, in base64: the scene, goal masks of the request's
-  // Selections, and the scene after its action on each of its engines (null for one that is not there). @throws
-  // InputError where the scene is not the one asked for.
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action}, pictures in base64:
+  // the scene, goal masks of the request's Selections, the scene after each of its actions (null where it could
+  // not be carried out, "" where nothing moved), the targets' outline, and what the oracle would do (null without the
+  // cell's engine). @throws InputError where the scene is not the one asked for.
   Json draw(const PictureRequest& request) {
     const Played& played = cell(request.cell.string());
     const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
@@ -67,7 +103,19 @@ class Pictures {
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    return {{"picture", picture_of(seen)}, {"masks", masks}, {"ends", ends(played.scenario, scene, request)}};
+    const std::string picture = picture_of(seen);
+    Json ends = Json::array();
+    for (const PictureRequest::End& end : request.ends) {
+      const std::optional<std::string> after = after_action(played.scenario, scene, end);
+      ends.push_back(!after ? Json() : Json(*after == picture ? "" : *after));
+    }
+    Environment* const environment = on(played.cell.engine, played.scenario);
+    if (environment) environment->reset(scene);
+    return {{"picture", picture},
+            {"masks", masks},
+            {"ends", ends},
+            {"targets", targets(scene, seen)},
+            {"oracle", environment ? Json(environment->expert_action()) : Json()}};
   }
 
  private:
@@ -75,14 +123,17 @@ class Pictures {
     return png(seen.size, [&](std::size_t i) { return pixel_colour(seen, i); });
   }
 
-  Json ends(const Scenario& scenario, const Scene& scene, const PictureRequest& request) {
-    Json pictures = Json::array();
-    for (const std::string& name : request.engines) {
-      Environment* const environment = on(name, scenario);
-      if (environment) environment->reset(scene);
-      pictures.push_back(environment ? Json(picture_of(environment->step(request.action).observation)) : Json());
+  // None where the engine is not there, or the action is none of this environment's.
+  std::optional<std::string> after_action(const Scenario& scenario, const Scene& scene,
+                                          const PictureRequest::End& end) {
+    Environment* const environment = on(end.engine, scenario);
+    if (!environment) return std::nullopt;
+    environment->reset(scene);
+    try {
+      return picture_of(environment->step(end.action).observation);
+    } catch (const MethodError&) {
+      return std::nullopt;
     }
-    return pictures;
   }
 
   // Null for an engine that is not there.

@@ -19,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, layout, split = "test", truth = "released", arm, out;
+  std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -56,6 +56,7 @@ void render_gallery(const Arguments& arguments) {
   const Sheet sheet = gallery(arguments.gallery);
   const fs::path file = arguments.out.empty() ? fmt::format("{}.png", arguments.gallery) : arguments.out;
   write_file(file, sheet.png);
+  if (!arguments.cells.empty()) return write_file(arguments.cells, canonical(sheet.cells));
   to_stdout("{}\n\n{}", file.string(), sheet.legend);
 }
 
@@ -94,6 +95,9 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--gallery", arguments->gallery, "Every object, texture or scenario's scene on one sheet instead")
       ->check(one_of("gallery", {"objects", "textures", "scenes"}))
       ->excludes(scenario);
+  verb->add_option("--cells", arguments->cells,
+                   "With --gallery: a file that says as JSON where each picture lies; nothing is printed")
+      ->excludes(scenario);
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
@@ -114,6 +118,7 @@ void add_render(CLI::App& app, int&) {
   const std::string layouts = fmt::format("{}", fmt::join(installed_layouts(), "|"));
   arrange(*verb, "What is drawn",
           {{"--gallery", "objects|textures|scenes"},
+           {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", layouts.c_str()},
            {"--split", "train|dev|test"},

@@ -49,20 +49,40 @@ int print_difference(const report::RunResults& results, const std::vector<std::s
   return verdict_of(results, claims);
 }
 
+// Each run's report, and a page over those that are runs.
+void report_all(const std::vector<std::string>& directories, const std::string& index) {
+  std::vector<report::Report> reports;
+  for (const std::string& directory : directories) {
+    if (!fs::exists(fs::path(directory) / "run.json")) continue;
+    reports.push_back(report::write_report(directory));
+    to_stderr("{}\n", (fs::path(directory) / "report.html").string());
+  }
+  if (reports.empty()) expect_run(directories.front());  // says which there are
+  const fs::path first = reports.front().run.directory.lexically_normal(),
+                 beside = first.has_filename() ? first.parent_path() : first.parent_path().parent_path();
+  const fs::path file = index.empty() ? beside / "index.html" : fs::path(index);
+  put(stdout, printable(report::terminal(report::write_index(reports, file), "")));
+  to_stderr("{}\n", file.string());
+}
+
 }  // namespace
 
 void add_report(CLI::App& app, int& exit) {
   struct Options {
-    std::string run, format = "text";
+    std::vector<std::string> runs;
+    std::string format = "text", index;
     bool claims = false;
     std::vector<std::string> difference;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
       "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
-  verb->add_option("RUN", options->run, "The run's directory")->required();
-  verb->add_option("--format", options->format, "What to print: text, md, json or csv")
-      ->check(one_of("format", {"text", "md", "json", "csv"}))
+  verb->add_option("RUN", options->runs, "The run's directory; several, as runs/*, get a page over all of them too")
+      ->required();
+  verb->add_option("--index", options->index,
+                   "That page (default: index.html beside the first run; other directories are left out)");
+  verb->add_option("--format", options->format, "What to print: text, md, latex (every table), json or csv")
+      ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
   verb->add_flag("--claims", options->claims,
                  "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
@@ -71,16 +91,26 @@ void add_report(CLI::App& app, int& exit) {
                    "above A beyond chance")
       ->delimiter(',')
       ->expected(2);
-  arrange(*verb, "", {{"RUN", "RUN"}, {"--format", "text|md|json|csv"}, {"--difference", "A,B"}});
+  arrange(*verb, "",
+          {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|latex|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
       "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
       "         xdg-open runs/q1-smoke/report.html\n"
+      "All runs, with a page over them: lgabench report runs/*\n"
       "The paper's claims: lgabench report runs/q2 --claims\n"
       "Two rows: lgabench report runs/q1 --difference lga,my_method");
   verb->callback([options, &exit] {
-    const fs::path run = options->run;
+    if (options->runs.size() > 1) {
+      if (options->claims || !options->difference.empty() || options->format != "text")
+        throw InputError("report: several runs have a page and a table; give one run for anything else");
+      report_all(options->runs, options->index);
+      exit = ok;
+      return;
+    }
+    if (!options->index.empty()) throw InputError("--index: expected several runs");
+    const fs::path run = options->runs.front();
     expect_run(run);
     const report::Report report = report::write_report(run);
     if (options->claims) {
@@ -93,6 +123,9 @@ void add_report(CLI::App& app, int& exit) {
     }
     if (options->format == "text")
       print_tables(report);
+    else if (options->format == "latex")
+      for (const report::Grid* grid : report.document.grids())
+        to_stdout("% {}\n{}\n", grid->caption, report::latex(*grid));
     else if (options->format == "md")
       to_stdout("{}", read_file(run / "report.md"));
     else

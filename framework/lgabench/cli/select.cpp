@@ -14,6 +14,7 @@
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
 
@@ -121,9 +122,7 @@ std::string list(const std::vector<std::string>& names, const std::vector<std::s
 
 // "precision .71, recall 1.00 of 4 true ones", where there is a truth.
 std::string describe(const Json& quality) {
-  const auto share = [](const Json& value) {
-    return value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>());
-  };
+  const auto share = [](const Json& value) { return value.is_null() ? "-" : fixed(value.get<double>()); };
   return fmt::format("{} selected, {} true: precision {}, recall {}", quality.at("size").get<int>(),
                      quality.at("true_size").get<int>(), share(quality.at("precision")), share(quality.at("recall")));
 }

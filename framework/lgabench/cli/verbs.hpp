@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -34,10 +35,14 @@ void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
+void add_cluster(CLI::App& app, int& exit);
+void add_status(CLI::App& app, int& exit);
+void add_leaderboard(CLI::App& app, int& exit);
 void add_new_plugin(CLI::App& app, int& exit);
 void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
+void add_study(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);
@@ -59,6 +64,9 @@ inline CLI::Validator within(double low, double high) {
       },
       fmt::format("FLOAT in [{} - {}]", low, high), "");
 }
+
+/// The rows that every run has beside its methods, and what they do: {"id", "summary"} each.
+Json reference_rows();
 
 /// A check for an option: one of those words.
 inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {

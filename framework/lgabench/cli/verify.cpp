@@ -22,6 +22,7 @@
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/report/agreement.hpp>
+#include <lgabench/report/pairs.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -155,9 +156,9 @@ void print_other_bytes(const std::vector<Recomputed>& verdicts) {
   const std::ptrdiff_t others = other_bytes(verdicts);
   if (others == 0) return;
   for (const report::PooledAgreement& pool : pooled(verdicts))
-    to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar p = {:.3f}){}\n",
+    to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar {}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
-              pool.p_holm, pool.differs() ? ": differs" : "");
+              report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
   to_stdout("NOT bit-identical: {} of {} cells\n", others, verdicts.size());
   if (const auto excused = others - differing(verdicts))
     to_stdout(

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <lgabench/core/action.hpp>
@@ -50,6 +51,9 @@ class TrainingLog {
   virtual ~TrainingLog() = default;
   /// After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass.
   virtual void epoch(int epochs, long long steps, double loss) = 0;
+  /// Before it, any number of times: another value of that pass, as a validation loss. A report draws a curve of each
+  /// name: 1 to 40 letters, digits and "_".
+  virtual void curve(const std::string& name, double value) { static_cast<void>(name), static_cast<void>(value); }
 };
 
 /// What the host lends to a method for the length of a call.

@@ -102,7 +102,7 @@ void check_recorded(const std::string& answers, const std::vector<std::string>& 
         answers, fmt::join(lacking, ", "), fmt::join(known, " | "), no_answers));
 }
 
-std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector<Participant>& all) {
+std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {
   std::error_code error;
   const std::vector<std::string> names = json_names(directory, error);
   if (error || names.empty())
@@ -116,7 +116,12 @@ std::vector<AnswerFile> read_participants(const fs::path& directory, std::vector
       if (other.id == participant.id)
         throw InputError(
             fmt::format("{}: /participant: \"{}\" has another file there, expected one each", file.string(), other.id));
+    if (participant.rehearsal && !rehearsal)
+      throw InputError(fmt::format("{}: /rehearsal: no person's answers; --rehearsal runs on them, and marks the run",
+                                   file.string()));
+    participant.rehearsal = rehearsal;
     files.push_back({participant.sha256 + ".json", file, {{"participant", participant.id}}});
+    if (rehearsal) files.back().about["rehearsal"] = true;
     all.push_back(std::move(participant));
   }
   return files;

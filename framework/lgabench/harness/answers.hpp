@@ -47,7 +47,8 @@ void drop_other_replies(const std::string& but, const std::filesystem::path& run
 void check_recorded(const std::string& answers, const std::vector<std::string>& scenarios);
 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
-/// of one participant.
-std::vector<AnswerFile> read_participants(const std::filesystem::path& directory, std::vector<Participant>& all);
+/// of one participant. A file of a rehearsal is refused unless `rehearsal`, which marks all of them.
+std::vector<AnswerFile> read_participants(const std::filesystem::path& directory, bool rehearsal,
+                                          std::vector<Participant>& all);
 
 }  // namespace lgabench

@@ -17,7 +17,7 @@ Answering participants(const Competitor& method, const Scenario& scenario, const
   const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
-    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256});
+    if (one.answered_all(scenario, how)) some.push_back(CellParticipant{one.id, one.sha256, one.rehearsal});
   return some;
 }
 
@@ -29,8 +29,32 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
-// The suite's own arms come after the scenario's.
-Scenario with_arms(const Scenario& scenario, const Suite& suite) {
+// Training seeds of cells that play different test scenes: all, or 0 alone where all play the same.
+std::vector<std::uint64_t> scene_sets(const Grid& grid) {
+  return grid.test_scenes == "per_seed" ? grid.seeds : std::vector<std::uint64_t>{0};
+}
+
+}  // namespace
+
+Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const std::string& answers) {
+  Cell cell;
+  cell.suite = suite.id;
+  cell.environment = suite.environment;
+  cell.scenario = scenario.json;
+  cell.scene_seed = grid.scene_seed;
+  cell.test_scenes = grid.test_scenes;
+  cell.episodes = grid.episodes;
+  cell.answers = answers;
+  cell.data = data_hashes(scenario, cell.answers);
+  cell.smoke = grid.smoke;
+  return cell;
+}
+
+Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) {
+  const Scenario scenario = load_scenario(id, truth);
+  if (scenario.environment != suite.environment)
+    throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
+                                 scenario.environment, suite.environment));
   Json json = scenario.json;
   const Json first = json["tests"].front();
   for (const Json& arm : suite.arms) {
@@ -40,7 +64,7 @@ Scenario with_arms(const Scenario& scenario, const Suite& suite) {
   return read_scenario(json, fmt::format("{}: scenario {} with /arms", suite.file, scenario.id));
 }
 
-}  // namespace
+bool learns(const Competitor& row) { return !row.is_reference() || row.id == "constant_action"; }
 
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
@@ -48,20 +72,8 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
-    const Scenario scenario = with_arms(load_scenario(id, variation.truth), suite);
-    if (scenario.environment != suite.environment)
-      throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
-                                   scenario.environment, suite.environment));
-    Cell cell;
-    cell.suite = suite.id;
-    cell.environment = suite.environment;
-    cell.scenario = scenario.json;
-    cell.scene_seed = grid.scene_seed;
-    cell.test_scenes = grid.test_scenes;
-    cell.episodes = grid.episodes;
-    cell.answers = variation.answers;
-    cell.data = data_hashes(scenario, cell.answers);
-    cell.smoke = grid.smoke;
+    const Scenario scenario = suite_scenario(suite, id, variation.truth);
+    Cell cell = unplayed_cell(suite, grid, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
       cell.method = method;
       cell.demonstrations = demonstrations;
@@ -71,8 +83,6 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
         cells.push_back(cell);
       }
     };
-    // One that learns nothing plays each set of test scenes once.
-    const std::vector<std::uint64_t> scene_sets = cell.scenes_of_seed() ? grid.seeds : std::vector<std::uint64_t>{0};
     const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
     for (const std::string& layout : grid.layouts) {
       for (const std::string& engine : grid.engines) {
@@ -85,7 +95,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
           }
         if (variation.references)
           for (const char* row : {"random_object", "oracle"})
-            for (const std::uint64_t seed : scene_sets) add(reference(row), 0, seed);
+            for (const std::uint64_t seed : scene_sets(grid)) add(reference(row), 0, seed);
       }
     }
   }

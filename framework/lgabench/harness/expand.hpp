@@ -20,6 +20,15 @@ struct Variation {
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
+/// A suite's scenario: its own arms, then those that the suite adds. @throws InputError for one of another environment.
+Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth);
+/// A cell of the grid without its layout, engine, method, demonstrations and training seed.
+Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const std::string& answers);
+
+/// Whether the row has a cell for every number of demonstrations and training seed. A reference row that learns nothing
+/// has one, with no demonstrations, for each set of test scenes.
+bool learns(const Competitor& row);
+
 /// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// @throws as competitors(); PluginError for an unknown engine, InputError for a method that no participant answered at

@@ -39,7 +39,6 @@ std::string Forecast::text(int jobs) const {
 Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,
                   int jobs) {
   Forecast all;
-  double work_s = 0, longest_s = 0;
   const auto row_of = [&all](const Cell& cell) -> Forecast::Row& {
     for (Forecast::Row& row : all.rows)
       if (row.name == cell.method.name) return row;
@@ -60,8 +59,8 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
                    : other.empty()       ? "cells measured elsewhere"
                                          : other + "'s cells";
     row.seconds += seconds;
-    work_s += seconds;
-    longest_s = std::max(longest_s, seconds);
+    all.work_s += seconds;
+    all.longest_s = std::max(all.longest_s, seconds);
     all.run_bytes += cell_bytes + episode_bytes * cell.episodes * number(cell.scenario, "tests");
     double& most = demonstrations[{cell.scenario_id(), cell.layout, cell.engine, row.name, cell.training_seed}];
     most = std::max(most, cell.demonstrations * number(cell.scenario, "commands"));
@@ -70,7 +69,7 @@ Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<co
   for (const Cell* cell : complete) add(*cell, true);
   for (const auto& each : demonstrations) all.cache_bytes += demonstration_bytes * each.second;
   const double cores = std::min<double>(jobs, std::max(1u, std::thread::hardware_concurrency()));
-  all.wall_s = std::max(work_s / cores, longest_s);
+  all.wall_s = std::max(all.work_s / cores, all.longest_s);
   return all;
 }
 

@@ -17,6 +17,7 @@ struct Forecast {
   };
   std::vector<Row> rows;  // in the order of the cells
   std::size_t cells = 0, there = 0;
+  double work_s = 0, longest_s = 0;  // of one core: all cells, the longest
   double wall_s = 0;
   double run_bytes = 0, cache_bytes = 0;  // more on the disk; of the cache at most
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <chrono>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include <lgabench/core/run_layout.hpp>
@@ -83,8 +84,9 @@ void expect_same_programs(const Part& first, const Part& other) {
 
 // Adds to a list of `all` what `more` has beyond it.
 void unite(Json& all, const Json& more) {
+  std::set<Json> there(all.begin(), all.end());
   for (const Json& item : more)
-    if (std::find(all.begin(), all.end(), item) == all.end()) all.push_back(item);
+    if (there.insert(item).second) all.push_back(item);
 }
 
 // What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
@@ -191,6 +193,7 @@ const Part& with_all_replies(const std::vector<Part>& parts) {
 
 Json merged_json(Json json, const std::vector<Part>& parts, const Json& answers, const std::string& command) {
   Json merged = Json::array();
+  json.erase("shard");
   if (!answers.is_null()) json["answers"] = answers;
   for (const Part& part : parts) {
     Json own = Json::object();

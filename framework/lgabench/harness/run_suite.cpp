@@ -70,6 +70,12 @@ void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
   }
 }
 
+// Which part of the run is played here; null where all of it is.
+Json shard_json(const RunPlan& plan) {
+  if (plan.shard.count == 1) return nullptr;
+  return {{"index", plan.shard.index}, {"count", plan.shard.count}, {"cells", cells_of(plan.cells, plan.shard).size()}};
+}
+
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
   std::vector<std::string> keys;
   Json plugins = Json::array();
@@ -102,6 +108,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"plugins", plugins},
           {"build", programs},
           {"version", LGABENCH_VERSION},
+          {"program", plan.program},
           {"command", plan.command},
           {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
           {"answers", answers_json(plan.answers)},
@@ -256,6 +263,7 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
 
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
+  directory.amend("shard", shard_json(plan));
   keep_answers(plan.answers, plan.out);
   const bool asks = plan.live && plan.live->asks;
   if (asks) expect_replies_of(plan);

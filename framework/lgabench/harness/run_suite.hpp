@@ -20,6 +20,7 @@ struct RunPlan {
   Shard shard;                // the part of them that is played here
   Json request;               // the settings that led to the cells, for run.json
   std::string command;        // as typed
+  std::string program{};      // as --version says, for run.json
   std::filesystem::path out;  // the run directory
   std::filesystem::path cache;
   std::vector<AnswerFile> answers{};  // that the cells name

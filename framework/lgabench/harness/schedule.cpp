@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -31,23 +32,40 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard) {
 }
 
 Schedule::Schedule(const std::vector<const Cell*>& cells) {
-  for (const Cell* cell : cells) left_.push_back({cell, usual_seconds(*cell)});
+  std::map<std::string, std::size_t> known;
+  std::size_t place = 0;
+  for (const Cell* cell : cells) {
+    const auto [row, is_new] = known.emplace(cell->method.name, rows_.size());
+    if (is_new) rows_.push_back({cell->method.name, {}, 0});
+    Row& all = rows_[row->second];
+    all.left.push_back({cell, usual_seconds(*cell), place++});
+    all.usual_s += all.left.back().usual_s;
+  }
+  for (Row& row : rows_)
+    std::sort(row.left.begin(), row.left.end(), [](const Waiting& a, const Waiting& b) {
+      return std::pair(a.usual_s, b.place) < std::pair(b.usual_s, a.place);
+    });
 }
 
 double Schedule::left_s() const {
-  return std::accumulate(left_.begin(), left_.end(), 0.,
-                         [this](double sum, const Waiting& one) { return sum + expected_s(one); });
+  return std::accumulate(rows_.begin(), rows_.end(), 0., [this](double sum, const Row& row) {
+    return sum + costs_.expected_seconds(row.name, row.usual_s);
+  });
 }
 
 const Cell* Schedule::next() {
-  const auto urgency = [this](const Waiting& one) {
-    return std::pair(!costs_.knows(one.cell->method.name), expected_s(one));
+  const auto urgency = [this](const Row& row) {
+    const Waiting& one = row.left.back();
+    return std::tuple(!costs_.knows(row.name), costs_.expected_seconds(row.name, one.usual_s),
+                      -static_cast<double>(one.place));
   };
-  const auto longest = std::max_element(left_.begin(), left_.end(),
-                                        [&](const Waiting& a, const Waiting& b) { return urgency(a) < urgency(b); });
-  const Cell* cell = longest->cell;
-  left_.erase(longest);
-  return cell;
+  const auto longest =
+      std::max_element(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) { return urgency(a) < urgency(b); });
+  const Waiting given = longest->left.back();
+  longest->left.pop_back();
+  longest->usual_s -= given.usual_s;
+  if (longest->left.empty()) rows_.erase(longest);
+  return given.cell;
 }
 
 }  // namespace lgabench

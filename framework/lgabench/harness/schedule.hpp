@@ -40,10 +40,16 @@ class Schedule {
   struct Waiting {
     const Cell* cell;
     double usual_s;
+    std::size_t place;  // among the cells as they were given: of two that take as long the earlier goes first
   };
-  double expected_s(const Waiting& one) const { return costs_.expected_seconds(one.cell->method.name, one.usual_s); }
+  // Of one row: what is learnt of it changes all of its cells alike, so that their order stays.
+  struct Row {
+    std::string name;
+    std::vector<Waiting> left;  // the longest last
+    double usual_s = 0;         // over all of them
+  };
 
-  std::vector<Waiting> left_;
+  std::vector<Row> rows_;  // that have cells left
   Costs costs_;
 };
 

@@ -225,8 +225,11 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
   Asked asked(none, services);
   const auto answer = [&](const Frame& frame, Channel& channel) {
     if (frame.type() != "log") return asked.answer(frame, channel);
-    for (const auto& [epochs, steps, loss] : protocol::read_or_malformed([&] { return protocol::read_log(frame); }))
+    for (const auto& [epochs, steps, loss, curves] :
+         protocol::read_or_malformed([&] { return protocol::read_log(frame); })) {
+      for (const auto& [name, value] : curves) services.log.curve(name, value);
       services.log.epoch(epochs, steps, loss);
+    }
     return true;
   };
   const protocol::DemonstrationFile packed = protocol::pack(session_->layout(), demonstrations);

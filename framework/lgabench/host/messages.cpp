@@ -136,11 +136,24 @@ ProcessState read_state(const JsonReader& reader) {
 
 Frame log_frame(const std::vector<LogEntry>& entries) {
   Frame frame{{{"type", "log"}, {"epochs", Json::array()}, {"steps", Json::array()}}};
+  Json curves = Json::array();
+  bool any = false;
   for (const LogEntry& entry : entries) {
     frame.header["epochs"].push_back(entry.epochs);
     frame.header["steps"].push_back(entry.steps);
-    frame.payload.append(reinterpret_cast<const char*>(&entry.loss), sizeof entry.loss);
+    const auto append = [&frame](double value) {
+      frame.payload.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    append(entry.loss);
+    Json names = Json::array();
+    for (const auto& [name, value] : entry.curves) {
+      names.push_back(name);
+      append(value);
+    }
+    curves.push_back(names);
+    any = any || !names.empty();
   }
+  if (any) frame.header["curves"] = curves;
   return frame;
 }
 
@@ -149,11 +162,25 @@ std::vector<LogEntry> read_log(const Frame& frame) {
   const std::vector<JsonReader> epochs = reader.at("epochs").elements(), steps = reader.at("steps").elements();
   std::vector<LogEntry> entries(epochs.size());
   if (steps.size() != entries.size()) reader.at("steps").fail("as many as epochs");
-  if (frame.payload.size() != entries.size() * sizeof(double)) reader.fail("a payload of a double for each epoch");
+  std::vector<std::vector<std::string>> names(entries.size());
+  if (reader.has("curves")) {
+    const std::vector<JsonReader> lists = reader.at("curves").elements();
+    if (lists.size() != entries.size()) reader.at("curves").fail("as many as epochs");
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = lists[i].strings();
+  }
+  std::size_t at = 0, all = entries.size();
+  for (const auto& of_entry : names) all += of_entry.size();
+  if (frame.payload.size() != all * sizeof(double)) reader.fail("a payload of a double for each epoch and curve");
+  const auto next = [&] {
+    double value = 0;
+    std::memcpy(&value, frame.payload.data() + sizeof(double) * at++, sizeof value);
+    return value;
+  };
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i].epochs = static_cast<int>(epochs[i].integer(0, 1 << 30));
     entries[i].steps = steps[i].integer(0, 1LL << 60);
-    std::memcpy(&entries[i].loss, frame.payload.data() + i * sizeof(double), sizeof(double));
+    entries[i].loss = next();
+    for (const std::string& name : names[i]) entries[i].curves.emplace_back(name, next());
   }
   return entries;
 }

@@ -2,6 +2,7 @@
 // What reads throws InputError for a value of another kind; whoever reads knows whose fault that is.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/method.hpp>
@@ -52,8 +53,9 @@ struct LogEntry {
   int epochs = 0;
   long long steps = 0;
   double loss = 0;
+  std::vector<std::pair<std::string, double>> curves{};
 };
-/// "log": NaN and infinite losses included.
+/// "log": NaN and infinite values included.
 Frame log_frame(const std::vector<LogEntry>& entries);
 std::vector<LogEntry> read_log(const Frame& frame);
 

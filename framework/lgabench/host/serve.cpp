@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <lgabench/host/messages.hpp>
@@ -97,8 +98,12 @@ class RemoteLog : public TrainingLog {
   explicit RemoteLog(Channel& channel) : channel_(channel) {}
   void epoch(int epochs, long long steps, double loss) override {
     constexpr std::size_t most = 1000;
-    waiting_.push_back({epochs, steps, loss});
+    waiting_.push_back({epochs, steps, loss, std::exchange(curves_, {})});
     if (waiting_.size() == most || Clock::now() - sent_ > std::chrono::milliseconds(500)) flush();
+  }
+  void curve(const std::string& name, double value) override {
+    constexpr std::size_t most = 100;  // far more than the worker takes
+    if (curves_.size() < most) curves_.emplace_back(name, value);
   }
   void flush() {
     if (waiting_.empty()) return;
@@ -112,6 +117,7 @@ class RemoteLog : public TrainingLog {
   using Clock = std::chrono::steady_clock;
   Channel& channel_;
   std::vector<protocol::LogEntry> waiting_;
+  std::vector<std::pair<std::string, double>> curves_;  // of the pass that epoch() ends
   Clock::time_point sent_ = Clock::now();
 };
 

@@ -57,6 +57,7 @@ Json to_json(const Cell& cell) {
             {"smoke", cell.smoke}};
   if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
+  if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
   return json;
 }
 
@@ -89,8 +90,9 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.answers = reader.at("answers").string();
   if (reader.has("participant")) {
     const JsonReader participant = reader.at("participant");
-    participant.only({"id", "sha256"});
-    cell.participant = CellParticipant{participant.at("id").string(), participant.at("sha256").string()};
+    participant.only({"id", "sha256", "rehearsal"});
+    cell.participant = CellParticipant{participant.at("id").string(), participant.at("sha256").string(),
+                                       participant.has("rehearsal") && participant.at("rehearsal").boolean()};
   }
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();

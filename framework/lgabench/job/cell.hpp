@@ -25,6 +25,7 @@ struct Competitor {
 /// A person whose answers a cell is based on.
 struct CellParticipant {
   std::string id, sha256;  // pseudonym; of the file
+  bool rehearsal = false;  // no person's answers
 };
 
 /// What Cell::answers begins with where a server's model is asked while cells run; its name follows.

@@ -119,13 +119,11 @@ CheckJob read_check_job(const JsonReader& reader) {
 }
 
 Json to_json(const PictureRequest& request) {
-  Json json{{"cell", request.cell.string()},
-            {"arm", request.arm},
-            {"index", request.index},
-            {"scene", request.scene},
-            {"selections", request.selections}};
-  if (!request.engines.empty()) json["engines"] = request.engines;
-  if (!request.action.empty()) json["action"] = request.action;
+  Json json{{"cell", request.cell.string()},    {"arm", request.arm},
+            {"index", request.index},           {"scene", request.scene},
+            {"selections", request.selections}, {"ends", Json::array()}};
+  for (const PictureRequest::End& end : request.ends)
+    json["ends"].push_back({{"engine", end.engine}, {"action", end.action}});
   return json;
 }
 
@@ -134,9 +132,11 @@ PictureRequest read_picture_request(const JsonReader& reader) {
                          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
                          reader.at("scene").string()};
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
-  if (!reader.has("engines")) return request;
-  request.engines = reader.at("engines").strings();
-  for (const JsonReader& number : reader.at("action").elements()) request.action.push_back(number.number());
+  if (!reader.has("ends")) return request;
+  for (const JsonReader& end : reader.at("ends").elements()) {
+    Action& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;
+    for (const JsonReader& number : end.at("action").elements()) action.push_back(number.number());
+  }
   return request;
 }
 

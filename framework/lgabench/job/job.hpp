@@ -69,8 +69,12 @@ struct PictureRequest {
   std::string scene;  // its hash, as in episodes.jsonl
   /// A goal mask is drawn of each: {"distribution", "instances": "all" or "first"}.
   std::vector<Json> selections{};
-  std::vector<std::string> engines{};  // the scene after `action` is drawn on each
-  Action action{};                     // where there are engines
+  /// The scene is drawn after each of these, carried out from its beginning.
+  struct End {
+    std::string engine;
+    Action action{};
+  };
+  std::vector<End> ends{};
 };
 Json to_json(const PictureRequest& request);
 /// @throws InputError

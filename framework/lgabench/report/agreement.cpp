@@ -45,9 +45,8 @@ CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& rec
     both.only_recomputed += pair.only_second;
     p.push_back(mcnemar(pair.only_first, pair.only_second));
     if (pair.only_first + pair.only_second > 0)
-      changed +=
-          fmt::format("{}arm {}: {} of {} succeeded there, {} here (McNemar p = {:.3f})", changed.empty() ? "" : "; ",
-                      arm, pair.won_first, pair.episodes, pair.won_second, p.back());
+      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here (McNemar {})", changed.empty() ? "" : "; ",
+                             arm, pair.won_first, pair.episodes, pair.won_second, p_text(p.back()));
   }
   if (same) return both;
   both.detail = changed.empty() ? "episodes failed otherwise" : changed;

@@ -86,6 +86,40 @@ double percentile_p(const std::vector<double>& sorted) {
       1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) / (static_cast<double>(sorted.size()) + 1));
 }
 
+// A success, or a mean, of every row beside each other: [scenario][policy][scene][row].
+using RowsByScene = std::vector<std::vector<std::vector<std::vector<float>>>>;
+
+RowsByScene transposed(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows) {
+  RowsByScene all(rows.front().size());
+  for (std::size_t s = 0; s < all.size(); ++s) {
+    all[s].resize(rows.front()[s].size());
+    for (std::size_t u = 0; u < all[s].size(); ++u) {
+      all[s][u].assign(rows.front()[s][u].size(), std::vector<float>(rows.size()));
+      for (std::size_t i = 0; i < all[s][u].size(); ++i)
+        for (std::size_t r = 0; r < rows.size(); ++r) all[s][u][i][r] = static_cast<float>(rows[r][s][u][i]);
+    }
+  }
+  return all;
+}
+
+void add_to(std::vector<float>& sums, const std::vector<float>& values, float times) {
+  for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += times * values[r];
+}
+
+// Adds the mean of one scenario in one resample, for every row: as crossed_mean() and nested_mean().
+void add_resampled(const std::vector<std::vector<std::vector<float>>>& units, bool shared, RandomStream& random,
+                   std::vector<float>& sums) {
+  const auto count = static_cast<std::uint32_t>(units.size()), scenes = static_cast<std::uint32_t>(units[0].size());
+  const std::uint32_t drawn_units = shared ? count : count - 1;
+  const float weight = 1 / static_cast<float>(drawn_units * scenes);
+  std::vector<std::uint32_t> of_all;  // scenes that all drawn units share
+  for (std::uint32_t j = 0; shared && j < scenes; ++j) of_all.push_back(random.below(scenes));
+  for (std::uint32_t i = 0; i < drawn_units; ++i) {
+    const std::vector<std::vector<float>>& unit = units[random.below(count)];
+    for (std::uint32_t j = 0; j < scenes; ++j) add_to(sums, unit[shared ? of_all[j] : random.below(scenes)], weight);
+  }
+}
+
 }  // namespace
 
 void Outcomes::add(const std::string& participant, std::vector<std::string> scenes, std::vector<double> values) {
@@ -164,6 +198,47 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
   change.interval = percentile_interval(means);
   change.p = percentile_p(means);
   return change;
+}
+
+SharedResamples::SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
+                                 std::string_view name) {
+  constexpr std::size_t resamples = 10000;
+  const RowsByScene scenarios = transposed(rows);
+  for (const auto& units : scenarios)
+    scenes_ += static_cast<double>((shared ? 1 : units.size()) * units.front().size());
+  RandomStream random(name);
+  means_.assign(rows.size(), std::vector<float>(resamples));
+  std::vector<float> sums(rows.size());
+  for (std::size_t k = 0; k < resamples; ++k) {
+    sums.assign(rows.size(), 0);
+    for (const auto& units : scenarios) add_resampled(units, shared, random, sums);
+    for (std::size_t r = 0; r < rows.size(); ++r) means_[r][k] = sums[r] / static_cast<float>(scenarios.size());
+    const int one = times_drawn(random), other = times_drawn(random);
+    imagined_.emplace_back(one, other);
+  }
+}
+
+Interval SharedResamples::interval(std::size_t row) const {
+  std::vector<double> means;
+  for (std::size_t k = 0; k < imagined_.size(); ++k) {
+    const auto [one, other] = imagined_[k];
+    means.push_back((means_[row][k] * scenes_ + one) / (scenes_ + one + other));
+  }
+  std::sort(means.begin(), means.end());
+  return percentile_interval(means);
+}
+
+double SharedResamples::p(std::size_t one, std::size_t other) const {
+  constexpr double rounding = 1e-6;  // of single precision
+  std::size_t up_to_zero = 0, from_zero = 0;
+  for (std::size_t k = 0; k < imagined_.size(); ++k) {
+    const double sum =
+        (static_cast<double>(means_[other][k]) - means_[one][k]) * scenes_ + imagined_[k].first - imagined_[k].second;
+    up_to_zero += sum <= rounding * scenes_;
+    from_zero += sum >= -rounding * scenes_;
+  }
+  return std::min(1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) /
+                           (static_cast<double>(imagined_.size()) + 1));
 }
 
 }  // namespace lgabench::report

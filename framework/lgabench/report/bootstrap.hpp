@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <lgabench/report/statistics.hpp>
@@ -60,5 +61,24 @@ Interval success_interval(const Samples& scenarios, std::string_view name);
 /// each tail with one added (Davison and Hinkley 1997, 4.2); for a single pair of policies Bonett and Price's interval
 /// and McNemar's p.
 Change paired_change(const Samples& scenarios, std::string_view name, int resamples = 10000);
+
+/// The same resamples for many rows that played the same scenes, so that any two of them are paired: the tests above,
+/// of every pair, for little more than the cost of one. 10,000 resamples.
+class SharedResamples {
+ public:
+  /// `rows`: of each row, scenario, policy and scene the success, or a mean of it. `shared`: as Sample::shared.
+  /// @pre all rows have as many scenarios, policies and scenes; none is empty
+  SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
+                  std::string_view name);
+  /// As success_interval(), of a row's mean.
+  Interval interval(std::size_t row) const;
+  /// As paired_change(): two-sided p that two rows are equally good.
+  double p(std::size_t one, std::size_t other) const;
+
+ private:
+  double scenes_ = 0;
+  std::vector<std::vector<float>> means_;      // of each row, in each resample: over what was drawn
+  std::vector<std::pair<int, int>> imagined_;  // of each resample, how often either imagined scene was drawn
+};
 
 }  // namespace lgabench::report

@@ -24,7 +24,8 @@ class Drawing {
     canvas_.text(chart_.title, 8, 18, Anchor::start, std::min(13., fits), true, Ink::ink);
     if (!chart_.subtitle.empty()) canvas_.text(chart_.subtitle, 8, 33, Anchor::start, small_text, false, Ink::soft);
     axes();
-    for (const Series::Kind kind : {Series::reference, Series::published, Series::measured}) draw_all(kind);
+    for (const Series::Kind kind : {Series::reference, Series::published, Series::curve, Series::measured})
+      draw_all(kind);
     return chart_.legend ? legend() : chart_.height;
   }
 
@@ -32,7 +33,9 @@ class Drawing {
   double x_of(double at) const {
     return left + (at - chart_.left) / (chart_.right - chart_.left) * (chart_.width - left - right);
   }
-  double y_of(double rate) const { return top_ + (1 - rate) * (chart_.height - top_ - bottom); }
+  double y_of(double value) const {
+    return top_ + (chart_.top - value) / (chart_.top - chart_.bottom) * (chart_.height - top_ - bottom);
+  }
   // Points between two ticks.
   double gap() const {
     return chart_.ticks.size() < 2 ? chart_.width - left - right : x_of(chart_.ticks[1].at) - x_of(chart_.ticks[0].at);
@@ -43,10 +46,15 @@ class Drawing {
   }
 
   void axes() {
-    for (int tenth = 0; tenth <= 10; tenth += 2) {
-      const double y = y_of(tenth / 10.0);
+    std::vector<Chart::Tick> levels = chart_.levels;
+    for (int tenth = 0; tenth <= 10 && chart_.levels.empty(); tenth += 2) {
+      const double value = chart_.bottom + (chart_.top - chart_.bottom) * tenth / 10;
+      levels.push_back({value, chart_.top == 1 ? fmt::format("{:.1f}", value) : fmt::format("{:g}", value)});
+    }
+    for (const Chart::Tick& level : levels) {
+      const double y = y_of(level.at);
       canvas_.path({{'m', {left, y}}, {'l', {chart_.width - right, y}}}, grid);
-      canvas_.text(fmt::format("{:.1f}", tenth / 10.0), left - 7, y + 4, Anchor::end, small_text, false, Ink::soft);
+      canvas_.text(level.label, left - 7, y + 4, Anchor::end, small_text, false, Ink::soft);
     }
     const double foot = chart_.height - bottom;
     const bool slanted = std::any_of(chart_.ticks.begin(), chart_.ticks.end(), [this](const Chart::Tick& tick) {
@@ -84,6 +92,11 @@ class Drawing {
       }
     }
     if (series.joined || series.kind == Series::reference) canvas_.path(line, line_pen(series));
+    if (series.kind == Series::curve && !series.points.empty()) {
+      const ChartPoint& last = series.points.back();
+      canvas_.path(mark_path(series.style, x_of(last.x), y_of(last.y), radius), mark_pen(series.style));
+      return canvas_.close();
+    }
     for (const ChartPoint& point : series.points) {
       const double x = x_of(point.x) + shift;
       canvas_.open(point, series.kind);
@@ -127,7 +140,7 @@ class Drawing {
       x += wide + between;
     };
     for (const Series& series : chart_.series)
-      if (series.kind == Series::measured) entry(series, series.name);
+      if (series.kind == Series::measured || series.kind == Series::curve) entry(series, series.name);
     for (const Series& series : chart_.series)
       if (series.kind == Series::reference) entry(series, series.name + " (reference)");
     for (const Series& series : chart_.series)

@@ -17,16 +17,17 @@ struct ChartPoint {
   std::optional<std::size_t> row{};
 };
 
-/// What belongs to one method, reference row, or curve of the paper's.
+/// What belongs to one method, reference row, or curve of the paper's. A curve is a line of many points, none of them
+/// marked but the last.
 struct Series {
-  enum Kind { measured, published, reference } kind = measured;
+  enum Kind { measured, published, reference, curve } kind = measured;
   std::string name;
   MethodStyle style;
   bool joined = false;  // by a line; else a reference is a short level at each place
   std::vector<ChartPoint> points{};
 };
 
-/// Success, from 0 to 1, over places along an axis.
+/// Values over places along an axis: success, unless it says what.
 struct Chart {
   struct Tick {
     double at = 0;
@@ -36,7 +37,8 @@ struct Chart {
   std::string title, subtitle, axis, alternative;  // alternative: the text for those who do not see it
   double width = 640, height = 400;                // in points, without the legend
   double left = 0, right = 1;                      // of the axis
-  std::vector<Tick> ticks{};
+  double bottom = 0, top = 1;                      // of the values
+  std::vector<Tick> ticks{}, levels{};             // along the axis; of the values, where five equal steps are not wanted
   std::vector<Series> series{};
   bool legend = true;
 };

@@ -69,7 +69,9 @@ std::string reasons(const std::vector<ClaimedDifference>& differences, Test test
   return all.empty() ? "no method's cell has been played" : fmt::format("{}", fmt::join(all, "; "));
 }
 
-void conclude(Claim& claim) {
+void conclude(Claim& claim, const Field& field) {
+  claim.rehearsal = field.rehearsal && std::any_of(claim.differences.begin(), claim.differences.end(),
+                                                   [](const auto& d) { return d.participants > 0; });
   const bool refused = !claim.reason.empty();  // before any row was looked at
   claim.verdict = worst(claim.differences, &ClaimedDifference::these);
   claim.alike = worst(claim.differences, &ClaimedDifference::alike);
@@ -174,34 +176,47 @@ Seconds seconds_of(const Field& field, const std::string& method) {
   return seconds;
 }
 
-// Seconds a command, of each participant on the mean over those that they answered in both ways.
+// Slow minus fast, of each participant: the mean over the commands that they answered in both ways. In a crossover
+// nobody did: there it is the difference of their two means.
+std::vector<double> slower_by(const Seconds& slow, const Seconds& fast, std::set<std::string>& scenarios) {
+  const auto mean = [](const Seconds::mapped_type& commands) {
+    double sum = 0;
+    for (const auto& item : commands) sum += item.second;
+    return sum / static_cast<double>(commands.size());
+  };
+  std::vector<double> paired, unpaired;
+  std::set<std::string> of_paired, of_unpaired;
+  for (const auto& [participant, commands] : slow) {
+    const auto other = fast.find(participant);
+    if (other == fast.end()) continue;
+    Seconds::mapped_type both;
+    for (const auto& [command, s] : commands)
+      if (const auto same = other->second.find(command); same != other->second.end()) {
+        both[command] = s - same->second;
+        of_paired.insert(command.first);
+      }
+    if (!both.empty()) paired.push_back(mean(both));
+    unpaired.push_back(mean(commands) - mean(other->second));
+    for (const auto* some : {&commands, &other->second})
+      for (const auto& item : *some) of_unpaired.insert(item.first.first);
+  }
+  scenarios = paired.empty() ? of_unpaired : of_paired;
+  return paired.empty() ? unpaired : paired;
+}
+
 void test_seconds(Claim& claim, const PaperClaim& paper, const Field& field) {
   ClaimedDifference d;
   d.above = paper.above.front().id, d.below = paper.below.front().id, d.unit = "seconds";
   const Seconds slow = seconds_of(field, d.above), fast = seconds_of(field, d.below);
-  std::vector<double> differences;
   std::set<std::string> scenarios;
-  for (const auto& [participant, commands] : slow) {
-    const auto other = fast.find(participant);
-    if (other == fast.end()) continue;
-    double sum = 0;
-    int both = 0;
-    for (const auto& [command, s] : commands)
-      if (const auto same = other->second.find(command); same != other->second.end()) {
-        sum += s - same->second;
-        ++both;
-        scenarios.insert(command.first);
-      }
-    if (both > 0) differences.push_back(sum / both);
-  }
+  const std::vector<double> differences = slower_by(slow, fast, scenarios);
   if (slow.empty() || fast.empty()) {
     claim.reason = "no human data";
   } else {
     d.participants = static_cast<int>(differences.size());
     d.scenarios = static_cast<int>(scenarios.size());
     if (differences.size() < 2)
-      d.these.reason =
-          fmt::format("{} participants answered a command in both ways, expected 2 or more", differences.size());
+      d.these.reason = fmt::format("{} participants answered in both ways, expected 2 or more", differences.size());
     else
       d.these.change = paired_t(differences);
     d.alike.reason = "people are the sample, not scenarios";
@@ -222,7 +237,7 @@ Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field&
     test_equivalence(claim, paper, field);
   else
     test_seconds(claim, paper, field);
-  conclude(claim);
+  conclude(claim, field);
   return claim;
 }
 
@@ -239,7 +254,7 @@ Claim difference_in(const Field& field, const std::string& above, const std::str
       judge_orderings(alone);
       claim.differences.push_back(std::move(alone.front()));
     }
-  conclude(claim);
+  conclude(claim, field);
   return claim;
 }
 

@@ -42,6 +42,7 @@ struct Claim {
   std::string reason;                     // why not tested; else empty
   Verdict alike = Verdict::not_tested;    // on scenarios like these
   std::string reason_alike;
+  bool rehearsal = false;  // based on answers that are no people's
   std::vector<ClaimedDifference> differences;
 };
 

@@ -58,6 +58,7 @@ void Field::add(const CellResult& cell) {
   layout = cell.layout;
   engine = cell.engine;
   if (cell.is_reference()) return;
+  if (cell.rehearsal) rehearsal = true;
   for (const std::string& arm : cell.arms)
     if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
   demonstrations.insert(cell.demonstrations);
@@ -120,7 +121,17 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
     const auto found = row.find(which);
     return found == row.end() ? Field::People() : found->second;
   };
+  // People are asked about some commands: a scenario that they were never asked about is not compared.
+  const auto asked = [](const Field::Policies& row, const std::string& scenario) {
+    bool people_of_row = false, here = false;
+    for (const auto& [which, whose] : row) {
+      people_of_row = people_of_row || whose.rbegin()->first != "";
+      here = here || which.first == scenario;
+    }
+    return here || !people_of_row;
+  };
   for (const auto& item : all) {
+    if (!asked(low, item.first.first) || !asked(high, item.first.first)) continue;
     if (!has_arm(*item.second.begin()->second, arm)) continue;
     const Field::People a = people(low, item.first), b = people(high, item.first);
     for (const std::string& participant : participants(a, b)) {

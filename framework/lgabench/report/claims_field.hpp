@@ -19,6 +19,7 @@ struct Field {
   using Policies = std::map<std::pair<std::string, long long>, People>;
 
   std::string layout, engine;
+  bool rehearsal = false;         // a cell is based on answers that are no people's
   std::vector<std::string> arms;  // as the scenarios list them
   std::set<int> demonstrations;   // of the methods
   std::map<std::string, std::map<int, Policies>> rows;

@@ -1,11 +1,15 @@
 #include <lgabench/report/compare.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
+#include <lgabench/core/rounding.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/old_runs.hpp>
 
@@ -19,18 +23,31 @@ struct CellPair {
   std::vector<std::string> arms{};  // in which both played the same scenes
 };
 
-auto measures(const CellResult& c) {
-  return std::tuple(c.layout, c.engine, c.scenario, c.id, canonical(meaning_of(c.options)),
+// Whose methods differ is measured alike where two `rows` are compared.
+auto measures(const CellResult& c, bool rows) {
+  return std::tuple(c.layout, c.engine, c.scenario, rows ? "" : c.id, rows ? "" : canonical(meaning_of(c.options)),
                     c.demonstrations * c.demonstrated_commands, c.training_seed, c.participant);
 }
 
+// The run without its other rows. @throws InputError where there is no such row
+RunResults only_row(RunResults run, const std::string& name) {
+  std::set<std::string> rows;
+  for (const CellResult& cell : run.cells) rows.insert(cell.method);
+  if (rows.count(name) == 0)
+    throw InputError(run.directory.string() + ": " + none_named("row", name, {rows.begin(), rows.end()}));
+  run.cells.erase(
+      std::remove_if(run.cells.begin(), run.cells.end(), [&](const CellResult& cell) { return cell.method != name; }),
+      run.cells.end());
+  return run;
+}
+
 // Cells that finished in both runs; the others are counted.
-std::vector<CellPair> pair_cells(const RunResults& a, const RunResults& b, RunComparison& comparison) {
-  std::map<decltype(measures(a.cells.front())), const CellResult*> unpaired;
-  for (const CellResult& cell : b.cells) unpaired[measures(cell)] = &cell;
+std::vector<CellPair> pair_cells(const RunResults& a, const RunResults& b, bool rows, RunComparison& comparison) {
+  std::map<decltype(measures(a.cells.front(), rows)), const CellResult*> unpaired;
+  for (const CellResult& cell : b.cells) unpaired[measures(cell, rows)] = &cell;
   std::vector<CellPair> pairs;
   for (const CellResult& cell : a.cells) {
-    const auto other = unpaired.find(measures(cell));
+    const auto other = unpaired.find(measures(cell, rows));
     if (other == unpaired.end()) {
       comparison.only_a += cell.failed ? 0 : 1;
       continue;
@@ -161,16 +178,42 @@ std::vector<ComparedTime> compare_times(const std::vector<CellPair>& pairs) {
 bool ComparedRow::worse() const { return p_holm <= refuse_up_to && change.interval.high < 0; }
 bool ComparedRow::better() const { return p_holm <= refuse_up_to && change.interval.low > 0; }
 
+std::string verdict(const RunComparison& comparison) {
+  std::vector<std::string> worse, better;
+  std::size_t same = 0;
+  for (const ComparedRow& row : comparison.rows) {
+    const std::string place = fmt::format("{}{} ({}, {} demonstrations, {})", display_name(row.method),
+                                          row.method == row.method_a ? "" : " against " + display_name(row.method_a),
+                                          row.layout, row.demonstrations, row.arm);
+    if (row.worse()) worse.push_back(place + " " + signed_text(row.change.difference));
+    if (row.better()) better.push_back(place + " " + signed_text(row.change.difference));
+    same += row.total.same_actions ? 1 : 0;
+  }
+  const std::size_t rows = comparison.rows.size(), other = rows - worse.size() - better.size();
+  std::string text;
+  if (comparison.failed_b > 0)
+    text += fmt::format("{} of A's cells {} in B. ", comparison.failed_b, comparison.failed_b == 1 ? "fails" : "fail");
+  if (rows > 0 && same == rows) return text + fmt::format("B acts as A does in every scene ({} rows).", rows);
+  if (!worse.empty()) text += fmt::format("B is worse: {}. ", fmt::join(worse, "; "));
+  if (!better.empty()) text += fmt::format("B is better: {}. ", fmt::join(better, "; "));
+  if (other > 0)
+    text += fmt::format("{}{} of {} {} beyond chance.", worse.empty() && better.empty() ? "No difference: " : "", other,
+                        rows, other == 1 ? "row does not differ" : "rows do not differ");
+  if (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
 bool RunComparison::regressed() const {
   return failed_b > 0 || std::any_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return row.worse(); });
 }
 
-RunComparison compare_runs(const RunResults& a, const RunResults& b) {
+RunComparison compare_runs(const RunResults& all_a, const RunResults& all_b, const std::optional<RowPair>& rows) {
+  const RunResults a = rows ? only_row(all_a, rows->a) : all_a, b = rows ? only_row(all_b, rows->b) : all_b;
   if (a.suite != b.suite)
     throw InputError(fmt::format("the runs cannot be compared: suite {} in A, {} in B", a.suite, b.suite));
   RunComparison comparison;
   comparison.suite = a.suite;
-  const std::vector<CellPair> pairs = pair_arms(pair_cells(a, b, comparison), comparison);
+  const std::vector<CellPair> pairs = pair_arms(pair_cells(a, b, rows.has_value(), comparison), comparison);
   if (pairs.empty() && !comparison.other_scenes.empty()) {
     const OtherScenes& first = comparison.other_scenes.front();
     throw InputError(

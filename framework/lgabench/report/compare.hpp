@@ -1,5 +1,6 @@
 // Two runs of the same suite, cell by cell.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,14 +53,24 @@ struct RunComparison {
   bool regressed() const;
 };
 
-/// Pairs cells by what they measure: scenario, layout, engine, method and its options (whatever its row is named, see
-/// old_runs.hpp), demonstrations, training seed; their episodes by arm and index. Deterministic.
-/// @throws InputError, in one line that says what differs, for runs of other suites or episodes, and for runs that have
-/// no arm of a cell with the same scenes and commands in common.
-RunComparison compare_runs(const RunResults& a, const RunResults& b);
+/// A row of A by its name, and the one of B that it is compared with.
+struct RowPair {
+  std::string a, b;
+};
 
-/// Every member, under its name; and tables for a terminal.
+/// Pairs cells by what they measure: scenario, layout, engine, method and its options (whatever its row is named, see
+/// old_runs.hpp), demonstrations, training seed; their episodes by arm and index. With `rows`, of one row each,
+/// whatever their methods: the cells of an equal scenario, layout, engine, number of demonstrations and training seed.
+/// Deterministic. @throws InputError, in one line that says what differs, for runs of other suites or episodes, for
+/// runs that have no arm of a cell with the same scenes and commands in common, and for a row that is not there.
+RunComparison compare_runs(const RunResults& a, const RunResults& b, const std::optional<RowPair>& rows = {});
+
+/// "No row is worse: 1 better, 3 the same within chance." Worse is what regressed() says.
+std::string verdict(const RunComparison& comparison);
+
+/// Every member, under its name; and, below the verdict, tables for a terminal, with `each_phase` of the seconds of all
+/// phases.
 Json to_json(const RunComparison& comparison);
-std::string comparison_text(const RunComparison& comparison);
+std::string comparison_text(const RunComparison& comparison, bool each_phase = false);
 
 }  // namespace lgabench::report

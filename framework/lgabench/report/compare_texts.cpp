@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/compare.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/writers.hpp>
@@ -13,16 +14,17 @@ std::string row_name(const ComparedRow& row) {
          (row.method == row.method_a ? "" : fmt::format(" (in A {})", display_name(row.method_a)));
 }
 
-std::string verdict(const ComparedRow& row) {
+std::string word_for(const ComparedRow& row) {
   return row.worse() ? "worse" : row.better() ? "better" : row.total.same_actions ? "same actions" : "";
 }
 
 Json interval_json(const Interval& interval) { return {interval.low, interval.high}; }
 
 std::string seconds_interval(const ComparedTime& time) {
-  return time.cells < 2 ? fmt::format("{:+.3f}", time.change.difference)
-                        : fmt::format("{:+.3f} [{:+.3f}, {:+.3f}]", time.change.difference, time.change.interval.low,
-                                      time.change.interval.high);
+  const std::string difference = signed_text(time.change.difference, 3);
+  return time.cells < 2 ? difference
+                        : fmt::format("{} [{}, {}]", difference, signed_text(time.change.interval.low, 3),
+                                      signed_text(time.change.interval.high, 3));
 }
 
 }  // namespace
@@ -74,6 +76,7 @@ Json to_json(const RunComparison& comparison) {
                       {"why", o.why},
                       {"cells", o.cells}});
   return {{"suite", comparison.suite},
+          {"verdict", verdict(comparison)},
           {"rows", rows},
           {"other_scenes", others},
           {"times", times},
@@ -84,26 +87,27 @@ Json to_json(const RunComparison& comparison) {
           {"failed_b", comparison.failed_b}};
 }
 
-std::string comparison_text(const RunComparison& comparison) {
-  std::string text;
+std::string comparison_text(const RunComparison& comparison, bool each_phase) {
+  std::string text = verdict(comparison) + "\n\n";
   if (!comparison.rows.empty()) {
     Grid rows;
     rows.caption = fmt::format("{}: success, B - A [95 % interval], Holm's p over all rows", comparison.suite);
     rows.heads = {"method", "layout", "engine", "n", "arm", "A", "B", "B - A", "p", "cells worse/better", ""};
     for (const ComparedRow& r : comparison.rows)
-      rows.rows.push_back(
-          {{},
-           {row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
-            fmt::format("{:.2f}", r.success_a), fmt::format("{:.2f}", r.success_b), change_text(r.change),
-            p_text(r.p_holm), fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), verdict(r)}});
+      rows.rows.push_back({{},
+                           {row_name(r), r.layout, r.engine, std::to_string(r.demonstrations), r.arm,
+                            fixed(r.success_a), fixed(r.success_b), change_text(r.change), p_text(r.p_holm),
+                            fmt::format("{}/{} of {}", r.cells_worse, r.cells_better, r.cells), word_for(r)}});
     Grid times;
     times.caption = "Seconds of a cell's phases, B - A [95 % interval of Student's t], Holm's p of Wilcoxon's test";
     times.heads = {"method", "layout", "engine", "phase", "A", "B", "B - A", "p", "cells"};
-    for (const ComparedTime& t : comparison.times)
-      times.rows.push_back({{},
-                            {display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2),
-                             fmt::format("{:.3f}", t.mean_a), fmt::format("{:.3f}", t.mean_b), seconds_interval(t),
-                             p_text(t.p_holm), std::to_string(t.cells)}});
+    for (const ComparedTime& t : comparison.times) {
+      if (!each_phase && t.phase != "total_s") continue;
+      times.rows.push_back(
+          {{},
+           {display_name(t.method), t.layout, t.engine, t.phase.substr(0, t.phase.size() - 2), fixed(t.mean_a, 3),
+            fixed(t.mean_b, 3), seconds_interval(t), p_text(t.p_holm), std::to_string(t.cells)}});
+    }
     text += terminal(rows) + '\n' + terminal(times) + '\n';
   }
   for (const OtherScenes& o : comparison.other_scenes)

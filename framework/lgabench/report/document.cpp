@@ -9,6 +9,12 @@ Span Span::number(std::string text, std::string pointer, Emphasis how) {
   return span;
 }
 
+Span Span::link(std::string words, std::string url) {
+  Span span(std::move(words));
+  span.url = std::move(url);
+  return span;
+}
+
 std::string Cell::text() const {
   std::string all;
   for (const Span& span : spans) all += span.text;

@@ -36,7 +36,10 @@ struct Span {
   /// /claims, else into summary.json; "" for a number that stands in neither.
   static Span number(std::string text, std::string pointer = "", Emphasis how = Emphasis::none);
 
-  std::string text, pointer;
+  /// Words that lead to a page.
+  static Span link(std::string words, std::string url);
+
+  std::string text, pointer, url{};
   Emphasis emphasis = Emphasis::none;
   bool numeric = false;  // the program's own, and needs no escape in Markdown
 };
@@ -59,10 +62,12 @@ struct Cell {
   Spans spans;
   std::optional<MethodStyle> style;     // of the method that the cell names: the page shows its mark
   std::optional<std::size_t> episodes;  // of a row of summary.json: the page shows its episodes on a click
+  std::string outcome;                  // of these episodes: a failure's words; "" for all
   std::optional<double> rate;           // shown as a bar behind the number
   std::vector<BarPart> bar;
   int bar_of = 0;                // the bar's whole width
   std::vector<std::string> log;  // lines, folded
+  std::string link{};            // where a page leads from it
 };
 
 /// A table. Its rows have a cell for each head; rows with equal `group` belong together, which is a column of its own

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 
 #include <lgabench/core/filled.hpp>
 #include <lgabench/report/writers.hpp>
@@ -23,6 +24,7 @@ std::string span_html(const Span& span) {
   const auto& [open, close] = around[static_cast<std::size_t>(span.emphasis)];
   std::string text = escaped(span.text);
   if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
+  if (!span.url.empty()) text = fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
   return open + text + close;
 }
 
@@ -44,9 +46,13 @@ std::string bar_html(const std::vector<BarPart>& parts, int of) {
 std::string cell_html(const Cell& cell) {
   if (cell.bar_of > 0) return bar_html(cell.bar, cell.bar_of);
   std::string text = spans_html(cell.spans);
-  if (cell.episodes)
+  if (cell.episodes && cell.rate)
     text = fmt::format("<button type=button class=rate data-row={} style=\"--rate:{:.0f}%\">{}</button>",
-                       *cell.episodes, cell.rate.value_or(0) * 100, text);
+                       *cell.episodes, *cell.rate * 100, text);
+  else if (cell.episodes)
+    text = fmt::format("<button type=button class=count data-row={} data-outcome=\"{}\">{}</button>", *cell.episodes,
+                       escaped(cell.outcome), text);
+  if (!cell.link.empty()) text = fmt::format("<a href=\"{}\">{}</a>", escaped(cell.link), text);
   if (cell.style)
     text = fmt::format("<span class=\"name{}\">{}{}</span>", cell.style->reference() ? " reference" : "",
                        cell.style->reference() ? "" : svg_mark(*cell.style), text);
@@ -56,31 +62,69 @@ std::string cell_html(const Cell& cell) {
   return text;
 }
 
-// In a frame that scrolls sideways, with its caption. Columns up to the method's name head a row.
+bool is_published(const Cell& cell) {
+  return !cell.spans.empty() && cell.spans.front().emphasis == Emphasis::published;
+}
+
+// The groups' texts, but that of the paper's rows, which stand among others.
+std::set<std::string> groups_of(const Grid& grid) {
+  std::set<std::string> texts;
+  for (const Grid::Row& row : grid.rows)
+    if (!grid.group_head.empty() && !is_published(row.group)) texts.insert(row.group.text());
+  return texts;
+}
+
+// Words that every row repeats in one column, as "layout cells": the caption says them once.
+std::vector<std::string> repeated(const Grid& grid) {
+  std::vector<std::string> words(grid.heads.size());
+  if (grid.rows.size() < 2) return words;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const Cell& first = grid.rows.front().cells[i];
+    const bool plain = !first.style && !first.episodes && first.bar_of == 0 && !first.text().empty() &&
+                       !grid.heads[i].text().empty() && !first.spans.front().numeric;
+    if (plain && std::all_of(grid.rows.begin(), grid.rows.end(),
+                             [&](const Grid::Row& row) { return row.cells[i].text() == first.text(); }))
+      words[i] = grid.heads[i].text() + " " + first.text();
+  }
+  return words;
+}
+
+// In a frame that scrolls sideways, with its caption. A group is a body of its own, below its name; columns up to the
+// method's name head a row.
 std::string grid_html(const Grid& grid) {
-  std::string heads, body;
+  std::string heads, body, group, caption = escaped(grid.caption);
+  const bool grouped = groups_of(grid).size() > 1;
+  const std::vector<std::string> said = repeated(grid);
+  for (const std::string& words : said)
+    if (!words.empty()) caption += "; " + escaped(words);
+  const auto shown = std::count(said.begin(), said.end(), "");
   const auto head = [&heads](const Cell& cell) {
     heads +=
         fmt::format("<th scope=col>{}{}</th>",
                     cell.bar.empty() ? "" : fmt::format("<span class=\"swatch {}\"></span>", cell.bar.front().kind),
                     spans_html(cell.spans));
   };
-  if (!grid.group_head.empty()) head(Span(grid.group_head));
-  for (const Cell& cell : grid.heads) head(cell);
+  for (std::size_t i = 0; i < grid.heads.size(); ++i)
+    if (said[i].empty()) head(grid.heads[i]);
   for (const Grid::Row& row : grid.rows) {
+    if (grouped && !is_published(row.group) && row.group.text() != group) {
+      if (!group.empty()) body += "</tbody>\n<tbody>\n";
+      group = row.group.text();
+      body += fmt::format("<tr class=group><th scope=rowgroup colspan={}>{}</th></tr>\n", shown, cell_html(row.group));
+    }
     std::size_t headed = 0;
     while (headed < row.cells.size() && !row.cells[headed].style) ++headed;
     if (headed == row.cells.size()) headed = 0;  // no method: the first column
     body += row.reference ? "<tr class=reference>" : "<tr>";
-    if (!grid.group_head.empty()) body += "<th scope=row>" + cell_html(row.group) + "</th>";
     for (std::size_t i = 0; i < row.cells.size(); ++i)
-      body += fmt::format(i <= headed ? "<th scope=row>{}</th>" : "<td>{}</td>", cell_html(row.cells[i]));
+      if (said[i].empty())
+        body += fmt::format(i <= headed ? "<th scope=row>{}</th>" : "<td>{}</td>", cell_html(row.cells[i]));
     body += "</tr>\n";
   }
   return fmt::format(
       "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n"
       "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n",
-      escaped(grid.caption), grid.rows.size() > 5 ? " class=sortable" : "", heads, body);
+      caption, grid.rows.size() > 5 ? " class=sortable" : "", heads, body);
 }
 
 std::string charts_html(const Charts& charts) {
@@ -156,7 +200,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-std::string html(const Document& document, const Json& data) {
+std::string html(const Document& document, const Json& data, const std::string& script) {
   std::string body;
   if (!document.headline.empty()) body += "<p class=headline>" + spans_html(document.headline) + "</p>\n";
   body += notes_html(document);
@@ -169,12 +213,16 @@ std::string html(const Document& document, const Json& data) {
         fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
                     section.id, escaped(section.title), blocks);
   }
+  const auto first = std::find_if(document.sections.begin(), document.sections.end(),
+                                  [](const Section& section) { return (section.in & on_page) != 0; });
   const fs::path installed = data_directory() / "page";
-  return filled(read_file(installed / "page.html"), {{"{{title}}", escaped(document.title)},
-                                                     {"{{style}}", read_file(installed / "page.css")},
-                                                     {"{{body}}", body},
-                                                     {"{{data}}", embedded(data)},
-                                                     {"{{script}}", read_file(installed / "page.js")}});
+  return filled(read_file(installed / "page.html"),
+                {{"{{title}}", escaped(document.title)},
+                 {"{{first}}", first == document.sections.end() ? "" : first->id},
+                 {"{{style}}", read_file(installed / "page.css")},
+                 {"{{body}}", body},
+                 {"{{data}}", embedded(data)},
+                 {"{{script}}", read_file(installed / "page.js") + read_file(installed / script)}});
 }
 
 }  // namespace lgabench::report

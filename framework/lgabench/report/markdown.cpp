@@ -30,7 +30,7 @@ std::string text_of(const Spans& spans) {
                          : span.emphasis == Emphasis::published ? "*"
                          : span.emphasis == Emphasis::code      ? "`"
                                                                 : "";
-    text += around + words + around;
+    text += span.url.empty() ? around + words + around : fmt::format("[{}]({})", words, span.url);
   }
   return text;
 }

@@ -14,11 +14,11 @@ namespace lgabench::report {
 namespace {
 
 // Columns and rows of the picture where the action's places lie, to a tenth of a pixel; none for another environment's.
-Json places_of(const CellResult& cell, const Action& action) {
+Json places_of(const std::string& id, const Action& action) {
   static const std::vector<std::string> installed = environment_ids();
   Json all = Json::array();
-  if (std::find(installed.begin(), installed.end(), cell.environment) == installed.end()) return all;
-  const EnvironmentType& environment = find_environment(cell.environment);
+  if (std::find(installed.begin(), installed.end(), id) == installed.end()) return all;
+  const EnvironmentType& environment = find_environment(id);
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;
   const double step = page_step(environment.picture_size());
@@ -28,18 +28,6 @@ Json places_of(const CellResult& cell, const Action& action) {
     all.push_back({tenths(at.x), tenths(at.y)});
   }
   return all;
-}
-
-// Columns and rows of the page's pictures; those of an environment that is not installed are not drawn.
-Json size_of_pictures(const RunResults& run) {
-  const std::vector<std::string> installed = environment_ids();
-  for (const CellResult& cell : run.cells)
-    if (std::find(installed.begin(), installed.end(), cell.environment) != installed.end()) {
-      const PictureSize size = find_environment(cell.environment).picture_size();
-      const int step = page_step(size);
-      return {size.columns / step, size.rows / step};
-    }
-  return {256, 128};
 }
 
 std::string title_of(const Table& table, const Row& row) {
@@ -88,7 +76,7 @@ Json page_data(const Material& material) {
     for (const std::string& arm : cell.arms) {
       std::string outcomes, blamed;  // a character an episode
       std::vector<std::string> hashes;
-      Json given = Json::array(), actions = Json::object();
+      Json given = Json::array(), actions = Json::object(), ends = Json::object();
       const std::vector<PlayedEpisode>& all = cell.episodes.at(arm);
       for (std::size_t i = 0; i < all.size(); ++i) {
         const PlayedEpisode& e = all[i];
@@ -98,7 +86,9 @@ Json page_data(const Material& material) {
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)
-          actions[std::to_string(i)] = places_of(cell, e.action);
+          actions[std::to_string(i)] = places_of(cell.environment, e.action);
+        if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
+          ends[std::to_string(i)] = end->second;
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
       const auto row = [&](const std::string& scenario) {
@@ -110,7 +100,8 @@ Json page_data(const Material& material) {
                         {"commands", given},
                         {"outcomes", outcomes},
                         {"attribution", blamed},
-                        {"actions", actions}});
+                        {"actions", actions},
+                        {"ends", ends}});
     }
     cells.push_back({{"cell", cell.key},
                      {"scenario", cell.scenario},
@@ -125,10 +116,11 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  return {{"failures", words},       {"phi", selections},
-          {"titles", titles},        {"cells", cells},
-          {"scenes", lists},         {"pictures", pictures.scenes},
-          {"masks", pictures.masks}, {"size", size_of_pictures(material.run)}};
+  Json oracle = Json::object();
+  for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
+  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
+          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
+          {"oracle", oracle}};
 }
 
 }  // namespace lgabench::report

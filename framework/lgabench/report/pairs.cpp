@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <lgabench/core/rounding.hpp>
+
 namespace lgabench::report {
 
 std::string why_unpaired(const CellResult& first, const CellResult& second, const std::string& arm) {
@@ -68,9 +70,10 @@ std::vector<std::pair<std::string, double>> PairedRow::by_scenario() const {
 }
 
 std::string change_text(const Change& change) {
-  return fmt::format("{:+.2f} [{:+.2f}, {:+.2f}]", change.difference, change.interval.low, change.interval.high);
+  return fmt::format("{} [{}, {}]", signed_text(change.difference), signed_text(change.interval.low),
+                     signed_text(change.interval.high));
 }
 
-std::string p_text(double p) { return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
+std::string p_text(double p) { return p < 0.001 ? "p < 0.001" : "p = " + fixed(p, 3); }
 
 }  // namespace lgabench::report

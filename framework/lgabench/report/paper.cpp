@@ -125,6 +125,7 @@ PaperValues paper_values(const std::string& suite) {
     const Json published = read_json(published_file);
     const JsonReader reader(published, published_file.string());
     values.figure = entry.at("figure").string();
+    values.title = entry.at("title").string();
     if (entry.has("near")) values.near = entry.at("near").strings();
     if (entry.has("curves"))
       read_curves(reader.at(entry.at("curves").string()), values);

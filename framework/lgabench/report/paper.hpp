@@ -10,7 +10,7 @@ namespace lgabench::report {
 
 /// Success in one of the paper's figures.
 struct PaperValues {
-  std::string figure;  // e.g. "3a"; empty where there is none
+  std::string figure, title;  // e.g. "3a", and what the suite shows; empty where there is none
   // Scenario (mean_scenario: the mean over the paper's own) -> method's display name -> demonstrations -> rate.
   using Rates = std::map<std::string, std::map<std::string, std::map<int, double>>>;
   Rates rates, errors;            // errors: half the length of the error bar, where the figure has one

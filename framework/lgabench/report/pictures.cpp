@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include <lgabench/core/files.hpp>
@@ -23,7 +24,10 @@ namespace {
 struct Request {
   PictureRequest scene;
   std::vector<std::string> masks;   // mask_key of each of its selections
-  std::vector<std::string> ends{};  // end_key of the scene itself, then of each engine that is asked for
+  std::vector<std::string> ends{};  // end_key of each of its ends
+  std::string before{};             // end_key of the scene itself, where engines disagree about its end
+  bool failed = false;              // a method in it
+  std::string environment{};        // whose actions these are
 };
 
 // All that a goal mask depends on beside the scene.
@@ -32,7 +36,8 @@ Json what_is_kept(const CellResult& cell, const Json& selection) {
   return {{"distribution", distribution_of(selection)}, {"instances", chosen.is_string() ? chosen : all}};
 }
 
-// A request for each scene in which a method failed, by index, then as the cells are ordered.
+// A request for each scene that a method played: those in which one failed first, then by index, then as the cells are
+// ordered.
 std::vector<Request> requests_of(const fs::path& run, const RunResults& results) {
   std::map<std::string, std::size_t> place;  // of a scene's request
   std::vector<Request> all;
@@ -41,38 +46,77 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
         const PlayedEpisode& episode = cell.episodes.at(arm)[i];
-        if (episode.success) continue;
         const auto [known, is_new] = place.emplace(episode.scene, all.size());
         if (is_new)
           all.push_back({{run / "cells" / cell.key / "cell.json", arm, static_cast<int>(i), episode.scene}, {}});
+        all[known->second].environment = cell.environment;
+        Request& request = all[known->second];
+        request.failed = request.failed || !episode.success;
         const CommandResult& command = cell.commands[episode.command];
         if (command.quality.is_null()) continue;
-        Request& request = all[known->second];
         const std::string key = mask_key(episode.scene, cell, command.selection);
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
         request.scene.selections.push_back(what_is_kept(cell, command.selection));
       }
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Request& a, const Request& b) { return a.scene.index < b.scene.index; });
+  std::stable_sort(all.begin(), all.end(), [](const Request& a, const Request& b) {
+    return std::tuple(!a.failed, a.scene.index) < std::tuple(!b.failed, b.scene.index);
+  });
   return all;
 }
 
-void add_ends(const fs::path& run, const std::vector<EngineAgreement>& agreements, std::vector<Request>& requests) {
+// How the methods' episodes in these scenes ended, each row's in turn.
+void add_ends(const RunResults& results, std::vector<Request>& requests) {
+  std::map<std::string, Request*> request_of;  // by the scene's hash
+  for (Request& request : requests) request_of[request.scene.scene] = &request;
+  struct Candidate {
+    int before, demonstrations;  // of its row and outcome
+    const CellResult* cell;
+    const std::string* arm;
+    std::size_t index;
+    const PlayedEpisode& episode() const { return cell->episodes.at(*arm)[index]; }
+  };
+  std::vector<Candidate> all;
+  std::map<std::tuple<std::string, std::string, std::string, std::string, int, std::string, bool>, int> so_far;
+  for (const CellResult& cell : results.cells) {
+    if (cell.failed || cell.is_reference()) continue;
+    for (const std::string& arm : cell.arms)
+      for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
+        const PlayedEpisode& episode = cell.episodes.at(arm)[i];
+        if (episode.action.empty() || request_of.count(episode.scene) == 0) continue;
+        int& before =
+            so_far[{cell.layout, cell.engine, cell.scenario, cell.method, cell.demonstrations, arm, episode.success}];
+        all.push_back({before++, cell.demonstrations, &cell, &arm, i});
+      }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tuple(a.before, -a.demonstrations) < std::tuple(b.before, -b.demonstrations);
+  });
+  if (all.size() > most_ends) all.resize(most_ends);
+  for (const Candidate& c : all) {
+    Request& request = *request_of.at(c.episode().scene);
+    request.scene.ends.push_back({c.cell->engine, c.episode().action});
+    request.ends.push_back(end_key(*c.cell, *c.arm, c.index, c.cell->engine));
+  }
+}
+
+void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& agreements,
+                       std::vector<Request>& requests) {
   std::size_t added = 0;
   for (const EngineAgreement& agreement : agreements)
     for (const Disagreement& d : agreement.disagreements) {
-      if (added++ == most_ends) return;
+      if (added++ == most_disagreements) return;
+      const auto key = [&d](const std::string& engine) { return end_key(*d.cell, d.arm, d.index, engine); };
       requests.push_back({{run / "cells" / d.cell->key / "cell.json",
                            d.arm,
                            static_cast<int>(d.index),
                            d.episode().scene,
                            {},
-                           {agreement.first, agreement.second},
-                           d.episode().action},
+                           {{agreement.first, d.episode().action}, {agreement.second, d.episode().action}}},
                           {},
-                          {end_key(d, ""), end_key(d, agreement.first), end_key(d, agreement.second)}});
+                          {key(agreement.first), key(agreement.second)},
+                          key("")});
     }
 }
 
@@ -105,8 +149,8 @@ std::string mask_key(const std::string& scene, const CellResult& cell, const Jso
   return scene + "/" + sha256(canonical(what_is_kept(cell, selection))).substr(0, 8);
 }
 
-std::string end_key(const Disagreement& d, const std::string& engine) {
-  return fmt::format("{}/{}/{}/{}", d.cell->key, d.arm, d.index, engine);
+std::string end_key(const CellResult& cell, const std::string& arm, std::size_t index, const std::string& engine) {
+  return fmt::format("{}/{}/{}/{}", cell.key, arm, index, engine);
 }
 
 Pictures draw_pictures(const fs::path& run, const RunResults& results, const std::vector<EngineAgreement>& agreements) {
@@ -114,7 +158,8 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
   std::vector<Request> requests = requests_of(run, results);
   pictures.wanted = requests.size();
   if (requests.size() > most_pictures) requests.resize(most_pictures);
-  add_ends(run, agreements, requests);
+  add_ends(results, requests);
+  add_disagreements(run, agreements, requests);
   if (requests.empty()) return pictures;
 
   Json asked = Json::array();
@@ -130,13 +175,16 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
       if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";
       continue;
     }
-    if (!request.ends.empty()) {
-      pictures.ends[request.ends[0]] = drawn.at("picture");
-      for (std::size_t i = 1; i < request.ends.size(); ++i)
-        if (const Json& png = drawn.at("ends").at(i - 1); png.is_string()) pictures.ends[request.ends[i]] = png;
+    for (std::size_t i = 0; i < request.ends.size(); ++i)
+      if (const Json& png = drawn.at("ends").at(i); png.is_string()) pictures.ends[request.ends[i]] = png;
+    if (!request.before.empty()) {
+      pictures.ends[request.before] = drawn.at("picture");
       continue;
     }
-    pictures.scenes[request.scene.scene] = drawn.at("picture");
+    const std::string& scene = request.scene.scene;
+    pictures.scenes[scene] = drawn.at("picture");
+    pictures.targets[scene] = drawn.at("targets");
+    if (drawn.at("oracle").is_array()) pictures.oracle[scene] = {request.environment, drawn.at("oracle").get<Action>()};
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
   }
   return pictures;

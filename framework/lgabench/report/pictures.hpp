@@ -1,17 +1,19 @@
-// Pictures of the scenes in which a method failed, drawn by lgabench-worker: the report links no renderer.
+// Pictures of test scenes, drawn by lgabench-worker: the report links no renderer and no engine.
 #pragma once
 #include <algorithm>
 #include <map>
 #include <string>
+#include <vector>
 
-#include <lgabench/core/observation.hpp>
+#include <lgabench/core/action.hpp>
 #include <lgabench/report/engines.hpp>
 #include <lgabench/report/results.hpp>
 
 namespace lgabench::report {
 
-constexpr std::size_t most_pictures = 150;  // in one page: about 4 MB
-constexpr std::size_t most_ends = 30;       // disagreements of engines that are shown
+constexpr std::size_t most_pictures = 150;      // in one page: about 1 MB
+constexpr std::size_t most_ends = 300;          // episodes whose end is shown: about 1 MB
+constexpr std::size_t most_disagreements = 30;  // of engines that are shown
 
 /// Of a picture a page shows every so manyth pixel, of its rows and of its columns.
 constexpr int page_step(PictureSize picture) { return std::max(1, picture.columns / 256); }
@@ -19,20 +21,25 @@ constexpr int page_step(PictureSize picture) { return std::max(1, picture.column
 struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action
   std::map<std::string, std::string> masks;   // mask_key -> PNG in base64
-  std::map<std::string, std::string> ends;    // end_key -> PNG in base64
-  std::size_t wanted = 0;                     // scenes in which a method failed
-  std::string problem;                        // why one that was asked for is missing; empty if none is
+  std::map<std::string, std::string> ends;    // end_key -> PNG in base64; "" where nothing moved
+  // The scene's hash -> the targets' outline, an SVG path in pixels; and its environment with what the oracle would do.
+  std::map<std::string, std::string> targets;
+  std::map<std::string, std::pair<std::string, Action>> oracle;
+  std::size_t wanted = 0;  // scenes that a method played
+  std::string problem;     // why one that was asked for is missing; empty if none is
 };
 
 /// Names the goal mask that the cell's method is shown of a scene: equal for Selections of one distribution.
 std::string mask_key(const std::string& scene, const CellResult& cell, const Json& selection);
 
-/// Names the picture of a scene after the action on `engine`; "": before it.
-std::string end_key(const Disagreement& disagreement, const std::string& engine);
+/// Names the picture of an episode's scene after its action on `engine`; "": before it.
+std::string end_key(const CellResult& cell, const std::string& arm, std::size_t index, const std::string& engine);
 
-/// Draws the first most_pictures scenes, by index, so that each scenario has its share. A worker that is missing or
-/// fails is the Pictures' problem, not an error.
-/// And the ends of the first most_ends disagreements on both engines; one that cannot be loaded leaves no picture.
+/// Draws the first most_pictures scenes, those in which a method failed first, then by index, so that each scenario has
+/// its share. A worker that is missing or fails is the Pictures' problem, not an error.
+/// Plays most_ends of the episodes in them again, so that each row has its share: the first failure and the first
+/// success of every row, then the second ones, the most demonstrations first.
+/// And the ends of the first most_disagreements on both engines; one that cannot be loaded leaves no picture.
 Pictures draw_pictures(const fs::path& run, const RunResults& results, const std::vector<EngineAgreement>& agreements);
 
 }  // namespace lgabench::report

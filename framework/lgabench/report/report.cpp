@@ -1,6 +1,7 @@
 #include <lgabench/report/report.hpp>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/report/index.hpp>
 #include <lgabench/report/writers.hpp>
 
 namespace lgabench::report {
@@ -44,6 +45,13 @@ Report write_report(const fs::path& run) {
   write_file(run / "report.md", markdown(report.document));
   write_file(run / "report.html", html(report.document, page_data(material)));
   return report;
+}
+
+Document write_index(const std::vector<Report>& reports, const fs::path& file) {
+  Document document = index_document(reports, file.parent_path());
+  const Json none{{"titles", Json::array()}};  // a click leads to the runs' own pages
+  write_file(file, html(document, none));
+  return document;
 }
 
 }  // namespace lgabench::report

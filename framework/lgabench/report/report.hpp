@@ -26,4 +26,7 @@ struct Report {
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 Report write_report(const fs::path& run);
 
+/// Writes `file`, a page over several runs that have a report. Returns its document.
+Document write_index(const std::vector<Report>& reports, const fs::path& file);
+
 }  // namespace lgabench::report

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <set>
 
 #include <lgabench/report/sections.hpp>
@@ -18,8 +17,8 @@ std::string pictures_note(const Pictures& pictures) {
   if (pictures.wanted == 0) return "";
   if (pictures.scenes.empty()) return fmt::format("No pictures of scenes: {}.", pictures.problem);
   std::string text = fmt::format(
-      "Pictures: {} of the {} scenes in which a method failed (at most {}, each scenario’s "
-      "first)",
+      "Pictures: {} of the {} scenes that methods played (at most {}, each scenario’s first, those with a failure "
+      "before others)",
       pictures.scenes.size(), pictures.wanted, most_pictures);
   return text + (pictures.problem.empty() ? "." : fmt::format("; others could not be drawn: {}.", pictures.problem));
 }
@@ -65,7 +64,7 @@ Spans headline(const Material& material) {
     const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations);
     if (!row || !row->success) return false;
     spans.emplace_back(before + display_name(id) + " ");
-    spans.push_back(Span::number(fmt::format("{:.2f}", *row->success), place_of(*row, "success"), Emphasis::strong));
+    spans.push_back(Span::number(fixed(*row->success), place_of(*row, "success"), Emphasis::strong));
     return true;
   };
   bool any = false;
@@ -126,20 +125,24 @@ Cell count_cell(const Row& row, const std::string& member, int count) {
   return Span::number(std::to_string(count), place_of(row, member));
 }
 
-std::string signed_text(double value, int digits) {
-  const double unit = std::pow(10, digits), rounded = std::round(value * unit) / unit;
-  return rounded == 0 ? fmt::format("{:.{}f}", 0., digits) : fmt::format("{:+.{}f}", rounded, digits);
-}
-
 std::string slug(const std::string& text) {
   std::string out;
   for (const char c : text) out += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
   return out;
 }
 
+std::string success_title(const Material& material) {
+  if (!material.paper.title.empty()) return material.paper.title;
+  const std::vector<Table>& tables = material.summary.tables;
+  if (tables.empty()) return "Success";
+  return tables.front().arms.size() > 1               ? "Success in each arm of the test"
+         : tables.front().demonstrations().size() > 1 ? "Success against the number of demonstrations"
+                                                      : "Success";
+}
+
 Document report_document(const Material& material) {
   Document document{material.run.suite,
-                    material.run.suite + ": success of learned policies",
+                    material.run.suite + ": " + success_title(material),
                     headline(material),
                     all_notes(material),
                     {}};
@@ -151,6 +154,7 @@ Document report_document(const Material& material) {
   add(phi(material));
   add(failures(material));
   add(attribution(material));
+  add(learning_curves(material));
   add(engines(material));
   add(times(material));
   add(failed_cells(material));

@@ -62,6 +62,17 @@ void read_episodes(const fs::path& file, CellResult& cell) {
   }
 }
 
+void read_training(const fs::path& file, CellResult& cell) {
+  int line = 0;
+  for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
+    const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
+    const long long epoch = reader.at("epoch").integer(1, std::numeric_limits<long long>::max());
+    for (const auto& item : json.items())
+      if (item.key() != "epoch" && item.key() != "steps")
+        cell.training[one_line(item.key())][epoch] = reader.at(item.key()).number();
+  }
+}
+
 // Members of run.json that a report shows, where they are there.
 void expect_shown(const JsonReader& run) {
   const auto expect_object = [](const JsonReader& value) {
@@ -140,7 +151,10 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   if (!cell.options.is_object()) method.at("options").fail("an object");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
-  if (reader.has("participant")) cell.participant = shown(reader.at("participant").at("id"));
+  if (reader.has("participant")) {
+    cell.participant = shown(reader.at("participant").at("id"));
+    cell.rehearsal = reader.at("participant").has("rehearsal") && reader.at("participant").at("rehearsal").boolean();
+  }
   cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
 }
 
@@ -176,6 +190,7 @@ CellResult read_cell(const fs::path& directory) {
   }
   if (reader.has("method_error")) cell.method_error = shown(reader.at("method_error"));
   read_selections(directory / "selection.json", cell);
+  read_training(directory / "training.jsonl", cell);
   read_episodes(directory / "episodes.jsonl", cell);
   const fs::path timing_file = directory / "timing.json";
   cell.timing = read_json(timing_file, Links::refused);
@@ -217,6 +232,7 @@ RunResults read_run(const fs::path& run) {
       continue;
     }
     results.cells.push_back(read_cell(run / "cells" / key));
+    if (results.cells.back().rehearsal) results.rehearsal = true;
     if (divided) results.cells.back().demonstrated_commands = 1;
     order.emplace(results.cells.back().scenario, order.size());
   }

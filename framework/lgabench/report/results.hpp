@@ -42,6 +42,7 @@ struct CellResult {
   int demonstrations = 0, episodes_per_arm = 0;
   long long training_seed = 0;
   std::string participant;  // whose answers it is based on; empty where nobody was asked
+  bool rehearsal = false;   // that was no person
   std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
   std::vector<CommandResult> commands;
@@ -51,7 +52,9 @@ struct CellResult {
   std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
   std::string method_error;                                    // what the first episode of that failure threw
   std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
-  Json timing;                                                 // as in timing.json
+  // Of training.jsonl: "loss", or a name of the method's own -> its values along the epochs.
+  std::map<std::string, std::map<long long, double>> training;
+  Json timing;  // as in timing.json
 
   bool is_reference() const { return kind == "reference"; }
 };
@@ -61,11 +64,15 @@ struct RunResults {
   std::string suite;
   Json json;  // run.json
   std::vector<CellResult>
-      cells;           // by layout, engine, scenario (run.json's order), method, demonstrations, seed, participant
-  bool smoke = false;  // stamped as not for the leaderboard
-  int not_run = 0;     // asked for by run.json, not there
-  int foreign = 0;     // there, not asked for by run.json: ignored
+      cells;               // by layout, engine, scenario (run.json's order), method, demonstrations, seed, participant
+  bool smoke = false;      // stamped as not for the leaderboard
+  bool rehearsal = false;  // a cell is based on answers of a rehearsal, not people's
+  int not_run = 0;         // asked for by run.json, not there
+  int foreign = 0;         // there, not asked for by run.json: ignored
 };
+
+/// What stands wherever answers of a rehearsal decide a number.
+constexpr const char* rehearsal_words = "rehearsal, not people";
 
 /// Reads a cell's directory. @throws InputError as read_run.
 CellResult read_cell(const fs::path& directory);

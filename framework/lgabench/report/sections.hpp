@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
@@ -15,15 +16,17 @@ Cell named(const Material& material, const std::string& method, Emphasis emphasi
 std::string place_of(const Row& row, const std::string& member);
 /// A count of the row, with its place.
 Cell count_cell(const Row& row, const std::string& member, int count);
-/// "+0.10", "-0.03"; never "-0.00".
-std::string signed_text(double value, int digits = 2);
 /// Letters, digits and dashes of an id, for a file's name.
 std::string slug(const std::string& text);
+
+/// What the run's tables of success are of: "Success under covariate shift".
+std::string success_title(const Material& material);
 
 // Sections; one without blocks is left out.
 
 Section what_was_run(const Material& material);
 std::vector<Section> success(const Material& material);  // one for each table of the summary
+Section learning_curves(const Material& material);
 Section phi(const Material& material);
 Section failures(const Material& material);
 Section attribution(const Material& material);

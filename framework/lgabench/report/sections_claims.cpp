@@ -9,8 +9,9 @@
 namespace lgabench::report {
 namespace {
 
-Cell verdict_cell(Verdict verdict, const std::string& reason) {
+Cell verdict_cell(Verdict verdict, const std::string& reason, bool rehearsal) {
   Cell cell(Span(to_string(verdict), Emphasis::strong));
+  if (rehearsal) cell.spans.emplace_back(fmt::format(" ({})", rehearsal_words));
   if (!reason.empty()) cell.spans.emplace_back(": " + reason);
   return cell;
 }
@@ -57,7 +58,7 @@ Cell test_cell(const Placed& of, const Tested& t, const std::string& member, boo
     spans.push_back(Span::number("], p < 0.001"));
   } else {
     spans.push_back(Span::number("], p = "));
-    spans.push_back(Span::number(fmt::format("{:.3f}", t.p_holm), of.place + member + "/p_holm"));
+    spans.push_back(Span::number(fixed(t.p_holm, 3), of.place + member + "/p_holm"));
   }
   return spans;
 }
@@ -117,7 +118,7 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
 
 Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
   Grid grid = differences_grid("claims_differences", "The differences behind the claims");
-  for (const char* head : {"these scenarios", "", "scenarios like these", "", "based on"})
+  for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict", "based on"})
     grid.heads.emplace_back(head);
   grid.align += "lllll";
   for (const Placed& of : all) {
@@ -133,7 +134,9 @@ Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
   return grid;
 }
 
-std::string with_reason(Verdict verdict, const std::string& reason) { return verdict_cell(verdict, reason).text(); }
+std::string with_reason(Verdict verdict, const std::string& reason, bool rehearsal) {
+  return verdict_cell(verdict, reason, rehearsal).text();
+}
 
 }  // namespace
 
@@ -143,7 +146,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   Grid verdicts;
   verdicts.name = "claims";
   verdicts.caption = title;
-  verdicts.heads = {"claim", "", "layout", "engine", "these scenarios", "scenarios like these"};
+  verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
   List lines;
   std::vector<Placed> all, tested;
@@ -151,13 +154,15 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
     const Claim& claim = claims[c];
     verdicts.rows.push_back(
         {{},
-         {claim.id, claim.statement, claim.layout, claim.engine, verdict_cell(claim.verdict, claim.reason),
-          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike)}});
+         {claim.id, claim.statement, claim.layout, claim.engine,
+          verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
+          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
-    lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason)});
+    lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});
     if (!claim.differences.empty())
-      lines.items.push_back({"      scenarios like these: " + with_reason(claim.alike, claim.reason_alike)});
+      lines.items.push_back(
+          {"      scenarios like these: " + with_reason(claim.alike, claim.reason_alike, claim.rehearsal)});
     for (std::size_t d = 0; d < claim.differences.size(); ++d) {
       all.push_back({claim, claim.differences[d], fmt::format("/claims/{}/differences/{}", c, d)});
       if (claim.differences[d].these.change) tested.push_back(all.back());

@@ -8,9 +8,7 @@ namespace {
 
 std::string ending(const std::string& failure) { return failure == "none" ? "success" : failure; }
 
-Cell rate(int successes, int of) {
-  return Span::number(of == 0 ? "–" : fmt::format("{:.2f}", static_cast<double>(successes) / of));
-}
+Cell rate(int successes, int of) { return Span::number(of == 0 ? "–" : fixed(static_cast<double>(successes) / of)); }
 
 Grid agreement_grid(const Material& material, const EngineAgreement& a, const std::string& place) {
   Grid grid;
@@ -21,17 +19,17 @@ Grid agreement_grid(const Material& material, const EngineAgreement& a, const st
   grid.align = "llllll";
   for (std::size_t k = 0; k < a.rows.size(); ++k) {
     const AgreementRow& row = a.rows[k];
-    const auto number = [&](const char* member, double value, const char* format) {
-      return Span::number(fmt::format(fmt::runtime(format), value), fmt::format("{}/rows/{}/{}", place, k, member));
+    const auto number = [&](const char* member, double value, int digits) {
+      return Span::number(fixed(value, digits), fmt::format("{}/rows/{}/{}", place, k, member));
     };
     Spans share{Span::number("–")};
     if (row.episodes > 0)
-      share = {Span::number(fmt::format("{:.3f} [", static_cast<double>(row.agreed) / row.episodes)),
-               number("low", row.interval.low, "{:.3f}"), Span::number(", "),
-               number("high", row.interval.high, "{:.3f}"), Span::number("]")};
+      share = {Span::number(fixed(static_cast<double>(row.agreed) / row.episodes, 3) + " ["),
+               number("low", row.interval.low, 3), Span::number(", "), number("high", row.interval.high, 3),
+               Span::number("]")};
     grid.rows.push_back({{},
                          {row.method.empty() ? Cell("all, an action once a scene") : named(material, row.method),
-                          number("episodes", row.episodes, "{}"), number("other_actions", row.other_actions, "{}"),
+                          number("episodes", row.episodes, 0), number("other_actions", row.other_actions, 0),
                           rate(row.won_first, row.episodes), rate(row.won_second, row.episodes), share}});
   }
   return grid;
@@ -47,8 +45,10 @@ PictureRow pictures_of(const Material& material, const EngineAgreement& a, const
   PictureRow row;
   row.caption = place_text(d);
   const auto add = [&](const std::string& engine, const std::string& caption) {
-    const auto drawn = material.pictures.ends.find(end_key(d, engine));
-    if (drawn != material.pictures.ends.end()) row.pictures.emplace_back(caption, drawn->second);
+    const auto& ends = material.pictures.ends;
+    auto drawn = ends.find(end_key(*d.cell, d.arm, d.index, engine));
+    if (drawn != ends.end() && drawn->second.empty()) drawn = ends.find(end_key(*d.cell, d.arm, d.index, ""));
+    if (drawn != ends.end()) row.pictures.emplace_back(caption, drawn->second);
   };
   add("", "before");
   add(a.first, fmt::format("{}: {}", a.first, ending(d.episode().failure)));

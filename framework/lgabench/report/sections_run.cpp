@@ -68,7 +68,7 @@ Section times(const Material& material) {
   grid.align = "lllr" + std::string(phases().size(), 'r');
   for (const PhaseTimes& one : all) {
     Grid::Row row{{}, {one.layout, one.engine, named(material, one.method), Span::number(std::to_string(one.cells))}};
-    for (const double s : one.mean_s) row.cells.emplace_back(Span::number(fmt::format("{:.2f}", s)));
+    for (const double s : one.mean_s) row.cells.emplace_back(Span::number(fixed(s)));
     grid.rows.push_back(std::move(row));
   }
   section.add(in_markdown, Paragraph{{"Mean seconds of each phase."}});

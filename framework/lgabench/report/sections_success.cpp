@@ -10,7 +10,7 @@ namespace lgabench::report {
 namespace {
 
 // Two decimals, as all rates have.
-std::string rate_text(double x) { return fmt::format("{:.2f}", x); }
+std::string rate_text(double x) { return fixed(x); }
 std::string shift_text(double x) { return signed_text(x); }
 
 // "0.85 [0.64, 0.95]", each number with its place: `members` of the row.
@@ -49,7 +49,7 @@ Cell seen_cell(const Row* row) {
   if (!row) return {};
   const std::optional<double> share = row->seen_share();
   if (!share) return Span::number("–");
-  return Span::number(fmt::format("{:.2f}", *share), place_of(*row, "inputs_seen"));
+  return Span::number(fixed(*share), place_of(*row, "inputs_seen"));
 }
 
 // "0.293 ± 0.078", with its error bar where the figure has one; empty where the paper has no value.
@@ -57,8 +57,7 @@ Cell paper_cell(const PaperValues& paper, const std::string& scenario, const std
   const std::string name = display_name(method);
   const auto rate = paper.find(scenario, name, n), error = paper.error(scenario, name, n);
   if (!rate) return {};
-  return Span::number(fmt::format("{:.{}f}{}", *rate, digits, error ? fmt::format(" ± {:.{}f}", *error, digits) : ""),
-                      "", Emphasis::published);
+  return Span::number(fixed(*rate, digits) + (error ? " ± " + fixed(*error, digits) : ""), "", Emphasis::published);
 }
 
 // A table of `cell_of` every method of `scenarios`, without what the paper says.
@@ -149,15 +148,15 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
         const double error = material.paper.error(scenario, series.name, place.n).value_or(0);
         if (rate && joined)
           series.points.push_back({place.x, *rate, *rate - error, *rate + error,
-                                   fmt::format("{}, the paper’s, at {}: {:.3f}{}", series.name, place.label, *rate,
-                                               error > 0 ? fmt::format(" ± {:.3f}", error) : "")});
+                                   fmt::format("{}, the paper’s, at {}: {}{}", series.name, place.label,
+                                               fixed(*rate, 3), error > 0 ? " ± " + fixed(error, 3) : "")});
         continue;
       }
       const Row* row = table.find(place.arm, scenario, id, place.n);
       if (!row || !row->success) continue;
       series.points.push_back({place.x, *row->success, row->interval.low, row->interval.high,
-                               fmt::format("{} at {}: {:.2f} [{:.2f}, {:.2f}]", series.name, place.label, *row->success,
-                                           row->interval.low, row->interval.high),
+                               fmt::format("{} at {}: {} [{}, {}]", series.name, place.label, fixed(*row->success),
+                                           fixed(row->interval.low), fixed(row->interval.high)),
                                row->index});
     }
     if (!series.points.empty()) chart.series.push_back(std::move(series));
@@ -259,7 +258,8 @@ std::vector<Section> success(const Material& material) {
   std::vector<Section> sections;
   for (const Table& table : material.summary.tables) {
     const std::string number = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
-    Section& section = sections.emplace_back(Section{"success" + number, "Success: " + table.title()});
+    Section& section = sections.emplace_back(
+        Section{"success" + number, fmt::format("{}: {}", success_title(material), table.title())});
     if (Charts drawn = figures(material, table); !drawn.charts.empty())
       section.add(reading, std::move(drawn));
     else

@@ -17,12 +17,13 @@ std::string words(std::string word) {
   return word;
 }
 
-// A number of a φ̂, or "–" where there is none.
-Span phi_number(const Row& row, const std::string& member, const char* format) {
+// A number of a φ̂, or "–" where there is none; without digits, a count or a mean of counts.
+Span phi_number(const Row& row, const std::string& member, int digits) {
   const Json& phi = row.phi;
   const Json::json_pointer place(member);
   if (!phi.contains(place) || !phi.at(place).is_number()) return Span::number("–");
-  return Span::number(fmt::format(fmt::runtime(format), phi.at(place).get<double>()), place_of(row, "phi" + member));
+  const double value = phi.at(place);
+  return Span::number(digits ? fixed(value, digits) : fmt::format("{:.4g}", value), place_of(row, "phi" + member));
 }
 
 // A chip for each name; too many are counted.
@@ -35,8 +36,9 @@ Grid words_grid(const Material& material, bool tell) {
   Grid grid;
   grid.name = "phi_words";
   grid.caption = "What was selected, in words, beside what the scenario means";
-  grid.heads = {"scenario", "command", "method", "about", "feature", "selected, true", "missed", "selected, not true"};
-  grid.align = std::string(grid.heads.size(), 'l');
+  grid.group_head = "scenario";
+  grid.heads = {"command", "method", "about", "feature", "selected, true", "missed", "selected, not true"};
+  grid.align = std::string(grid.heads.size() + 1, 'l');
   std::set<std::vector<std::string>> shown;
   for (const CellResult& cell : material.run.cells)
     for (const CommandResult& command : cell.commands)
@@ -49,9 +51,9 @@ Grid words_grid(const Material& material, bool tell) {
                  .second)
           continue;
         grid.rows.push_back(
-            {{},
-             {cell.scenario, command_text(command.utterance, command.seen, tell), named(material, cell.method),
-              words.about, words.feature, chips(words.right, words.known, Emphasis::better),
+            {cell.scenario,
+             {command_text(command.utterance, command.seen, tell), named(material, cell.method), words.about,
+              words.feature, chips(words.right, words.known, Emphasis::better),
               chips(words.missed, words.known, Emphasis::missed), chips(words.wrong, words.known, Emphasis::worse)}});
       }
   return grid;
@@ -73,13 +75,20 @@ Section phi(const Material& material) {
   grid.name = "phi";
   grid.caption =
       "What was selected, against the scenario's true distribution; selected: how many of how many true ones";
-  grid.heads = {"scenario",         "command",
-                "method",           "about",
-                "answered by",      "source",
-                "types: precision", "recall",
-                "selected",         "textures: precision",
-                "recall",           "selected",
-                "queries",          "a person's seconds"};
+  grid.group_head = "scenario";
+  grid.heads = {"command",
+                "method",
+                "about",
+                "answered by",
+                "source",
+                "types: precision",
+                "recall",
+                "selected",
+                "textures: precision",
+                "recall",
+                "selected",
+                "queries",
+                "a person's seconds"};
   grid.align = "llllllrrrrrrrr";
   std::set<std::string> known;
   List wordings;
@@ -90,18 +99,18 @@ Section phi(const Material& material) {
                       source = one.at("source"), asked_as = one.at("asked_as");
     for (const auto& [about, groups] : one.at("quality").items()) {
       if (groups.is_null()) continue;
-      std::vector<Cell> cells{row.scenario, command_text(utterance, one.at("seen"), tell), named(material, row.method),
-                              about,        provenance_words(one.at("provenance")),        source};
+      std::vector<Cell> cells{command_text(utterance, one.at("seen"), tell), named(material, row.method), about,
+                              provenance_words(one.at("provenance")), source};
       for (const char* group : {"object_types", "textures"}) {
         const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
-        cells.emplace_back(phi_number(row, numbers + "precision", "{:.2f}"));
-        cells.emplace_back(phi_number(row, numbers + "recall", "{:.2f}"));
-        cells.emplace_back(Spans{phi_number(row, numbers + "size", "{:.4g}"), " of ",
-                                 phi_number(row, numbers + "true_size", "{:.4g}")});
+        cells.emplace_back(phi_number(row, numbers + "precision", 2));
+        cells.emplace_back(phi_number(row, numbers + "recall", 2));
+        cells.emplace_back(
+            Spans{phi_number(row, numbers + "size", 0), " of ", phi_number(row, numbers + "true_size", 0)});
       }
-      cells.emplace_back(phi_number(row, place + "lm_queries", "{:.4g}"));
-      cells.emplace_back(phi_number(row, place + "human_seconds", "{:.4g}"));
-      grid.rows.push_back({{}, std::move(cells)});
+      cells.emplace_back(phi_number(row, place + "lm_queries", 0));
+      cells.emplace_back(phi_number(row, place + "human_seconds", 0));
+      grid.rows.push_back({row.scenario, std::move(cells)});
     }
     const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, source, asked_as);
     if (worded_otherwise(asked_as, utterance)) known.insert(wording);
@@ -126,20 +135,26 @@ Section failures(const Material& material) {
     for (const Row& row : table.rows)
       for (const auto& item : row.failures) used.insert(item.first);
   if (used.empty()) return section;
-  Grid grid;
-  grid.name = "failures";
-  grid.caption = "Episodes over all scenarios, by how they ended";
-  grid.heads = {"table", "arm", "method", "demonstrations", "failures of all episodes", "episodes", "success"};
-  grid.bars = 4;
+  Grid mean;
+  mean.heads = {"table", "arm", "method", "demonstrations", "failures of all episodes", "episodes", "success"};
+  mean.bars = 4;
   const std::vector<std::string> all = failure_words();  // in the order of their colours
   for (const std::string& word : used) {
-    grid.heads.emplace_back(words(word));
-    grid.heads.back().bar = {{fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin()), "", 1}};
+    mean.heads.emplace_back(words(word));
+    mean.heads.back().bar = {{fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin()), "", 1}};
   }
-  grid.align = "lllr" + std::string(grid.heads.size() - 4, 'r');
+  mean.align = "lllr" + std::string(mean.heads.size() - 4, 'r');
+  Grid each = mean;
+  each.group_head = "scenario";
+  each.align = "l" + mean.align;
+  mean.name = "failures";
+  mean.caption = "Episodes over all scenarios, by how they ended";
+  each.name = "failures_scenarios";
+  each.caption = "Each scenario's episodes, by how they ended, with the most demonstrations";
   for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
-      if (!row.is_mean() || row.episodes == 0) continue;
+      if (row.episodes == 0) continue;
+      if (!row.is_mean() && (row.is_reference() || row.demonstrations != table.demonstrations().back())) continue;
       std::vector<Cell> cells{table.title(),
                               row.arm,
                               named(material, row.method),
@@ -151,14 +166,19 @@ Section failures(const Material& material) {
       for (const std::string& word : used) {
         const auto found = row.failures.find(word);
         const int n = found == row.failures.end() ? 0 : found->second;
-        parts.push_back({grid.heads[cells.size()].bar.front().kind, words(word), n});
+        parts.push_back({mean.heads[cells.size()].bar.front().kind, words(word), n});
         cells.push_back(n == 0 ? Cell(Span::number("0")) : count_cell(row, "failures/" + word, n));
+        if (n == 0) continue;
+        cells.back().episodes = row.index;
+        cells.back().outcome = words(word);
       }
-      cells[*grid.bars] = bar(parts, row.episodes);
-      grid.rows.push_back({{}, std::move(cells)});
+      cells[*mean.bars] = bar(parts, row.episodes);
+      Grid& grid = row.is_mean() ? mean : each;
+      grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
     }
   section.add(in_markdown, Paragraph{{"Episodes over all scenarios."}});
-  section.add(reading, std::move(grid));
+  section.add(reading, std::move(mean));
+  section.add(on_page, std::move(each), "Each scenario");
   return section;
 }
 

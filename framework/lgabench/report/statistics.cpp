@@ -26,6 +26,14 @@ double signed_rank_tail(std::size_t n, std::size_t sum) {
          std::pow(2.0, static_cast<double>(n));
 }
 
+// Student's t test of a mean that is 0 but for its standard error.
+Change student(double m, double error, double freedom) {
+  if (error == 0) return {m, {m, m}, m == 0 ? 1.0 : 0.0};
+  const boost::math::students_t t(freedom);
+  const double half = boost::math::quantile(t, 0.975) * error;
+  return {m, {m - half, m + half}, 2 * boost::math::cdf(boost::math::complement(t, std::abs(m) / error))};
+}
+
 }  // namespace
 
 Interval wilson(double successes, int episodes) {
@@ -89,15 +97,69 @@ double wilcoxon(const std::vector<double>& differences) {
   return 2 * boost::math::cdf(boost::math::complement(boost::math::normal(), off / deviation));
 }
 
-Change paired_t(const std::vector<double>& differences) {
-  const double m = mean(differences), freedom = static_cast<double>(differences.size()) - 1;
+Spread spread(const std::vector<double>& values) {
+  const auto n = static_cast<double>(values.size());
+  const double m = mean(values);
   double squares = 0;
-  for (const double d : differences) squares += (d - m) * (d - m);
-  if (squares == 0) return {m, {m, m}, m == 0 ? 1.0 : 0.0};
-  const double error = std::sqrt(squares / freedom / (freedom + 1));
-  const boost::math::students_t t(freedom);
-  const double half = boost::math::quantile(t, 0.975) * error;
-  return {m, {m - half, m + half}, 2 * boost::math::cdf(boost::math::complement(t, std::abs(m) / error))};
+  for (const double value : values) squares += (value - m) * (value - m);
+  const double sd = values.size() < 2 ? 0 : std::sqrt(squares / (n - 1));
+  return {m, sd, sd / std::sqrt(n)};
+}
+
+Change paired_t(const std::vector<double>& differences) {
+  const Spread all = spread(differences);
+  return student(all.mean, all.se, static_cast<double>(differences.size()) - 1);
+}
+
+Change welch_t(const std::vector<double>& first, const std::vector<double>& second) {
+  const Spread a = spread(first), b = spread(second);
+  const double va = a.se * a.se, vb = b.se * b.se, both = va + vb;
+  const double freedom = both == 0 ? 1
+                                   : both * both /
+                                         (va * va / (static_cast<double>(first.size()) - 1) +
+                                          vb * vb / (static_cast<double>(second.size()) - 1));
+  return student(a.mean - b.mean, std::sqrt(both), freedom);
+}
+
+std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values) {
+  const std::size_t n = rows.size(), p = n == 0 ? 0 : rows.front().size();
+  if (n <= p || p == 0) return {};
+  std::vector<std::vector<double>> square(p, std::vector<double>(p)), inverse = square;
+  for (std::size_t i = 0; i < p; ++i) {
+    inverse[i][i] = 1;
+    for (std::size_t j = 0; j < p; ++j)
+      for (const auto& row : rows) square[i][j] += row[i] * row[j];
+  }
+  for (std::size_t i = 0; i < p; ++i) {  // Gauss and Jordan, by the largest pivot
+    std::size_t pivot = i;
+    for (std::size_t j = i; j < p; ++j)
+      if (std::abs(square[j][i]) > std::abs(square[pivot][i])) pivot = j;
+    if (std::abs(square[pivot][i]) < 1e-9 * static_cast<double>(n)) return {};
+    std::swap(square[i], square[pivot]), std::swap(inverse[i], inverse[pivot]);
+    for (std::size_t j = 0; j < p; ++j) {
+      const double by = square[j][i] / square[i][i];
+      for (std::size_t k = 0; k < p && j != i; ++k) {
+        square[j][k] -= by * square[i][k];
+        inverse[j][k] -= by * inverse[i][k];
+      }
+    }
+    const double by = square[i][i];
+    for (std::size_t k = 0; k < p; ++k) square[i][k] /= by, inverse[i][k] /= by;
+  }
+  std::vector<double> coefficients(p);
+  for (std::size_t i = 0; i < p; ++i)
+    for (std::size_t r = 0; r < n; ++r)
+      coefficients[i] += values[r] * std::inner_product(rows[r].begin(), rows[r].end(), inverse[i].begin(), 0.0);
+  double squares = 0;
+  for (std::size_t r = 0; r < n; ++r) {
+    const double off = values[r] - std::inner_product(rows[r].begin(), rows[r].end(), coefficients.begin(), 0.0);
+    squares += off * off;
+  }
+  const auto freedom = static_cast<double>(n - p);
+  std::vector<Change> all;
+  for (std::size_t i = 0; i < p; ++i)
+    all.push_back(student(coefficients[i], std::sqrt(squares / freedom * inverse[i][i]), freedom));
+  return all;
 }
 
 }  // namespace lgabench::report

@@ -40,4 +40,19 @@ double wilcoxon(const std::vector<double>& differences);
 /// Student's paired t test of a mean difference (Student 1908). @pre at least two differences
 Change paired_t(const std::vector<double>& differences);
 
+/// Welch's t test of the difference of two means, first minus second (Welch 1947). @pre at least two values each
+Change welch_t(const std::vector<double>& first, const std::vector<double>& second);
+
+/// Ordinary least squares: each coefficient of `values` on the columns of `rows` with its 95 % interval and Student's
+/// p. Empty where there are no more rows than columns, or the columns do not tell their coefficients apart.
+/// @pre rows of one length, as many as values
+std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values);
+
+/// Mean with the standard deviation of the values and the standard error of the mean. @pre at least one value; with one
+/// alone both are 0
+struct Spread {
+  double mean = 0, sd = 0, se = 0;
+};
+Spread spread(const std::vector<double>& values);
+
 }  // namespace lgabench::report

@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
@@ -89,11 +90,13 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
         if (provenance == "live") live.insert(phi.at("source").get<std::string>());
       }
       if (row.is_mean() && row.participants > 0)
-        people[row.method] = fmt::format("{} participant{}{}", row.participants, row.participants == 1 ? "" : "s",
+        people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
+                                         run.rehearsal ? fmt::format(" ({})", rehearsal_words) : "",
                                          edited.count(row.method) == 1 ? ", who edited a language model's φ̂" : "");
     }
   }
   std::vector<std::string> lines;
+  if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
   if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   if (run.not_run > 0)
     lines.push_back(fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run,
@@ -110,9 +113,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     if (const auto& near = table.nearness)
       lines.push_back(
           fmt::format("Beside the paper, {}, {}: {} of {} points of {} lie within 1.5 of its error bars; the mean "
-                      "distance is {:.3f}.",
+                      "distance is {}.",
                       table.title(), table.title(mean_scenario), near->near, near->points, listed(near->methods),
-                      near->mean_distance));
+                      fixed(near->mean_distance, 3)));
   for (const std::string& model : models)
     lines.push_back(fmt::format("Language model: {}, its replies played from a cassette.", model));
   for (const std::string& model : live)

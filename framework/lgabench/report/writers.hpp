@@ -26,9 +26,9 @@ std::string csv(const Grid& grid);
 std::string csv_line(const std::vector<std::string>& values);
 std::string csv_text(const Json& value);
 
-/// report.html: one page with everything inside it, from the installed page/ (template, style sheet, script), and the
-/// `data` that the script shows. The script adds interaction only. @throws InputError where page/ is missing.
-std::string html(const Document& document, const Json& data);
+/// One page with everything inside it, from the installed page/ (template, style sheet, what all pages do), and the
+/// `data` that page/SCRIPT shows. Scripts add interaction only. @throws InputError where page/ is missing.
+std::string html(const Document& document, const Json& data, const std::string& script = "episodes.js");
 /// Text as it may stand in an element or a quoted attribute.
 std::string escaped(const std::string& text);
 

@@ -1,0 +1,176 @@
+// lgabench cluster: scripts that play a run as an array of Slurm's. It submits nothing.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/run_plan.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  RunArguments run;
+  int elements = 0, cpus = 4;
+  std::string time, partition;
+  fs::path timings;
+};
+
+// Options that an element of the array gets from its script, or that only `cluster` has; each takes a value.
+constexpr std::array<std::string_view, 9> own_options{"--elements", "--cpus", "--time",   "--partition", "--timings",
+                                                      "--out",      "--jobs", "--memory", "--shard"};
+
+// What was typed, without those.
+Words run_words() {
+  const Words typed = command_line();
+  Words words{"run"};
+  for (std::size_t i = 2; i < typed.size(); ++i) {
+    const std::string option = typed[i].substr(0, typed[i].find('='));
+    if (std::find(own_options.begin(), own_options.end(), option) == own_options.end())
+      words.push_back(typed[i]);
+    else
+      i += option == typed[i];
+  }
+  return words;
+}
+
+// Seconds of "HH:MM:SS" or "D-HH:MM:SS".
+double seconds_of(const std::string& time) {
+  int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
+  const auto size = static_cast<int>(time.size());
+  if ((std::sscanf(time.c_str(), "%d-%d:%d:%d%n", &days, &hours, &minutes, &seconds, &end) != 4 || end != size) &&
+      (days = 0, std::sscanf(time.c_str(), "%d:%d:%d%n", &hours, &minutes, &seconds, &end) != 3 || end != size))
+    throw InputError(fmt::format("--time {}: expected HH:MM:SS or D-HH:MM:SS", time));
+  return ((days * 24. + hours) * 60 + minutes) * 60 + seconds;
+}
+
+// What cells took in a run that was played, say a smoke run on one of the cluster's machines.
+Costs costs_of(const fs::path& run) {
+  Costs costs;
+  if (run.empty()) return costs;
+  expect_run(run);
+  const Json record = read_json(run / "run.json", Links::refused);
+  for (const std::string& name : read_cell_keys(JsonReader(record, (run / "run.json").string()))) {
+    const fs::path cell = run / "cells" / name;
+    if (!fs::exists(cell / "timing.json")) continue;
+    const Json timing = read_json(cell / "timing.json", Links::refused);
+    costs.learn(read_cell(read_json(cell / "cell.json", Links::refused), (cell / "cell.json").string()),
+                JsonReader(timing, (cell / "timing.json").string()).at("total_s").number());
+  }
+  return costs;
+}
+
+// Of the element that is expected to take longest.
+double longest_s(const RunPlan& plan, const Arguments& a) {
+  const Costs costs = costs_of(a.timings);
+  double longest = 0;
+  for (int i = 1; i <= a.elements; ++i) {
+    const Forecast one = forecast({}, cells_of(plan.cells, {i, a.elements}), costs, a.cpus);
+    longest = std::max({longest, one.work_s / a.cpus, one.longest_s});
+  }
+  return longest;
+}
+
+std::string header(const Arguments& a, const std::string& name, const std::string& time, const fs::path& out,
+                   const char* log) {
+  return fmt::format(
+      "#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --ntasks=1\n#SBATCH --time={}\n#SBATCH --output={}/logs/{}\n{}",
+      name, time, out.string(), log, a.partition.empty() ? "" : fmt::format("#SBATCH --partition={}\n", a.partition));
+}
+
+std::string array_script(const Arguments& a, const std::string& program, const fs::path& out, double memory_gib) {
+  return header(a, "lgabench-" + a.run.suite, a.time, out, "%A_%a.txt") +
+         fmt::format(
+             R"(#SBATCH --array=1-{0}
+#SBATCH --cpus-per-task={1}
+#SBATCH --mem={2:.0f}M
+#SBATCH --signal=B:TERM@120
+#SBATCH --requeue
+# Submitted again, an element computes what it lacks and nothing else. Two minutes before the limit it stops by itself.
+cd {3} || exit 2
+scratch=$(mktemp -d "${{TMPDIR:-/tmp}}/lgabench-XXXXXX") || exit 2
+export TMPDIR=$scratch LGABENCH_CACHE=$scratch/cache
+{4} --shard "$SLURM_ARRAY_TASK_ID/{0}" --out {5}/part-"$SLURM_ARRAY_TASK_ID" --jobs {1} --memory {6:.2f} &
+run=$!
+trap 'kill -TERM $run' TERM
+wait $run
+status=$?
+while kill -0 $run 2>/dev/null; do wait $run; status=$?; done
+rm -rf "$scratch"
+exit $status
+)",
+             a.elements, a.cpus, memory_gib * 1024 * a.cpus + 512, joined({fs::current_path().string()}), program,
+             joined({out.string()}), memory_gib);
+}
+
+std::string merge_script(const Arguments& a, const std::string& program, const fs::path& out) {
+  const std::string where = joined({out.string()});
+  return header(a, "lgabench-merge", "01:00:00", out, "merge_%j.txt") +
+         fmt::format("{0} status {1}\nexec {0} merge {1}/whole {1}/part-*/\n", program, where);
+}
+
+std::string submit_script(const fs::path& out) {
+  return fmt::format(
+      "#!/bin/bash\n# Options go to the array: submit --array=3,7\nset -eu\nmkdir -p {0}/logs\n"
+      "array=$(sbatch --parsable \"$@\" {0}/array.sbatch)\n"
+      "sbatch --dependency=\"afterany:${{array%%;*}}\" {0}/merge.sbatch\n",
+      joined({out.string()}));
+}
+
+int write_scripts(Arguments a) {
+  const double limit_s = seconds_of(a.time);
+  const fs::path out = fs::absolute(a.run.out.empty() ? "runs/" + a.run.suite + "-cluster" : a.run.out);
+  a.run.out = out.string();
+  const RunPlan plan = plan_run(a.run).plan;
+  if (static_cast<std::size_t>(a.elements) > plan.cells.size())
+    throw InputError(fmt::format("--elements {}: the run has {} cells", a.elements, plan.cells.size()));
+  const double memory_gib = a.run.memory_gib > 0 ? a.run.memory_gib : 4;
+  const std::string program = joined({(program_directory() / "lgabench").string()});
+  write_file(out / "array.sbatch", array_script(a, program + " " + joined(run_words()), out, memory_gib));
+  write_file(out / "merge.sbatch", merge_script(a, program, out));
+  write_file(out / "submit", submit_script(out));
+  fs::permissions(out / "submit", fs::perms::owner_exec, fs::perm_options::add);
+  fs::create_directories(out / "logs");
+  const double expected_s = longest_s(plan, a);
+  to_stdout("{} cells in {} elements; the longest takes about {} on {} cores, {}\n", plan.cells.size(), a.elements,
+            duration_text(expected_s), a.cpus,
+            a.timings.empty() ? "by cells measured elsewhere (--timings: by your own)"
+                              : "by the cells of " + a.timings.string());
+  if (expected_s > .8 * limit_s)
+    to_stdout("--time {} is short for that: {} elements would fit, or submit the array again\n", a.time,
+              static_cast<int>(a.elements * expected_s / (.6 * limit_s)) + 1);
+  to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", joined({out.string()}), joined({out.string()}));
+  return ok;
+}
+
+}  // namespace
+
+void add_cluster(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("cluster", "Write scripts that play a run as an array of Slurm's");
+  add_run_options(*verb, a->run);
+  verb->add_option("--elements", a->elements, "Elements of the array, each a part of the run: few long ones")
+      ->required()
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--time", a->time, "What an element may take")->required();
+  verb->add_option("--partition", a->partition, "Slurm's partition");
+  verb->add_option("--cpus", a->cpus, "Cores of an element, each computing a cell")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  verb->add_option("--timings", a->timings, "A run, say of the preset smoke, whose cells tell how long these take");
+  arrange(
+      *verb, "The array",
+      {{"--elements", "N"}, {"--time", "HH:MM:SS"}, {"--partition", "NAME"}, {"--cpus", "N"}, {"--timings", "RUN"}});
+  verb->footer(
+      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\n"
+      "Writes array.sbatch, merge.sbatch (after it: the parts together, and their report) and submit into --out; all\n"
+      "other options are those of run. It submits nothing.");
+  verb->callback([a, &exit] { exit = write_scripts(*a); });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,152 @@
+// lgabench leaderboard: published results, added, checked and made into pages.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <thread>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_method.hpp>
+#include <lgabench/leaderboard/add.hpp>
+#include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/replay.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  std::string action, what, about, against, reason, python = "python3";
+  fs::path board = "results/leaderboard";
+  Words rows, methods;
+  std::vector<fs::path> plugin_path;
+  leaderboard::ReplayOptions replay;
+  int jobs = 0;  // as many as there are cores
+};
+
+int print_all(const std::vector<std::string>& lines, const char* before) {
+  for (const std::string& line : lines) to_stderr("{}{}\n", before, one_line(line));
+  return lines.empty() ? ok : regression;
+}
+
+int add(const Arguments& a) {
+  if (a.what.empty() || a.about.empty()) throw InputError("leaderboard add: expected RUN, and --entry META.json");
+  expect_run(a.what);
+  const leaderboard::Added added = leaderboard::add_run(a.board, a.what, leaderboard::read_about(a.about), a.rows);
+  if (print_all(added.refused, "refused: ") != ok) return regression;
+  for (const std::string& entry : added.entries) to_stdout("added {}\n", entry);
+  for (const std::string& entry : added.evidence) to_stdout("evidence added to {}\n", entry);
+  to_stderr("Next: lgabench leaderboard build --board {}\n", a.board.string());
+  return ok;
+}
+
+// One line for each entry; a verification is recorded, whatever it says.
+int verify(Arguments a) {
+  if (a.replay.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
+  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
+  a.replay.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<fs::path> entries;
+  if (!a.what.empty())
+    entries.push_back(leaderboard::find_entry(a.board, a.what));
+  else
+    entries = leaderboard::entry_directories(a.board);
+  int exit = ok;
+  for (const fs::path& directory : entries) {
+    const leaderboard::Entry entry = leaderboard::read_entry(a.board, directory);
+    if (!entry.withdrawn.is_null()) continue;
+    const auto line = leaderboard::replay(a.board, entry, leaderboard::new_nonce(), catalogue, a.replay);
+    if (!line) return interrupted;
+    leaderboard::add_verification(a.board, entry, *line);
+    const bool passed = line->at("passed");
+    const std::string found =
+        a.replay.fresh ? fmt::format("{:+.3f} [{:+.3f}, {:+.3f}] on fresh scenes", line->at("difference").get<double>(),
+                                     line->at("low").get<double>(), line->at("high").get<double>())
+                       : fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
+                                     line->at("bit_identical").get<int>(), line->at("cells").size(),
+                                     line->at("flips").get<int>(), line->at("episodes").get<int>());
+    to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
+              line->at("nonce").get<std::string>());
+    if (!passed) exit = regression;
+  }
+  return exit;
+}
+
+int withdraw(const Arguments& a) {
+  if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason TEXT");
+  leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  to_stdout("withdrawn; its files remain\n");
+  return ok;
+}
+
+int build(const Arguments& a) {
+  for (const std::string& name : leaderboard::build(a.board)) to_stdout("{}\n", (a.board / name).string());
+  return ok;
+}
+
+int check(const Arguments& a) {
+  const leaderboard::Checked checked = leaderboard::check(a.board, a.against);
+  for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
+  to_stdout("{} entries, {} problems\n", checked.entries, checked.problems.size());
+  return print_all(checked.problems, "");
+}
+
+}  // namespace
+
+void add_leaderboard(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
+  verb->add_option("ACTION", a->action, "add, verify, build, check or withdraw")
+      ->required()
+      ->check(one_of("action", {"add", "verify", "build", "check", "withdraw"}));
+  verb->add_option("WHAT", a->what, "add: a run's directory; verify (else all), withdraw: an entry's, or its id");
+  verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
+  verb->add_option("--entry", a->about, "add: who sends it, from which source (docs/leaderboard.md)");
+  verb->add_option("--rows", a->rows, "add: these rows of the run alone")->delimiter(',');
+  verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  verb->add_flag("--fresh", a->replay.fresh, "verify: play on other test scenes, and compare success");
+  verb->add_option("--by", a->replay.by, "verify: who verifies");
+  verb->add_option("--jobs", a->jobs, "verify: cells computed at once (default: one a core)")
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--timeout", a->replay.pool.timeout_s, "verify: seconds after which a cell is stopped")
+      ->check(within(1, 1e7))
+      ->capture_default_str();
+  verb->add_option("--methods", a->methods, "verify: FILE.py:Class of methods in Python")->delimiter(',');
+  verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
+  add_plugin_path(*verb, a->plugin_path);
+  verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
+  verb->add_option("--reason", a->reason, "withdraw: why");
+  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
+  arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "TEXT"}});
+  arrange(*verb, "verify",
+          {{"--by", "NAME"},
+           {"--cells", "N"},
+           {"--fresh", ""},
+           {"--jobs", "N"},
+           {"--timeout", "SECONDS"},
+           {"--plugin-path", "PATH"},
+           {"--methods", "FILE.py:CLASS,..."},
+           {"--python", "PROGRAM"}});
+  arrange(*verb, "check", {{"--against", "REVISION"}});
+  verb->footer(
+      "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
+      "add refuses what is not the board's preset, whole and on its scenes, and says what is missing, line by line.\n"
+      "verify plays cells again, confined and without a cache, and records what it finds. check reads files alone.\n"
+      "Exit 1: refused, different, or a problem.");
+  verb->callback([a, &app, &exit] {
+    a->replay.program = app.version();
+    exit = a->action == "verify"  ? verify(*a)
+           : a->action == "add"   ? add(*a)
+           : a->action == "build" ? build(*a)
+           : a->action == "check" ? check(*a)
+                                  : withdraw(*a);
+  });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,291 @@
+#include <lgabench/cli/run_plan.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include <lgabench/abstraction/cassette.hpp>
+#include <lgabench/abstraction/openai_options.hpp>
+#include <lgabench/abstraction/prompt.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/cli/cache.hpp>
+#include <lgabench/cli/help.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/host/python_method.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+// 0,1,2 or 0:3 (without its end). @throws InputError for anything else, which names the option.
+Json numbers(const char* option, const Words& words) {
+  Json all = Json::array();
+  for (const std::string& word : words) {
+    const std::size_t colon = word.find(':');
+    const Json first = option_value(word.substr(0, colon)),
+               last = colon == std::string::npos ? Json() : option_value(word.substr(colon + 1));
+    const bool is_range = first.is_number_unsigned() && last.is_number_unsigned();
+    if (!is_range && (!first.is_number_integer() || colon != std::string::npos))
+      throw InputError(fmt::format(
+          "{}: expected whole numbers, such as 10,50, or a range, such as 0:3 for 0,1,2; got \"{}\"", option, word));
+    if (!is_range) {
+      all.push_back(first);
+      continue;
+    }
+    constexpr std::uint64_t most = 10000;
+    const auto begin = first.get<std::uint64_t>(), end = last.get<std::uint64_t>();
+    if (begin >= end || end - begin > most)
+      throw InputError(fmt::format("{}: expected FIRST:END, END not included, with 1 to {} numbers; {} has {}", option,
+                                   most, word, begin < end ? end - begin : 0));
+    for (auto n = begin; n < end; ++n) all.push_back(n);
+  }
+  return all;
+}
+
+constexpr const char* command_line_place = "command line";
+
+// "--demos: expected each value once" for "command line: /demonstrations/1: expected each value once".
+std::string by_option(const std::string& complaint) {
+  for (const auto& [member, option] : {std::pair{"methods", "--methods"},
+                                       {"engines", "--engines"},
+                                       {"scenarios", "--scenarios"},
+                                       {"layouts", "--layout"},
+                                       {"demonstrations", "--demos"},
+                                       {"seeds", "--seeds"},
+                                       {"episodes", "--episodes"}})
+    if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
+      return option + complaint.substr(complaint.find(": ", complaint.find('/')));
+  return complaint;
+}
+
+// The command line's part of the grid, checked by the same reader as a suite's file.
+Grid grid_of(const RunArguments& a, const Suite& suite) {
+  Json overrides = Json::object();
+  const auto give = [&overrides](const char* member, const Words& words) {
+    if (!words.empty()) overrides[member] = words;
+  };
+  give("methods", a.methods);
+  give("engines", a.engines);
+  give("scenarios", a.scenarios);
+  give("layouts", a.layouts);
+  if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
+  if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
+  if (a.episodes) overrides["episodes"] = *a.episodes;
+  Grid grid = preset_grid(suite, a.preset);
+  try {
+    grid = apply(JsonReader(overrides, command_line_place), grid);
+  } catch (const InputError& e) {
+    throw InputError(by_option(e.what()));
+  }
+  grid.smoke |= a.limit != 0;
+  return grid;
+}
+
+// --set method.option=value, or *.option=value
+Json options_of(const Words& settings) {
+  Json options = Json::object();
+  for (const std::string& setting : settings) {
+    const std::size_t dot = setting.find('.'), equals = setting.find('=');
+    if (dot == std::string::npos || equals == std::string::npos || dot > equals)
+      throw InputError(fmt::format("--set {}: expected method.option=value or *.option=value", setting));
+    options[setting.substr(0, dot)][setting.substr(dot + 1, equals - dot - 1)] =
+        option_value(setting.substr(equals + 1));
+  }
+  return options;
+}
+
+Json participant_hashes(const std::vector<Participant>& participants) {
+  Json hashes = Json::object();
+  for (const Participant& one : participants) hashes[one.id] = one.sha256;
+  return hashes;
+}
+
+// The server's model that --answers openai asks; none for other answers, which need no server.
+std::optional<LiveModel> live_model(const RunArguments& a, Json& about) {
+  if (a.answers != "openai") {
+    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0)
+      throw InputError("--model, --cassette and --max-queries: expected --answers openai with them");
+    return std::nullopt;
+  }
+  if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
+    throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
+  const Cassette readable(a.cassette);
+  about = {
+      {"model", a.model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
+  return LiveModel{a.cassette, true, a.max_queries};
+}
+
+// Where --resume goes on: where the run would be, or was with another build. It begins none.
+fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
+  const fs::path there = fs::exists(plan.out / "run.json") ? plan.out : earlier_run(plan.out, suffix, plan.request);
+  if (there.empty())
+    throw InputError(
+        fmt::format("--resume: no run of this command is in {}; without --resume it begins one of {} cells",
+                    plan.out.parent_path().string(), plan.cells.size()));
+  to_stderr("going on in {}\n", there.string());
+  return there;
+}
+
+}  // namespace
+
+PlannedRun plan_run(RunArguments a) {
+  PlannedRun planned;
+  Catalogue& catalogue = planned.catalogue;
+  catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  for (std::string& word : a.methods) word = with_python_method(word, a.python, catalogue);
+  const Suite suite = load_suite(a.suite);
+  const Grid grid = grid_of(a, suite);
+  Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
+
+  RunPlan& plan = planned.plan;
+  plan.live = live_model(a, plan.live_about);
+  if (plan.live) {
+    variation.answers = live_prefix + a.model;
+  } else if (const std::string file = cassette_of(a.answers); !file.empty()) {
+    CassetteAnswers cassette = check_cassette(file, grid.scenarios);
+    variation.answers = cassette.answers;
+    plan.answers.push_back(std::move(cassette.file));
+  } else if (a.answers != no_answers) {
+    check_recorded(a.answers, grid.scenarios);
+  }
+  if (a.rehearsal && a.humans.empty()) throw InputError("--rehearsal: expected --humans DIR with it");
+  if (!a.humans.empty())
+    for (AnswerFile& file : read_participants(a.humans, a.rehearsal, variation.participants))
+      plan.answers.push_back(std::move(file));
+  plan.shard = read_shard(a.shard);
+  plan.cells = expand(suite, grid, variation, catalogue);
+  if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
+    plan.cells.resize(static_cast<std::size_t>(a.limit));
+  plan.request = to_json(grid);
+  plan.request.update({{"suite", suite.id},
+                       {"preset", a.preset},
+                       {"answers", variation.answers},
+                       {"truth", a.truth},
+                       {"participants", participant_hashes(variation.participants)},
+                       {"set", variation.options},
+                       {"references", variation.references},
+                       {"limit", a.limit}});
+  plan.command = joined(command_line());
+  plan.program = a.program;
+  plan.out = a.out;
+  if (a.out.empty()) {
+    const std::string suffix = plan.shard.count == 1 ? "" : fmt::format("-{}of{}", plan.shard.index, plan.shard.count);
+    plan.out = fs::path("runs") / fmt::format("{}{}-{}{}", suite.id, a.preset.empty() ? "" : "-" + a.preset,
+                                              run_hash(plan.cells, catalogue), suffix);
+    if (a.resume) plan.out = run_to_resume(plan, suffix);
+  }
+  plan.cache = a.cache.empty() ? default_cache() : fs::path(a.cache);
+  plan.existing = a.fresh ? Existing::fresh : a.resume ? Existing::resume : Existing::same;
+  plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  plan.pool.timeout_s = a.timeout_s;
+  plan.pool.memory_gib = a.memory_gib;
+  plan.confined = !a.unconfined;
+  return planned;
+}
+
+void add_run_options(CLI::App& verb, RunArguments& a) {
+  const auto list = [&verb](const char* name, Words& words, const char* help) {
+    verb.add_option(name, words, help)->delimiter(',')->take_all();
+  };
+  verb.add_option("suite", a.suite, "A suite's id, or a .json file of one")->required();
+  verb.add_option("--preset", a.preset,
+                  "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
+  list("--methods", a.methods, "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE");
+  list("--engines", a.engines, "Engines, by plugin id");
+  list("--scenarios", a.scenarios, "Scenarios");
+  list("--layout", a.layouts, "cells, continuous or released; several with commas");
+  list("--demos", a.demonstrations, "Numbers of demonstrations of each seen command: 10,20");
+  list("--seeds", a.seeds, "Training seeds: 0,1,2 or 0:3");
+  verb.add_option("--episodes", a.episodes, "Test scenes of each arm");
+  verb.add_option("--jobs", a.jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
+  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and has failed")
+      ->check(within(1, 1e7))
+      ->capture_default_str();
+  verb.add_option("--memory", a.memory_gib,
+                  "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
+      ->check(within(.1, 1e6));
+  verb.add_option("--python", a.python, "The interpreter of methods in Python")->capture_default_str();
+  verb.add_option("--shard", a.shard, "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
+  add_plugin_path(verb, a.plugin_path);
+  add_scenario_path(verb);
+  verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
+  verb.add_option("--cache", a.cache,
+                  "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
+  auto* resume =
+      verb.add_flag("--resume", a.resume,
+                    "Go on with the run in --out, else with that of the same command; cells of another build "
+                    "are computed again");
+  verb.add_flag("--fresh", a.fresh, "Drop the run that is in --out")->excludes(resume);
+  verb.add_option("--limit", a.limit, "Only the first N cells; not for the leaderboard")->check(CLI::Range(1, 1 << 30));
+  verb.add_option("--set", a.settings,
+                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; goes before the "
+                  "preset's options, after a row's own; may be given again")
+      ->take_all();
+  verb.add_option("--answers", a.answers,
+                  "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
+                  "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
+                  "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run; "
+                  "none: nobody, for methods that ask no language model")
+      ->check([](const std::string& word) { return answers_complaint(word, {no_answers}); })
+      ->capture_default_str();
+  verb.add_option("--model", a.model, "With --answers openai: the server's model");
+  verb.add_option("--cassette", a.cassette,
+                  "With --answers openai: file of its replies, which grows; runs may share it, and no question that it "
+                  "answers is asked again");
+  verb.add_option("--max-queries", a.max_queries,
+                  "With --answers openai: questions that a cell may ask the server; -1: no limit")
+      ->check(CLI::Range(-1, 1000000))
+      ->capture_default_str();
+  verb.add_option("--truth", a.truth,
+                  "The true distributions: those that the paper's authors released with their code, or those printed "
+                  "in its appendix, where they differ")
+      ->check(one_of("truth", {"released", "printed"}))
+      ->capture_default_str();
+  verb.add_option("--humans", a.humans,
+                  "A directory of participants' .json files: methods that ask people then have a cell for each");
+  verb.add_flag("--rehearsal", a.rehearsal,
+                "With --humans: take files of a rehearsal or of simulated people; run, tables and claims are marked, "
+                "and it is not for the leaderboard");
+  verb.add_flag("--unconfined", a.unconfined,
+                "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
+  verb.add_option("--debug", a.debug,
+                  "Play one cell of the run, named by the first digits of its directory's name in cells/, in the "
+                  "foreground and unconfined: a plugin under gdb, Python where breakpoint() works. Nothing is kept")
+      ->type_name("KEY");
+  verb.add_flag("--no-reference", a.no_reference, "Without the rows constant_action, random_object and oracle");
+  verb.add_flag("--json", a.json, "Print summary.json instead of the table");
+  verb.add_flag("--dry-run", a.dry_run, "Compute nothing: say how many cells there are, how long they take, and disk");
+  arrange(verb, "", {{"suite", "SUITE"}});
+  arrange(verb, "What is computed",
+          {{"--preset", "PRESET"},
+           {"--methods", "METHOD,..."},
+           {"--engines", "ENGINE,..."},
+           {"--scenarios", "SCENARIO,..."},
+           {"--layout", "LAYOUT,..."},
+           {"--demos", "N,..."},
+           {"--seeds", "N,..."},
+           {"--episodes", "N"},
+           {"--set", "M.OPTION=VALUE"},
+           {"--answers", "SOURCE"},
+           {"--model", "MODEL"},
+           {"--cassette", "FILE"},
+           {"--max-queries", "N"},
+           {"--truth", "released|printed"},
+           {"--humans", "DIR"},
+           {"--rehearsal", ""},
+           {"--no-reference", ""}});
+  arrange(
+      verb, "How much of it",
+      {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});
+  arrange(verb, "With what",
+          {{"--jobs", "N"},
+           {"--timeout", "SECONDS"},
+           {"--memory", "GIB"},
+           {"--plugin-path", "PATH"},
+           {"--scenario-path", "DIR"},
+           {"--python", "PROGRAM"},
+           {"--unconfined", ""}});
+  arrange(verb, "Where it goes", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});
+}
+
+}  // namespace lgabench::cli

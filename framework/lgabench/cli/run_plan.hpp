@@ -1,0 +1,36 @@
+// What `run` and `cluster` are asked for, and the run that comes of it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/harness/run_suite.hpp>
+
+namespace lgabench::cli {
+
+struct RunArguments {
+  std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
+                             shard = "1/1", model, cassette;
+  Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
+  std::vector<fs::path> plugin_path;
+  std::optional<int> episodes;
+  int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
+  double timeout_s = 3600, memory_gib = 0;
+  std::string program;  // as --version says
+  bool unconfined = false, rehearsal = false, resume = false, fresh = false, dry_run = false, no_reference = false,
+       json = false;
+};
+
+/// The options of `run`, but for those that it alone has.
+void add_run_options(CLI::App& verb, RunArguments& a);
+
+/// The run, and the plugins that it uses. @throws InputError, or PluginError, for what the options do not make.
+struct PlannedRun {
+  Catalogue catalogue;
+  RunPlan plan;
+};
+PlannedRun plan_run(RunArguments a);
+
+}  // namespace lgabench::cli

@@ -1,0 +1,148 @@
+// lgabench status: how far the parts of a run are.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Part {
+  std::string name;
+  int shard = 1, shards = 1;
+  std::size_t cells = 0, done = 0, failed = 0, playing = 0;
+  bool running = false;  // somebody writes into it
+
+  std::size_t missing() const { return cells - std::min(cells, done + failed); }
+  bool finished() const { return done >= cells; }
+};
+
+bool is_locked(const fs::path& run) {
+  const int directory = ::open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool locked = directory >= 0 && ::flock(directory, LOCK_SH | LOCK_NB) != 0;
+  if (directory >= 0) ::close(directory);
+  return locked;
+}
+
+Part read_part(const fs::path& run) {
+  const Json json = read_json(run / "run.json", Links::refused);
+  const JsonReader reader(json, (run / "run.json").string());
+  const std::vector<std::string> keys = read_cell_keys(reader);
+  Part part{run.string(), 1, 1, keys.size()};
+  if (reader.has("shard") && reader.at("shard").json().is_object()) {
+    const JsonReader shard = reader.at("shard");
+    part.shards = static_cast<int>(shard.at("count").integer(1, 1 << 30));
+    part.shard = static_cast<int>(shard.at("index").integer(1, part.shards));
+    part.cells = static_cast<std::size_t>(shard.at("cells").integer(0, static_cast<long long>(keys.size())));
+  }
+  part.running = is_locked(run);
+  for (const std::string& name : keys) {
+    const fs::path status = run / "cells" / name / "status.json";
+    if (!fs::exists(status)) continue;
+    const Json said = read_json(status, Links::refused);
+    ++(JsonReader(said, status.string()).at("state").string() == "ok" ? part.done : part.failed);
+  }
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(run / "cells", none_there))
+    part.playing += part.running && entry.path().filename().string()[0] == '.';
+  return part;
+}
+
+// A run, or the runs in a directory of parts.
+std::vector<fs::path> runs_in(const fs::path& directory) {
+  if (fs::exists(directory / "run.json")) return {directory};
+  std::vector<fs::path> runs;
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(directory, none_there))
+    if (entry.path().filename() != "whole" && fs::exists(entry.path() / "run.json")) runs.push_back(entry.path());
+  if (runs.empty()) expect_run(directory);
+  std::sort(runs.begin(), runs.end());
+  return runs;
+}
+
+// "1,4-6"
+std::string ranges(const std::set<int>& numbers) {
+  std::string text;
+  for (auto at = numbers.begin(); at != numbers.end();) {
+    const int first = *at;
+    int last = first;
+    while (++at != numbers.end() && *at == last + 1) last = *at;
+    text += (text.empty() ? "" : ",") + (first == last ? std::to_string(first) : fmt::format("{}-{}", first, last));
+  }
+  return text;
+}
+
+int print_status(const std::vector<fs::path>& directories, bool json) {
+  std::vector<Part> parts;
+  for (const fs::path& directory : directories)
+    for (const fs::path& run : runs_in(directory)) parts.push_back(read_part(run));
+  std::sort(parts.begin(), parts.end(),
+            [](const Part& a, const Part& b) { return std::pair(a.shard, a.name) < std::pair(b.shard, b.name); });
+  const int shards = parts.front().shards;
+  std::set<int> open;
+  for (int i = 1; i <= shards; ++i) open.insert(i);
+  std::set<int> there;
+  for (const Part& part : parts) {
+    if (part.shards != shards)
+      throw InputError(fmt::format("{} is one of {} shards, {} one of {}: not parts of one run", parts.front().name,
+                                   shards, part.name, part.shards));
+    there.insert(part.shard);
+    if (part.finished() || part.running) open.erase(part.shard);
+  }
+  std::set<int> absent;
+  for (int i = 1; i <= shards; ++i)
+    if (there.count(i) == 0) absent.insert(i);
+  if (json) {
+    Json list = Json::array();
+    for (const Part& part : parts)
+      list.push_back({{"run", part.name},
+                      {"shard", part.shard},
+                      {"cells", part.cells},
+                      {"done", part.done},
+                      {"running", part.playing},
+                      {"failed", part.failed},
+                      {"missing", part.missing()},
+                      {"locked", part.running}});
+    to_stdout("{}\n",
+              canonical({{"shards", shards}, {"parts", list}, {"array", ranges(open)}, {"absent", ranges(absent)}}));
+  } else {
+    to_stdout("{:>7}  {:>7}  {:>7}  {:>7}  {:>7}  {:>7}  run\n", "shard", "cells", "done", "running", "failed",
+              "missing");
+    for (const Part& part : parts)
+      to_stdout("{:>7}  {:>7}  {:>7}  {:>7}  {:>7}  {:>7}  {}{}\n", fmt::format("{}/{}", part.shard, part.shards),
+                part.cells, part.done, part.playing, part.failed, part.missing(), one_line(part.name),
+                part.running ? " (running)" : "");
+    if (!absent.empty()) to_stdout("not begun: {}\n", ranges(absent));
+    if (!open.empty()) to_stdout("to finish: --array={}\n", ranges(open));
+  }
+  return open.empty() ? ok : cells_failed;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& exit) {
+  struct Options {
+    std::vector<fs::path> directories;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("status", "Say how far the parts of a run are, and which are to be run again");
+  verb->add_option("DIR", options->directories, "Runs, or directories whose subdirectories are runs")->required();
+  verb->add_flag("--json", options->json, "Print JSON instead of a table");
+  arrange(*verb, "", {{"DIR", "DIR"}});
+  verb->footer(
+      "Example: lgabench status runs/q1\n"
+      "Exit 0: all parts are complete, or running. Exit 3: some are to be run again, as --array lists.");
+  verb->callback([options, &exit] { exit = print_status(options->directories, options->json); });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,191 @@
+// lgabench study: the user study that people take in a browser, from a protocol to participants' files.
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/filled.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/report/writers.hpp>
+#include <lgabench/study/rehearse.hpp>
+#include <lgabench/study/report.hpp>
+#include <lgabench/study/server.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+struct Arguments {
+  std::string what, host, protocol = "paper";
+  fs::path path, out;
+  std::string bind = "127.0.0.1";
+  int port = 8000, people = 1;
+  bool pin = false, rehearsal = false, behind_tls_proxy = false;
+};
+
+int new_study(const Arguments& a) {
+  const fs::path templates = data_directory() / "protocols";
+  const fs::path shipped = templates / (a.protocol + ".json.in");
+  if (a.protocol.find('/') != a.protocol.npos || !fs::exists(shipped))
+    throw InputError(fmt::format("--protocol {}: expected paper or crossover", a.protocol));
+  if (std::error_code error; fs::exists(a.path / "protocol.json", error))
+    throw InputError(fmt::format("{}: holds a study already; nothing was written", a.path.string()));
+  const std::string seed = std::to_string(std::random_device()() % 1000000);
+  const std::string protocol = filled(read_file(shipped), {{"@SEED@", seed}});
+  const Json json = parse_json(protocol, shipped.string());
+  const std::vector<std::pair<std::string, std::string>> values{{"@DIR@", a.path.string()},
+                                                                {"@PEOPLE@", json.at("planned_people").dump()},
+                                                                {"@MINUTES@", json.at("minutes").dump()}};
+  write_file(a.path / "protocol.json", protocol);
+  write_file(a.path / "consent.txt", read_file(templates / "consent.txt.in"));
+  write_file(a.path / "README.md", filled(read_file(templates / "README.md.in"), values));
+  for (const char* file : {"protocol.json", "consent.txt", "README.md"}) to_stdout("{}\n", (a.path / file).string());
+  to_stdout("\nTo see what is to be filled:\n  lgabench study check {}\n", a.path.string());
+  to_stdout("To try it in a browser before:\n  lgabench study serve {} --out {} --rehearsal\n",
+            (a.path / "protocol.json").string(), (a.path / "tried").string());
+  return ok;
+}
+
+// A protocol, or the directory of one.
+fs::path protocol_file(const fs::path& path) { return fs::is_directory(path) ? path / "protocol.json" : path; }
+
+int check(const Arguments& a) {
+  const fs::path file = protocol_file(a.path);
+  const study::Protocol protocol = study::read_protocol(file);
+  const std::vector<std::string> blanks = study::blanks(protocol);
+  for (const std::string& blank : blanks) to_stdout("to fill: {}\n", blank);
+  to_stdout("{}: {} commands a person, {} people planned, {} with spares for {} interruptions\n", protocol.id,
+            protocol.trials(), protocol.planned,
+            protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
+  const fs::path pin = study::pin_file(file);
+  if (a.pin && blanks.empty() && !fs::exists(pin)) write_file(pin, study::pin_of(protocol).dump(1) + "\n");
+  if (const std::string why = study::not_ready(protocol, file); !why.empty())
+    throw InputError(fmt::format("{}: {}", file.string(), why));
+  to_stdout("pinned: {}\n", protocol.pin);
+  return ok;
+}
+
+// Serves until it is told to stop, by the terminal or by a signal.
+void serve_until_stopped(study::Server& server) {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread of the server
+  std::thread stopper([&signals, &server] {
+    int which = 0;
+    ::sigwait(&signals, &which);
+    server.stop();
+  });
+  server.run();
+  stopper.join();
+}
+
+int serve(const Arguments& a) {
+  const fs::path file = protocol_file(a.path);
+  study::Protocol protocol = study::read_protocol(file);
+  const study::Kind kind = a.rehearsal ? study::Kind::rehearsal : study::Kind::people;
+  if (const std::string why = study::not_ready(protocol, file); !a.rehearsal && !why.empty())
+    throw InputError(fmt::format("{}: {} (--rehearsal tries it without)", file.string(), why));
+  const bool beyond = a.bind != "127.0.0.1" && a.bind != "::1" && a.bind != "localhost";
+  if (beyond && !a.behind_tls_proxy)
+    throw InputError(
+        fmt::format("--bind {}: the study speaks plain HTTP, which others on the network can read and change; put a "
+                    "server with TLS before it, and say so with --behind-tls-proxy",
+                    a.bind));
+  if (a.behind_tls_proxy && a.host.empty())
+    throw InputError("--behind-tls-proxy: expected --host NAME too, the name that people open");
+  ::umask(077);
+  study::Study study(a.out, std::move(protocol), file, kind);
+  study::Server server(study, study::load_site(), {a.bind, a.port, a.host});
+  to_stdout("{} at http://{}:{}/ (Ctrl-C ends it; it goes on when started again)\n",
+            a.rehearsal ? "a rehearsal" : "the study", a.bind, server.port());
+  flush_stdout();
+  serve_until_stopped(server);
+  return ok;
+}
+
+int rehearse(const Arguments& a) {
+  const fs::path file = protocol_file(a.path);
+  ::umask(077);
+  study::Study study(a.out, study::read_protocol(file), file, study::Kind::rehearsal);
+  study::Server server(study, study::load_site(), {});
+  std::thread serving([&server] { server.run(); });
+  std::exception_ptr failure;
+  try {
+    for (int i = 0; i < a.people; ++i) study::simulate_person(study.protocol(), server.port(), study.slots());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  server.stop();
+  serving.join();
+  if (failure) std::rethrow_exception(failure);
+  to_stdout("{} simulated people took part. What comes of it:\n  lgabench study report {}\n", a.people, a.out.string());
+  to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
+  return ok;
+}
+
+int report_study(const Arguments& a) {
+  to_stdout("{}", report::terminal(study::write_report(a.path), a.path));
+  to_stderr("{}\n", (a.path / "report.md").string());
+  return ok;
+}
+
+int carry_out(const Arguments& a) {
+  if (a.out.empty() && (a.what == "serve" || a.what == "rehearse"))
+    throw InputError(fmt::format("study {}: expected --out DIR", a.what));
+  if (a.what == "new") return new_study(a);
+  if (a.what == "check") return check(a);
+  if (a.what == "rehearse") return rehearse(a);
+  if (a.what == "report") return report_study(a);
+  return serve(a);
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, int& exit) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = app.add_subcommand("study", "Ask people: a study in a browser, for the rows Human and LGA-HILL");
+  verb->add_option("what", a->what,
+                   "new: write a protocol to fill into DIR; check: what is missing; serve: show the pages of DIR's "
+                   "protocol; rehearse: let simulated people take part; report: what came out")
+      ->required()
+      ->check(one_of("action", {"new", "check", "serve", "rehearse", "report"}));
+  verb->add_option("path", a->path, "The study's directory, or its protocol; for report, what serve wrote")->required();
+  verb->add_option("--out", a->out, "serve, rehearse: where answers go; a study that is there goes on");
+  verb->add_option("--protocol", a->protocol, "new: the paper's study, or one where nobody sees a command twice")
+      ->check(one_of("protocol", {"paper", "crossover"}))
+      ->capture_default_str();
+  verb->add_flag("--pin", a->pin,
+                 "check: write down the hashes of what is not to change any more, beside the protocol");
+  verb->add_option("--bind", a->bind, "serve: the address to listen on")->capture_default_str();
+  verb->add_option("--port", a->port, "serve: the port; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: a server with TLS stands before this one");
+  verb->add_option("--host", a->host, "serve: the name (and port) by which that server is reached");
+  verb->add_option("--people", a->people, "rehearse: how many simulated people take part")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  verb->add_flag("--rehearsal", a->rehearsal,
+                 "serve: try it, without a pin; the answers are marked and no tool takes them for people's");
+  arrange(*verb, "", {{"what", "new|check|serve|rehearse|report"}, {"path", "DIR"}, {"--out", "DIR"}});
+  arrange(*verb, "The protocol", {{"--protocol", "paper|crossover"}, {"--pin", ""}});
+  arrange(
+      *verb, "The server",
+      {{"--bind", "ADDRESS"}, {"--port", "N"}, {"--behind-tls-proxy", ""}, {"--host", "NAME"}, {"--rehearsal", ""}});
+  arrange(*verb, "Simulated people", {{"--people", "N"}});
+  verb->footer(
+      "docs/study.md says how, from nothing to a first participant.\n"
+      "Example: lgabench study new my_study\n"
+      "         lgabench study serve my_study/protocol.json --out my_study/data");
+  verb->callback([a, &exit] { exit = carry_out(*a); });
+}
+
+}  // namespace lgabench::cli

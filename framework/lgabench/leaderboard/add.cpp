@@ -1,0 +1,259 @@
+#include <lgabench/leaderboard/add.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/harness/answers.hpp>
+#include <lgabench/leaderboard/played_cell.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using report::CellResult;
+using report::RunResults;
+
+// A cell as the report reads it, and its configuration.
+struct Found {
+  const CellResult* result = nullptr;
+  Cell cell;
+};
+using Row = std::map<Place, Found>;
+using Rows = std::map<std::pair<std::string, std::string>, Row>;  // by the row's name and the engine
+
+// Reasons, those that hold for many cells counted.
+class Reasons {
+ public:
+  void add(const std::string& reason) { lines_.push_back(reason); }
+  void of_cell(const std::string& reason, const std::string& title) {
+    auto& [count, first] = cells_[reason];
+    if (count++ == 0) first = title;
+  }
+  std::vector<std::string> lines() const {
+    std::vector<std::string> all = lines_;
+    for (const auto& [reason, cells] : cells_)
+      all.push_back(fmt::format("{}: {}{}", reason, cells.second,
+                                cells.first > 1 ? fmt::format(" and {} more cells", cells.first - 1) : ""));
+    return all;
+  }
+
+ private:
+  std::vector<std::string> lines_;
+  std::map<std::string, std::pair<int, std::string>> cells_;
+};
+
+Rows rows_of(const RunResults& run, const std::vector<std::string>& wanted) {
+  Rows rows;
+  std::set<std::string> names;
+  for (const CellResult& result : run.cells) {
+    names.insert(result.method);
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), result.method) == wanted.end()) continue;
+    const fs::path file = run.directory / "cells" / result.key / "cell.json";
+    Found found{&result, read_cell(read_json(file, Links::refused), file.string())};
+    const Place place{result.scenario, result.layout, result.demonstrations, found.cell.training_seed};
+    rows[{result.method, result.engine}][place] = std::move(found);
+  }
+  for (const std::string& name : wanted)
+    if (names.count(name) == 0)
+      throw InputError(
+          fmt::format("{}: no row {}, the run has: {}", run.directory.string(), name, fmt::join(names, ", ")));
+  return rows;
+}
+
+// What of a cell's settings is not the board's, the first of them; "" where all is.
+std::string other_setting(const Json& cell, const Json& expected) {
+  for (const auto& [member, value] : expected.items()) {
+    const Json there = cell.value(member, Json());
+    if (there == value) continue;
+    if (member == "scenario") return "the scenario is not as the board's preset has it";
+    if (member == "data") return "computed with other data than this installation's";
+    return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
+  }
+  return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
+}
+
+// SHA-256 of what a cell's answers are: of the cassette, or of the files that it names.
+std::string answers_hash(const fs::path& run, const Installed& installed, const Cell& cell, Reasons& reasons) {
+  if (is_live(cell.answers)) {
+    const std::optional<AnswerFile> replies = kept_replies(run);
+    if (!replies) {
+      reasons.add(cell.answers + ": a live model's answers without their cassette (answers/ of the run)");
+      return "";
+    }
+    return sha256_file(replies->path);
+  }
+  if (const std::string cassette = cassette_of(cell.answers); !cassette.empty()) {
+    if (!fs::exists(run / "answers" / (cassette + ".jsonl")))
+      reasons.add(cell.answers + ": the cassette is not in answers/ of the run");
+    return cassette;
+  }
+  std::set<std::string> lines;
+  if (cell.answers != no_answers)
+    for (const Setting::Scenario& s : installed.setting.scenarios) {
+      const Scenario scenario = suite_scenario(installed.suite, s.id, Truth::released);
+      const std::string source = recorded_source(scenario, cell.answers, cell.method.asks == "edit");
+      lines.insert(source + " " + sha256_file(data_directory() / "answers" / (source + ".json")));
+    }
+  return sha256(fmt::format("{}", fmt::join(lines, "\n")));
+}
+
+std::string version_of(const RunResults& run, const std::string& kind, const std::string& id) {
+  for (const Json& plugin : run.json.at("plugins"))
+    if (plugin.at("kind") == kind && plugin.at("id") == id) return plugin.at("version");
+  throw InputError(fmt::format("{}: no {} {} in its /plugins", (run.directory / "run.json").string(), kind, id));
+}
+
+Json evidence_of(const RunResults& run, const Identity& identity, const Json& data, const Json& about) {
+  Json plugins = Json::array();
+  for (const Json& plugin : run.json.at("plugins"))
+    if ((plugin.at("kind") == "engine" && plugin.at("id") == identity.engine) ||
+        (plugin.at("kind") == "method" && plugin.at("id") == identity.row.id))
+      plugins.push_back({{"kind", plugin.at("kind")},
+                         {"id", plugin.at("id")},
+                         {"version", plugin.at("version")},
+                         {"sha256", plugin.at("sha256")}});
+  const Json& json = run.json;
+  return {{"by", about.at("by")},
+          {"program", json.value("program", "lgabench " + json.at("version").get<std::string>())},
+          {"version", json.at("version")},
+          {"build", json.at("build")},
+          {"plugins", plugins},
+          {"machine", json.at("machine")},
+          {"confinement", json.value("confinement", "unknown")},
+          {"started", json.at("started")},
+          {"command", json.at("command")},
+          {"data", data}};
+}
+
+Entry entry_of(const RunResults& run, const Installed& installed, const Row& row, const Json& about, Reasons& reasons) {
+  const Cell& first = row.begin()->second.cell;
+  Entry entry;
+  entry.setting = installed.setting;
+  entry.about = about;
+  entry.failures = failure_words();
+  entry.identity.row = first.method;
+  entry.identity.row.name = first.method.id;
+  entry.identity.answers = first.answers;
+  entry.identity.answers_sha256 = answers_hash(run.directory, installed, first, reasons);
+  entry.identity.engine = first.engine;
+  entry.identity.engine_version = version_of(run, "engine", first.engine);
+  entry.identity.preset_sha256 = hash(installed.setting);
+  entry.identity.scene_seed = installed.setting.scene_seed;
+  Json data = Json::object();
+  for (const Cell& cell : cells_of_row(installed, first.method, first.engine, first.answers)) {
+    const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
+    const auto found = row.find(place);
+    if (found == row.end()) {
+      reasons.add(fmt::format("missing: {} {}", first.method.name, place.text()));
+      continue;
+    }
+    Json expected = to_json(cell);
+    expected["method"]["name"] = first.method.name;
+    const std::string title = found->second.cell.title();
+    if (const std::string reason = other_setting(to_json(found->second.cell), expected); !reason.empty()) {
+      reasons.of_cell(reason, title);
+    } else if (const CellResult& result = *found->second.result; result.failed && result.fault != "plugin") {
+      reasons.add(fmt::format("failed by the {}, not by the method: {}: {}", result.fault, title, result.reason));
+    } else {
+      entry.cells.push_back(played_cell(result, run.directory / "cells" / result.key, key(cell), entry));
+      data.update(cell.data);
+    }
+  }
+  entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
+  return entry;
+}
+
+// Whether two entries of one identity tell the same of every cell, clocks and builds aside.
+int other_cells(const Entry& there, const Entry& here) {
+  int differing = 0;
+  for (std::size_t i = 0; i < there.cells.size(); ++i) {
+    const PlayedCell &a = there.cells[i], &b = here.cells[i];
+    differing += a.outcomes != b.outcomes || a.scenes != b.scenes || a.failed.empty() != b.failed.empty();
+  }
+  return differing;
+}
+
+void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
+  if (run.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
+  if (run.json.value("confinement", "").rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
+  if (run.not_run > 0) reasons.add(fmt::format("{} cells of the run have not been played", run.not_run));
+  for (const CellResult& cell : run.cells)
+    if (!cell.participant.empty()) {
+      reasons.add("answers of people (--humans), for which the board has no place");
+      break;
+    }
+}
+
+// The answers that an entry is based on, kept beside the entries for whoever verifies it.
+std::vector<AnswerFile> cassettes_of(const fs::path& run, const Entry& entry) {
+  std::vector<AnswerFile> files;
+  for (AnswerFile& file : kept_answers(run))
+    if (file.name == entry.identity.answers_sha256 + ".jsonl") files.push_back(std::move(file));
+  return files;
+}
+
+}  // namespace
+
+Added add_run(const fs::path& board, const fs::path& directory, const Json& about,
+              const std::vector<std::string>& wanted) {
+  Added added;
+  Reasons reasons;
+  RunResults run;
+  try {
+    run = report::read_run(directory);
+  } catch (const InputError& e) {  // an edited file, among others
+    added.refused.emplace_back(e.what());
+    return added;
+  }
+  expect_run_of_the_board(run, reasons);
+  std::optional<Installed> installed;
+  try {
+    installed = installed_setting(run.suite, run.json.value("preset", ""));
+  } catch (const InputError& e) {
+    reasons.add(e.what());
+    added.refused = reasons.lines();
+    return added;
+  }
+  const Rows rows = rows_of(run, wanted);
+  if (rows.empty()) reasons.add("no cell has been played");
+  std::vector<Entry> entries, known;
+  for (const auto& item : rows) {
+    entries.push_back(entry_of(run, *installed, item.second, about, reasons));
+    if (!reasons.lines().empty()) continue;
+    Entry& entry = entries.back();
+    if (!fs::exists(board / entry.place())) continue;
+    Entry there = read_entry(board, entry.place());
+    const Json evidence = entry.evidence.front();
+    if (const int differing = other_cells(there, entry))
+      reasons.add(fmt::format("{}: this identity is there, with other outcomes in {} of {} cells",
+                              entry.place().string(), differing, there.cells.size()));
+    else if (!there.withdrawn.is_null())
+      reasons.add(fmt::format("{}: this identity was withdrawn", entry.place().string()));
+    else if (std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end())
+      reasons.add(fmt::format("{}: this run is there", entry.place().string()));
+    there.evidence.push_back(evidence);
+    known.push_back(std::move(there));
+    entries.pop_back();
+  }
+  added.refused = reasons.lines();
+  if (!added.refused.empty()) return added;
+  for (const Entry& entry : entries) {
+    keep_answers(cassettes_of(directory, entry), board);
+    write_entry(board, entry);
+    read_entry(board, entry.place());  // what is written is what every reader takes
+    added.entries.push_back(entry.place().string());
+  }
+  for (const Entry& entry : known) {
+    write_file(board / entry.place() / "entry.json", entry_text(entry));
+    added.evidence.push_back(entry.place().string());
+  }
+  return added;
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,140 @@
+#include <lgabench/leaderboard/check.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/process.hpp>
+#include <lgabench/core/scratch.hpp>
+#include <lgabench/leaderboard/pages.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+// What git prints, in the board's directory; none where it fails.
+std::optional<std::string> git(const fs::path& board, std::vector<std::string> words) {
+  const Scratch scratch("git");
+  const fs::path out = scratch.path / "out";
+  const int file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600),
+            null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  words.insert(words.begin(), {"git", "-C", board.string()});
+  const int status = wait_for(start_process({words, environment_with({"LC_ALL=C"}), {{file, 1}, {null, 2}}}));
+  ::close(file);
+  ::close(null);
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
+  return read_file(out);
+}
+
+bool begins_with(const Json& list, const Json& first) {
+  return list.size() >= first.size() && std::equal(first.begin(), first.end(), list.begin());
+}
+
+// entry.json may gain evidence and be withdrawn; nothing else in it changes.
+std::string changed_entry(const std::string& before, const std::string& now) {
+  const Json there = json_or_null(before), here = json_or_null(now);
+  if (!there.is_object() || !here.is_object()) return "is no JSON object any more";
+  for (const auto& [member, value] : there.items()) {
+    const Json other = here.value(member, Json());
+    if (member == "evidence" ? !begins_with(other, value) : other != value) return fmt::format("/{} changed", member);
+  }
+  return "";
+}
+
+void compare_with(const fs::path& board, const std::string& revision, Checked& checked) {
+  const auto changes = git(
+      board, {"diff", "--name-status", "--no-renames", "--relative", "--end-of-options", revision, "--", "entries"});
+  if (!changes) {
+    checked.notes.push_back(fmt::format(
+        "not compared with {}: git, its history or that revision is not there, so an old outcome could have changed",
+        revision));
+    return;
+  }
+  std::istringstream lines(*changes);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t tab = line.find('\t');
+    if (tab == std::string::npos || line[0] == 'A') continue;
+    const std::string file = line.substr(tab + 1), name = fs::path(file).filename();
+    const auto complain = [&](const std::string& what) {
+      checked.problems.push_back(fmt::format("{}: {} since {}", file, what, revision));
+    };
+    if (line[0] == 'D') {
+      complain("is gone (leaderboard withdraw keeps the record)");
+      continue;
+    }
+    const auto before = git(board, {"show", fmt::format("{}:./{}", revision, file)});
+    const std::string now = read_file(board / file);
+    if (name == "cells.jsonl")
+      complain("an outcome or a cell changed");
+    else if (!before || (name == "verifications.jsonl" && now.rfind(*before, 0) != 0))
+      complain("a verification changed");
+    else if (const std::string what = name == "entry.json" ? changed_entry(*before, now) : ""; !what.empty())
+      complain(what);
+  }
+}
+
+// Entries of one table played the same scenes: a cell's hash of scenes is every other entry's.
+void expect_same_scenes(const std::vector<Entry>& entries, Checked& checked) {
+  for (const auto& table : tables(entries)) {
+    std::map<std::tuple<std::string, std::string, std::uint64_t>, std::pair<std::string, const Entry*>> scenes;
+    for (const Entry* entry : table)
+      for (const PlayedCell& cell : entry->cells) {
+        if (cell.scenes.empty()) continue;
+        const std::uint64_t set = entry->setting.test_scenes == "per_seed" ? cell.place.seed : 0;
+        const auto& [first, by] =
+            scenes.try_emplace({cell.place.scenario, cell.place.layout, set}, cell.scenes, entry).first->second;
+        if (first == cell.scenes) continue;
+        checked.problems.push_back(fmt::format("{}: other test scenes than {} in {}", entry->place().string(),
+                                               by->place().string(), cell.place.text()));
+        break;
+      }
+  }
+}
+
+void expect_cassette(const fs::path& board, const Entry& entry, Checked& checked) {
+  if (cassette_of(entry.identity.answers).empty() && !is_live(entry.identity.answers)) return;
+  const fs::path file = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
+  if (!fs::exists(file) || sha256_file(file) != entry.identity.answers_sha256)
+    checked.problems.push_back(
+        fmt::format("{}: {} is not there, or not what its name says", entry.place().string(), file.string()));
+}
+
+void expect_pages(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
+  for (const auto& [name, bytes] : pages(entries))
+    if (!fs::exists(board / name) || read_file(board / name) != bytes)
+      checked.problems.push_back(
+          fmt::format("{}: not what lgabench leaderboard build makes of the entries", (board / name).string()));
+}
+
+}  // namespace
+
+Checked check(const fs::path& board, const std::string& against) {
+  Checked checked;
+  std::vector<Entry> entries;
+  try {
+    for (const fs::path& directory : entry_directories(board)) {
+      ++checked.entries;
+      try {
+        entries.push_back(read_entry(board, directory));
+        expect_cassette(board, entries.back(), checked);
+      } catch (const InputError& e) {
+        checked.problems.emplace_back(e.what());
+      }
+    }
+  } catch (const InputError& e) {  // something else than directories
+    checked.problems.emplace_back(e.what());
+  }
+  expect_same_scenes(entries, checked);
+  if (checked.problems.empty()) expect_pages(board, entries, checked);
+  if (!against.empty()) compare_with(board, against, checked);
+  return checked;
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,100 @@
+// An entry of the leaderboard: one row of a table, as files (docs/formats): entries/METHOD/ID/SUITE-PRESET/.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/leaderboard/setting.hpp>
+
+namespace lgabench::leaderboard {
+
+/// What an entry is, whoever computed it: two with the same parts are one entry.
+struct Identity {
+  Competitor row;                       // its name is its id
+  std::string answers, answers_sha256;  // as Cell::answers; hash of what they are
+  std::string engine, engine_version;
+  std::string preset_sha256;  // hash(setting)
+  std::uint64_t scene_seed = 0;
+};
+Json to_json(const Identity& identity);
+/// The first 16 digits of the SHA-256 of its canonical JSON.
+std::string id_of(const Identity& identity);
+
+/// One cell's line of cells.jsonl.
+struct PlayedCell {
+  Place place;
+  std::string key;                              // of the cell in a run of this row alone
+  std::string scenes;                           // SHA-256 over the hashes of its test scenes; "" where it failed
+  std::string digest;                           // SHA-256 over its results, selection to episodes; "" where it failed
+  std::string failed;                           // why the method failed it; "" where it did not
+  std::map<std::string, std::string> outcomes;  // of each arm a character an episode
+  std::size_t phi = 0;                          // index of its Selections among its scenario's
+  double lm_queries = 0, lm_tokens = 0, human_seconds = 0;  // over its commands
+  double learn_s = 0, total_s = 0;
+  long long steps = 0;  // of the optimiser
+
+  int episodes() const;
+  int successes() const;
+};
+constexpr char success_letter = '.', failed_cell_letter = '!';
+Json to_json(const PlayedCell& cell);
+
+/// How far an entry was checked.
+enum class Tier { recomputed, replayed, reproduced };
+std::string to_string(Tier tier);
+
+struct Entry {
+  Identity identity;
+  Setting setting;
+  std::vector<PlayedCell> cells;       // one for each of the setting's places, in their order
+  Json about;                          // what its authors say
+  Json phi = Json::object();           // scenario -> lists of its commands' Selections, distinct ones
+  std::vector<std::string> failures;   // what the letters from 'a' on mean
+  Json evidence = Json::array();       // who computed it with what
+  Json withdrawn;                      // {"when", "reason"}, or null
+  Json verifications = Json::array();  // lines of verifications.jsonl
+
+  std::string id() const { return id_of(identity); }
+  /// entries/METHOD/ID/SUITE-PRESET, relative to the board. @throws InputError for a method's id that could lead
+  /// elsewhere.
+  fs::path place() const;
+  /// SHA-256 over id and cells: what a nonce is drawn against.
+  std::string hash() const;
+  Tier tier() const;
+  /// Whether the last verification of its kind on fresh scenes agreed, or none was made: 0 none, 1 agreed, -1 differs.
+  int fresh() const;
+  /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
+  std::string spec() const;
+};
+
+/// Reads and checks an entry's directory: schema, identity, completeness, letters. @throws InputError with the file and
+/// the first place that is not as docs/formats says.
+Entry read_entry(const fs::path& board, const fs::path& directory);
+/// Directories of all entries, sorted, relative to the board. @throws InputError for what is neither file nor
+/// directory.
+std::vector<fs::path> entry_directories(const fs::path& board);
+/// All entries. @throws InputError as read_entry().
+std::vector<Entry> read_entries(const fs::path& board);
+
+/// What authors say of their rows, from a file. @throws InputError for what is not as docs/formats says.
+Json read_about(const fs::path& file);
+
+/// entry.json and cells.jsonl, as text.
+std::string entry_text(const Entry& entry);
+std::string cells_text(const Entry& entry);
+/// Writes both. Verifications are appended by add_verification() alone.
+void write_entry(const fs::path& board, const Entry& entry);
+void add_verification(const fs::path& board, const Entry& entry, const Json& verification);
+
+/// The entry of that directory or id. @throws InputError where there is none, or several.
+fs::path find_entry(const fs::path& board, const std::string& name);
+/// Marks the entry as withdrawn; its files remain. @throws InputError as find_entry(), and for one that was before.
+void withdraw(const fs::path& board, const std::string& name, const std::string& reason, const std::string& when);
+
+/// The `cells` places that a nonce (32 hexadecimal digits) chooses: those with the smallest SHA-256 of the entry's
+/// hash, the nonce and the cell's key.
+std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& nonce, std::size_t cells);
+
+}  // namespace lgabench::leaderboard

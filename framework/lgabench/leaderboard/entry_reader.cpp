@@ -1,0 +1,244 @@
+// An entry's files, read and checked into a value: what somebody sent is untrusted.
+#include <fmt/format.h>
+
+#include <cstdint>
+
+#include <lgabench/core/run_layout.hpp>
+#include <lgabench/leaderboard/entry.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+void expect_sha256(const JsonReader& reader) {
+  const std::string text = reader.string();
+  if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos)
+    reader.fail("64 hexadecimal digits");
+}
+
+Identity read_identity(const JsonReader& reader) {
+  reader.only({"method", "kind", "version", "options", "asks", "answers", "engine", "preset", "scene_seed"});
+  Identity identity;
+  identity.row.kind = reader.at("kind").string();
+  if (identity.row.kind != "method" && identity.row.kind != "reference") reader.at("kind").fail("method or reference");
+  identity.row.id = identity.row.name = reader.at("method").string();
+  identity.row.version = reader.at("version").string();
+  identity.row.options = reader.at("options").json();
+  if (!identity.row.options.is_object()) reader.at("options").fail("an object");
+  if (reader.has("asks")) identity.row.asks = reader.at("asks").string();
+  const JsonReader answers = reader.at("answers"), engine = reader.at("engine");
+  answers.only({"source", "sha256"});
+  engine.only({"id", "version"});
+  identity.answers = answers.at("source").string();
+  expect_sha256(answers.at("sha256"));
+  identity.answers_sha256 = answers.at("sha256").string();
+  identity.engine = engine.at("id").string();
+  identity.engine_version = engine.at("version").string();
+  expect_sha256(reader.at("preset"));
+  identity.preset_sha256 = reader.at("preset").string();
+  identity.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, INT64_MAX));
+  return identity;
+}
+
+PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
+  reader.only({"key", "scenario", "layout", "demonstrations", "training_seed", "scenes", "digest", "failed", "outcomes",
+               "phi", "lm_queries", "lm_tokens", "human_seconds", "learn_s", "total_s", "steps"});
+  PlayedCell cell;
+  cell.place = {reader.at("scenario").string(), reader.at("layout").string(),
+                static_cast<int>(reader.at("demonstrations").integer(0, INT32_MAX)),
+                static_cast<std::uint64_t>(reader.at("training_seed").integer(0, INT64_MAX))};
+  cell.key = reader.at("key").string();
+  if (!is_cell_key(cell.key)) reader.at("key").fail("16 hexadecimal digits");
+  if (reader.has("failed")) cell.failed = reader.at("failed").string();
+  for (const auto& [member, text] : {std::pair("scenes", &cell.scenes), {"digest", &cell.digest}})
+    if (cell.failed.empty()) {
+      expect_sha256(reader.at(member));
+      *text = reader.at(member).string();
+    }
+  const JsonReader outcomes = reader.at("outcomes");
+  const std::vector<std::string>& arms = entry.setting.scenario(cell.place.scenario).arms;
+  outcomes.only(arms);
+  for (const std::string& arm : arms) {
+    const JsonReader letters = outcomes.at(arm);
+    const std::string text = letters.string();
+    if (text.size() != static_cast<std::size_t>(entry.setting.episodes))
+      letters.fail(fmt::format("{} letters, one an episode", entry.setting.episodes));
+    for (const char c : text) {
+      const int failure = c >= 'a' && c <= 'z' ? c - 'a' : c >= 'A' && c <= 'Z' ? c - 'A' : -1;
+      const bool known = cell.failed.empty() ? c == success_letter ||
+                                                   (failure >= 0 && failure < static_cast<int>(entry.failures.size()))
+                                             : c == failed_cell_letter;
+      if (!known) letters.fail(cell.failed.empty() ? "\".\", or the letter of a failure" : "\"!\" of a failed cell");
+    }
+    cell.outcomes[arm] = text;
+  }
+  const auto phis = entry.phi.find(cell.place.scenario);
+  if (reader.has("phi"))
+    cell.phi = static_cast<std::size_t>(
+        reader.at("phi").integer(0, phis == entry.phi.end() ? 0 : static_cast<long long>(phis->size()) - 1));
+  const auto amount = [&](const char* member) {
+    const double value = reader.at(member).number();
+    if (value < 0) reader.at(member).fail("0 or more");
+    return value;
+  };
+  cell.lm_queries = amount("lm_queries");
+  cell.lm_tokens = amount("lm_tokens");
+  cell.human_seconds = amount("human_seconds");
+  cell.learn_s = amount("learn_s");
+  cell.total_s = amount("total_s");
+  cell.steps = reader.at("steps").integer(0, INT64_MAX);
+  return cell;
+}
+
+void expect_about(const JsonReader& about) {
+  about.only({"authors", "license", "source", "by", "answers", "note"});
+  if (about.at("authors").strings().empty()) about.at("authors").fail("at least one name");
+  for (const char* text : {"license", "by"})
+    if (about.at(text).string().empty()) about.at(text).fail("a text");
+  for (const char* text : {"answers", "note"})
+    if (about.has(text)) about.at(text).string();
+  const JsonReader source = about.at("source");
+  source.only({"repository", "commit", "file", "sha256"});
+  if (source.has("repository")) {
+    source.at("repository").string();
+    const std::string commit = source.at("commit").string();
+    if (commit.size() != 40 || commit.find_first_not_of("0123456789abcdef") != std::string::npos)
+      source.at("commit").fail("40 hexadecimal digits");
+  } else {
+    source.at("file").string();
+    expect_sha256(source.at("sha256"));
+  }
+}
+
+void expect_phi(const JsonReader& phi, const Setting& setting) {
+  std::vector<std::string> scenarios;
+  for (const Setting::Scenario& s : setting.scenarios) scenarios.push_back(s.id);
+  phi.only(scenarios);
+  for (const auto& scenario : phi.json().items()) {
+    const std::vector<JsonReader> lists = phi.at(scenario.key()).elements();
+    if (lists.empty()) phi.at(scenario.key()).fail("at least one list of Selections");
+    for (const JsonReader& list : lists)
+      for (const JsonReader& command : list.elements()) {
+        command.at("utterance").string();
+        command.at("selection").at("provenance").string();
+        command.at("selection").at("target");
+        command.at("quality");
+      }
+  }
+}
+
+void expect_evidence(const JsonReader& evidence) {
+  if (evidence.elements().empty()) evidence.fail("at least one run");
+  for (const JsonReader& one : evidence.elements()) {
+    one.only({"by", "program", "version", "build", "plugins", "machine", "confinement", "started", "command", "data"});
+    for (const char* text : {"by", "program", "version", "confinement", "started", "command"}) one.at(text).string();
+    one.at("machine").at("processor").string();
+    for (const JsonReader& plugin : one.at("plugins").elements())
+      for (const char* text : {"kind", "id", "version", "sha256"}) plugin.at(text).string();
+    for (const char* object : {"build", "data"})
+      if (!one.at(object).json().is_object()) one.at(object).fail("an object");
+  }
+}
+
+// A letter for each word, as many as there are.
+std::vector<std::string> read_failures(const JsonReader& reader) {
+  const std::vector<std::string> words = reader.strings();
+  if (words.size() > 26) reader.fail("26 words at most");
+  return words;
+}
+
+void expect_verification(const JsonReader& line) {
+  line.only({"kind", "nonce", "cells", "bit_identical", "flips", "episodes", "passed", "by", "when", "program", "build",
+             "machine", "confinement", "scene_seed", "demonstrations", "training_seed", "difference", "low", "high"});
+  const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
+  if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
+  if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
+    line.at("nonce").fail("32 hexadecimal digits");
+  line.at("passed").boolean();
+  for (const char* text : {"by", "when", "program", "confinement"}) line.at(text).string();
+  line.at("machine").at("processor").string();
+  line.at("cells").strings();
+  if (kind == "fresh")
+    for (const char* number : {"difference", "low", "high"}) line.at(number).number();
+}
+
+// The cells that a verification says it played are those that its nonce chooses.
+void expect_chosen(const JsonReader& line, const Entry& entry) {
+  if (line.at("kind").string() != "replay") return;
+  const std::vector<std::string> said = line.at("cells").strings();
+  std::vector<std::string> chosen;
+  for (const std::size_t i : chosen_cells(entry, line.at("nonce").string(), said.size()))
+    chosen.push_back(entry.cells[i].key);
+  if (said != chosen) line.at("cells").fail("the cells that the nonce chooses");
+}
+
+}  // namespace
+
+Entry read_entry(const fs::path& board, const fs::path& directory) {
+  const fs::path path = board / directory;
+  expect_plain_entries(path);
+  for (const auto& file : fs::directory_iterator(path))
+    if (const std::string name = file.path().filename();
+        name != "entry.json" && name != "cells.jsonl" && name != "verifications.jsonl")
+      throw InputError(
+          fmt::format("{}: expected entry.json, cells.jsonl and verifications.jsonl alone here", file.path().string()));
+  const fs::path file = path / "entry.json";
+  const Json json = read_json(file, Links::refused);
+  const JsonReader reader(json, file.string());
+  reader.only({"id", "identity", "preset", "about", "failures", "phi", "evidence", "withdrawn"});
+  Entry entry;
+  entry.identity = read_identity(reader.at("identity"));
+  entry.setting = read_setting(reader.at("preset"));
+  if (entry.identity.preset_sha256 != leaderboard::hash(entry.setting))
+    reader.at("identity").at("preset").fail("the hash of /preset");
+  if (entry.identity.scene_seed != entry.setting.scene_seed)
+    reader.at("identity").at("scene_seed").fail("that of /preset");
+  if (reader.at("id").string() != entry.id()) reader.at("id").fail(entry.id() + ", the hash of /identity");
+  if (directory != entry.place())
+    throw InputError(fmt::format("{}: expected at {}, by its identity", path.string(), entry.place().string()));
+  expect_about(reader.at("about"));
+  entry.about = reader.at("about").json();
+  entry.failures = read_failures(reader.at("failures"));
+  expect_phi(reader.at("phi"), entry.setting);
+  entry.phi = reader.at("phi").json();
+  expect_evidence(reader.at("evidence"));
+  entry.evidence = reader.at("evidence").json();
+  if (reader.has("withdrawn")) {
+    for (const char* text : {"when", "reason"}) reader.at("withdrawn").at(text).string();
+    entry.withdrawn = reader.at("withdrawn").json();
+  }
+  if (entry_text(entry) != read_file(file)) throw InputError(fmt::format("{}: not as it is written", file.string()));
+
+  const fs::path lines = path / "cells.jsonl";
+  int number = 0;
+  const std::vector<Place> places = entry.setting.places(learns(entry.identity.row));
+  const std::string text = read_file(lines, Links::refused);
+  for (const Json& line : parse_json_lines(text, lines.string())) {
+    const JsonReader at(line, fmt::format("{}: line {}", lines.string(), ++number));
+    entry.cells.push_back(read_cell_line(at, entry));
+    const std::size_t i = entry.cells.size() - 1;
+    if (i >= places.size() || !(places[i] == entry.cells[i].place))
+      at.fail(i < places.size() ? "the cell " + places[i].text() : fmt::format("{} cells", places.size()));
+  }
+  if (entry.cells.size() < places.size())
+    throw InputError(fmt::format("{}: expected {} cells, got {}; the next is {}", lines.string(), places.size(),
+                                 entry.cells.size(), places[entry.cells.size()].text()));
+  if (text != cells_text(entry)) throw InputError(fmt::format("{}: not as it is written", lines.string()));
+  const fs::path checks = path / "verifications.jsonl";
+  number = 0;
+  if (fs::exists(checks))
+    for (const Json& line : parse_json_lines(read_file(checks, Links::refused), checks.string())) {
+      const JsonReader at(line, fmt::format("{}: line {}", checks.string(), ++number));
+      expect_verification(at);
+      expect_chosen(at, entry);
+      entry.verifications.push_back(line);
+    }
+  return entry;
+}
+
+Json read_about(const fs::path& file) {
+  Json about = read_json(file);
+  expect_about(JsonReader(about, file.string()));
+  return about;
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,74 @@
+#include <lgabench/leaderboard/played_cell.hpp>
+
+#include <algorithm>
+
+#include <lgabench/core/hash.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using report::CellResult;
+
+// The Selections of a cell's commands; null for a method that selects nothing.
+Json selections_of(const CellResult& result) {
+  Json all = Json::array();
+  bool selects = false;
+  for (const report::CommandResult& command : result.commands) {
+    selects = selects || !command.quality.is_null();
+    all.push_back({{"utterance", command.utterance}, {"selection", command.selection}, {"quality", command.quality}});
+  }
+  return selects ? all : Json();
+}
+
+std::string letters(const CellResult& result, const std::string& arm, const std::vector<std::string>& words) {
+  std::string text;
+  for (const report::PlayedEpisode& e : result.episodes.at(arm)) {
+    const auto word = static_cast<char>(std::find(words.begin(), words.end(), e.failure) - words.begin());
+    text += e.success ? success_letter : static_cast<char>((e.attribution == "abstraction" ? 'A' : 'a') + word);
+  }
+  return text;
+}
+
+}  // namespace
+
+PlayedCell played_cell(const CellResult& result, const fs::path& directory, const std::string& key, Entry& entry) {
+  PlayedCell cell;
+  cell.place = {result.scenario, result.layout, result.demonstrations,
+                static_cast<std::uint64_t>(result.training_seed)};
+  cell.key = key;
+  if (result.failed) {
+    cell.failed = result.reason;
+    for (const std::string& arm : result.arms)
+      cell.outcomes[arm] = std::string(static_cast<std::size_t>(result.episodes_per_arm), failed_cell_letter);
+    return cell;
+  }
+  std::string scenes, results;
+  for (const std::string& arm : result.arms) {
+    for (const report::PlayedEpisode& e : result.episodes.at(arm)) scenes += e.scene;
+    cell.outcomes[arm] = letters(result, arm, entry.failures);
+  }
+  for (const char* file : {"selection.json", "training.jsonl", "episodes.jsonl"})
+    results += sha256_file(directory / file);
+  cell.scenes = sha256(scenes);
+  cell.digest = sha256(results);
+  if (const Json phi = selections_of(result); !phi.is_null()) {
+    Json& known = entry.phi[result.scenario];
+    const auto same = std::find(known.begin(), known.end(), phi);
+    cell.phi = static_cast<std::size_t>(same - known.begin());
+    if (same == known.end()) known.push_back(phi);
+  }
+  for (const report::CommandResult& command : result.commands) {
+    const Json& cost = command.selection.at("cost");
+    cell.lm_queries += cost.at("lm_queries").get<double>();
+    cell.lm_tokens += cost.at("lm_tokens").get<double>();
+    cell.human_seconds += cost.at("human_seconds").get<double>();
+  }
+  cell.learn_s = result.timing.at("learn_s");
+  cell.total_s = result.timing.at("total_s");
+  const fs::path training = directory / "training.jsonl";
+  const std::vector<Json> epochs = parse_json_lines(read_file(training, Links::refused), training.string());
+  if (!epochs.empty()) cell.steps = JsonReader(epochs.back(), training.string()).at("steps").integer(0, INT64_MAX);
+  return cell;
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,137 @@
+#include <lgabench/leaderboard/setting.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include <lgabench/core/hash.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+constexpr long long most = std::numeric_limits<int>::max();
+constexpr long long largest_seed = std::numeric_limits<std::int64_t>::max();
+
+// A name that may stand in a path.
+std::string name_at(const JsonReader& reader) {
+  const std::string name = reader.string();
+  const bool plain =
+      !name.empty() && name.size() <= 100 &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") == std::string::npos;
+  if (!plain) reader.fail("letters, digits and _");
+  return name;
+}
+
+}  // namespace
+
+std::string Place::text() const { return fmt::format("{} {} n={} seed={}", scenario, layout, demonstrations, seed); }
+
+const Setting::Scenario& Setting::scenario(const std::string& id) const {
+  const auto found = std::find_if(scenarios.begin(), scenarios.end(), [&](const Scenario& s) { return s.id == id; });
+  if (found == scenarios.end()) throw InputError(fmt::format("{}: no scenario \"{}\"", name(), id));
+  return *found;
+}
+
+std::vector<Place> Setting::places(bool learns) const {
+  std::vector<Place> all;
+  const std::vector<std::uint64_t> sets = test_scenes == "per_seed" ? seeds : std::vector<std::uint64_t>{0};
+  for (const Scenario& scenario : scenarios)
+    for (const std::string& layout : layouts) {
+      for (const int n : learns ? demonstrations : std::vector<int>{0})
+        for (const std::uint64_t seed : learns ? seeds : sets) all.push_back({scenario.id, layout, n, seed});
+    }
+  return all;
+}
+
+Json to_json(const Setting& setting) {
+  Json scenarios = Json::array();
+  for (const Setting::Scenario& s : setting.scenarios)
+    scenarios.push_back({{"id", s.id}, {"sha256", s.sha256}, {"arms", s.arms}});
+  return {{"suite", setting.suite},          {"preset", setting.preset},
+          {"scenarios", scenarios},          {"layouts", setting.layouts},
+          {"seeds", setting.seeds},          {"demonstrations", setting.demonstrations},
+          {"episodes", setting.episodes},    {"test_scenes", setting.test_scenes},
+          {"scene_seed", setting.scene_seed}};
+}
+
+Setting read_setting(const JsonReader& reader) {
+  reader.only(
+      {"suite", "preset", "scenarios", "layouts", "seeds", "demonstrations", "episodes", "test_scenes", "scene_seed"});
+  Setting setting;
+  setting.suite = name_at(reader.at("suite"));
+  setting.preset = name_at(reader.at("preset"));
+  for (const JsonReader& scenario : reader.at("scenarios").elements()) {
+    scenario.only({"id", "sha256", "arms"});
+    setting.scenarios.push_back(
+        {name_at(scenario.at("id")), scenario.at("sha256").string(), scenario.at("arms").strings()});
+    if (setting.scenarios.back().arms.empty()) scenario.at("arms").fail("at least one arm");
+  }
+  setting.layouts = reader.at("layouts").strings();
+  for (const JsonReader& n : reader.at("demonstrations").elements())
+    setting.demonstrations.push_back(static_cast<int>(n.integer(1, most)));
+  for (const JsonReader& seed : reader.at("seeds").elements())
+    setting.seeds.push_back(static_cast<std::uint64_t>(seed.integer(0, largest_seed)));
+  setting.episodes = static_cast<int>(reader.at("episodes").integer(1, 1'000'000));
+  setting.test_scenes = reader.at("test_scenes").string();
+  if (setting.test_scenes != "shared" && setting.test_scenes != "per_seed")
+    reader.at("test_scenes").fail("shared or per_seed");
+  setting.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, largest_seed));
+  for (const char* list : {"scenarios", "layouts", "demonstrations", "seeds"})
+    if (reader.at(list).json().empty()) reader.at(list).fail("at least one value");
+  return setting;
+}
+
+std::string hash(const Setting& setting) {
+  Json json = to_json(setting);
+  json.erase("scene_seed");
+  return sha256(canonical(json));
+}
+
+Installed installed_setting(const std::string& suite, const std::string& preset) {
+  if (fs::path(suite).has_extension())
+    throw InputError(fmt::format("suite \"{}\": expected one that is installed, not a file", suite));
+  Installed installed{load_suite(suite), {}, {}};
+  installed.grid = preset_grid(installed.suite, preset);
+  if (preset.empty() || !installed.suite.presets.at(preset).contains("scene_seed")) {
+    std::vector<std::string> boards;
+    for (const auto& [name, members] : installed.suite.presets.items())
+      if (members.contains("scene_seed")) boards.push_back(name);
+    throw InputError(fmt::format("{}: preset \"{}\" has no scene_seed of its own, so it is none of the board's ({})",
+                                 installed.suite.file, preset,
+                                 boards.empty() ? "none" : fmt::format("{}", fmt::join(boards, ", "))));
+  }
+  const Grid& grid = installed.grid;
+  Setting& setting = installed.setting;
+  setting = {installed.suite.id, preset,         {}, grid.layouts, grid.demonstrations, grid.seeds, grid.episodes,
+             grid.test_scenes,   grid.scene_seed};
+  for (const std::string& id : grid.scenarios) {
+    const Scenario scenario = suite_scenario(installed.suite, id, Truth::released);
+    Setting::Scenario& one = setting.scenarios.emplace_back();
+    one.id = id;
+    one.sha256 = sha256(canonical(scenario.json));
+    for (const Json& arm : scenario.json.at("tests")) one.arms.push_back(arm.at("arm"));
+  }
+  return installed;
+}
+
+std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
+                               const std::string& answers) {
+  std::vector<Cell> cells;
+  Cell cell;
+  for (const Place& place : installed.setting.places(learns(row))) {
+    if (cells.empty() || !(place.scenario == cells.back().scenario_id()))
+      cell = unplayed_cell(installed.suite, installed.grid,
+                           suite_scenario(installed.suite, place.scenario, Truth::released), answers);
+    cell.layout = place.layout;
+    cell.engine = engine;
+    cell.method = row;
+    cell.method.name = row.id;
+    cell.demonstrations = place.demonstrations;
+    cell.training_seed = place.seed;
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+}  // namespace lgabench::leaderboard

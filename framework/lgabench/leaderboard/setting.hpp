@@ -1,0 +1,74 @@
+// What all entries of one table of the leaderboard have in common: a preset of a suite, without its methods.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/harness/expand.hpp>
+
+namespace lgabench::leaderboard {
+
+/// Which of a table's cells, whoever plays it.
+struct Place {
+  std::string scenario, layout;
+  int demonstrations = 0;
+  std::uint64_t seed = 0;
+
+  /// "heart continuous n=10 seed=0"
+  std::string text() const;
+  bool operator<(const Place& other) const { return tied() < other.tied(); }
+  bool operator==(const Place& other) const { return tied() == other.tied(); }
+
+ private:
+  std::tuple<const std::string&, const std::string&, const int&, const std::uint64_t&> tied() const {
+    return std::tie(scenario, layout, demonstrations, seed);
+  }
+};
+
+struct Setting {
+  struct Scenario {
+    std::string id, sha256;  // of the scenario with the suite's arms, as canonical JSON
+    std::vector<std::string> arms;
+  };
+  std::string suite, preset;
+  std::vector<Scenario> scenarios;
+  std::vector<std::string> layouts;
+  std::vector<int> demonstrations;
+  std::vector<std::uint64_t> seeds;  // training seeds
+  int episodes = 0;                  // of each arm
+  std::string test_scenes;           // as Grid::test_scenes
+  std::uint64_t scene_seed = 0;
+
+  /// "q1-leaderboard"
+  std::string name() const { return suite + "-" + preset; }
+  /// @throws InputError for a scenario that is none of its own.
+  const Scenario& scenario(const std::string& id) const;
+  /// A row's cells: those of a row that learns, or of a reference row that does not (harness/expand.hpp).
+  std::vector<Place> places(bool learns) const;
+  /// Whether all training seeds play the same scenes.
+  bool shared_scenes() const { return test_scenes == "shared" || seeds.size() == 1; }
+};
+
+Json to_json(const Setting& setting);
+/// @throws InputError with file and place for what is not as docs/formats says.
+Setting read_setting(const JsonReader& reader);
+/// SHA-256 of all but the scene seed, as canonical JSON.
+std::string hash(const Setting& setting);
+
+/// A suite's preset as this installation has it.
+struct Installed {
+  Suite suite;
+  Grid grid;
+  Setting setting;
+};
+/// @throws InputError for a suite that is not installed, or a preset without a scene seed of its own: it is none of the
+/// board's, since methods are tuned on the others' scenes.
+Installed installed_setting(const std::string& suite, const std::string& preset);
+
+/// The cells of a row, in the order of places(). Their keys are those of a run of this row alone.
+std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
+                               const std::string& answers);
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,177 @@
+#include <lgabench/leaderboard/standings.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include <lgabench/report/bootstrap.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+double mean(const std::vector<double>& values) {
+  return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// An entry's rates on the table's test scenes: of each scenario and layout, training seed and scene the share of
+// successes over arms and numbers of demonstrations.
+std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
+  const Setting& setting = entry.setting;
+  std::map<std::pair<std::string, std::string>, std::map<std::uint64_t, std::vector<std::vector<double>>>> by_unit;
+  for (const PlayedCell& cell : entry.cells) {
+    std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
+    for (const auto& arm : cell.outcomes)
+      for (std::size_t i = 0; i < scenes.size(); ++i)
+        scenes[i] += (arm.second[i] == success_letter) / static_cast<double>(cell.outcomes.size());
+    by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
+  }
+  std::vector<std::vector<std::vector<double>>> rates;
+  for (const Setting::Scenario& scenario : setting.scenarios)
+    for (const std::string& layout : setting.layouts) {
+      const auto& by_seed = by_unit.at({scenario.id, layout});
+      auto& unit = rates.emplace_back();
+      for (const std::uint64_t seed : setting.seeds) {
+        const auto own = by_seed.find(seed);  // one that learns nothing plays shared scenes once, for all seeds
+        const auto& cells = own == by_seed.end() ? by_seed.begin()->second : own->second;
+        std::vector<double>& scenes = unit.emplace_back(static_cast<std::size_t>(setting.episodes));
+        for (const std::vector<double>& cell : cells)
+          for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += cell[i] / static_cast<double>(cells.size());
+      }
+    }
+  return rates;
+}
+
+void add_rates(Standing& standing) {
+  const Entry& entry = *standing.entry;
+  std::map<std::string, std::vector<double>> by_scenario;
+  std::map<int, std::map<std::string, std::vector<double>>> at;
+  std::map<std::string, std::map<std::string, std::vector<double>>> in_arm;
+  for (const PlayedCell& cell : entry.cells) {
+    const double rate = static_cast<double>(cell.successes()) / cell.episodes();
+    standing.episodes += cell.episodes();
+    standing.failed_cells += !cell.failed.empty();
+    by_scenario[cell.place.scenario].push_back(rate);
+    at[cell.place.demonstrations][cell.place.scenario].push_back(rate);
+    for (const auto& [arm, letters] : cell.outcomes)
+      in_arm[arm][cell.place.scenario].push_back(
+          static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)) /
+          static_cast<double>(letters.size()));
+  }
+  const auto over_scenarios = [](const std::map<std::string, std::vector<double>>& scenarios) {
+    std::vector<double> means;
+    for (const auto& scenario : scenarios) means.push_back(mean(scenario.second));
+    return mean(means);
+  };
+  for (const auto& [scenario, rates] : by_scenario) standing.in_scenario[scenario] = mean(rates);
+  for (const auto& [n, scenarios] : at) standing.at[n] = over_scenarios(scenarios);
+  for (const auto& [arm, scenarios] : in_arm) standing.in_arm[arm] = over_scenarios(scenarios);
+  standing.score = over_scenarios(by_scenario);
+}
+
+// The mean of a number over the cells' Selections: each command, each set and each kind of feature counts alike.
+std::optional<double> quality(const Entry& entry, const char* member) {
+  std::vector<double> all;
+  for (const PlayedCell& cell : entry.cells) {
+    const auto lists = entry.phi.find(cell.place.scenario);
+    if (lists == entry.phi.end() || !cell.failed.empty()) continue;
+    for (const Json& command : lists->at(cell.phi)) {
+      if (!command.at("quality").is_object()) continue;
+      for (const auto& about : command.at("quality").items()) {
+        if (!about.value().is_object()) continue;
+        for (const auto& group : about.value().items())
+          if (const Json value = group.value().value(member, Json()); value.is_number()) all.push_back(value);
+      }
+    }
+  }
+  return all.empty() ? std::nullopt : std::optional(mean(all));
+}
+
+void add_costs(Standing& standing) {
+  const Entry& entry = *standing.entry;
+  const auto cells = static_cast<double>(entry.cells.size());
+  for (const PlayedCell& cell : entry.cells) {
+    standing.lm_queries += cell.lm_queries / cells;
+    standing.lm_tokens += cell.lm_tokens / cells;
+    standing.learn_s += cell.learn_s / cells;
+  }
+  standing.precision = quality(entry, "precision");
+  standing.recall = quality(entry, "recall");
+}
+
+// Each entry's rank among those that are ranked, given all entries' shared resamples.
+void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamples) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i].not_ranked.empty()) continue;
+    std::vector<double> p;
+    std::vector<bool> better;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (j == i || !all[j].not_ranked.empty()) continue;
+      p.push_back(resamples.p(i, j));
+      better.push_back(all[j].score > all[i].score);
+    }
+    const std::vector<double> adjusted = report::holm(p);
+    int rank = 1;
+    for (std::size_t k = 0; k < adjusted.size(); ++k) rank += better[k] && adjusted[k] <= .05;
+    all[i].rank = rank;
+  }
+}
+
+}  // namespace
+
+std::string why_not_ranked(const Entry& entry) {
+  if (entry.identity.row.is_reference()) return "reference";
+  if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
+    return "asks for the " + entry.identity.row.asks;
+  if (entry.fresh() < 0) return "differs on fresh scenes";
+  if (std::any_of(entry.verifications.begin(), entry.verifications.end(),
+                  [](const Json& line) { return line.at("kind") == "replay" && !line.at("passed").get<bool>(); }))
+    return "a replay differed";
+  for (const auto& scenario : entry.phi.items())
+    for (const Json& list : scenario.value())
+      for (const Json& command : list) {
+        const std::string provenance = command.at("selection").at("provenance");
+        if (provenance == "truth" || provenance == "simulated_edit") return "the truth stands in for people";
+      }
+  return "";
+}
+
+std::vector<Standing> standings(const std::vector<const Entry*>& table) {
+  std::vector<Standing> all;
+  std::vector<std::vector<std::vector<std::vector<double>>>> rates;
+  for (const Entry* entry : table) {
+    if (!entry->withdrawn.is_null()) continue;
+    Standing& standing = all.emplace_back();
+    standing.entry = entry;
+    standing.not_ranked = why_not_ranked(*entry);
+    add_rates(standing);
+    add_costs(standing);
+    rates.push_back(rates_of(*entry));
+  }
+  if (all.empty()) return all;
+  const Setting& setting = all.front().entry->setting;
+  const report::SharedResamples resamples(rates, setting.shared_scenes(),
+                                          fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
+  add_ranks(all, resamples);
+  const auto order = [](const Standing& s) {
+    return std::tuple(!s.not_ranked.empty(), s.entry->identity.row.is_reference(), -s.score, s.entry->id());
+  };
+  std::sort(all.begin(), all.end(), [&](const Standing& a, const Standing& b) { return order(a) < order(b); });
+  return all;
+}
+
+std::vector<std::vector<const Entry*>> tables(const std::vector<Entry>& entries) {
+  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, std::vector<const Entry*>> all;
+  for (const Entry& entry : entries)
+    all[{entry.setting.suite, entry.setting.preset, entry.identity.preset_sha256, entry.setting.scene_seed}].push_back(
+        &entry);
+  std::vector<std::vector<const Entry*>> list;
+  for (auto& item : all) list.push_back(std::move(item.second));
+  return list;
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,40 @@
+// Who stands where in one table: scores, intervals and ranks, from the outcomes alone.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::leaderboard {
+
+/// An entry in its table. A rate is a mean over scenarios of the share of successful episodes; an episode of a cell
+/// that the method failed is one that was lost.
+struct Standing {
+  const Entry* entry = nullptr;
+  double score = 0;           // over all arms and numbers of demonstrations
+  report::Interval interval;  // 95 %
+  std::optional<int> rank;    // 1 + the entries that are significantly better; none where it is not ranked
+  std::string not_ranked;     // why; "" where it is ranked
+  std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
+  std::map<std::string, double> in_arm, in_scenario;
+  int episodes = 0, failed_cells = 0;
+  std::optional<double> precision, recall;            // of its Selections, mean over commands and kinds of features
+  double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell, on average
+};
+
+/// Why an entry has no place among the ranked: "" for one that has.
+std::string why_not_ranked(const Entry& entry);
+
+/// The entries of one table, ranked ones first, by score; then the others. Entries that were withdrawn are left out.
+/// All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which makes the paired test of
+/// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Deterministic.
+/// @pre the entries have one setting
+std::vector<Standing> standings(const std::vector<const Entry*>& table);
+
+/// Entries that share a table, by suite, preset, its hash and scene seed.
+std::vector<std::vector<const Entry*>> tables(const std::vector<Entry>& entries);
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,309 @@
+#include <lgabench/leaderboard/suite_page.hpp>
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <set>
+
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/names.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+using report::Cell;
+using report::Chart;
+using report::Charts;
+using report::display_name;
+using report::Document;
+using report::Grid;
+using report::MethodStyle;
+using report::MethodStyles;
+using report::on_page;
+using report::Paragraph;
+using report::reading;
+using report::Section;
+using report::Series;
+using report::Span;
+using report::Spans;
+
+constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
+constexpr std::size_t curves = 8;                 // more would hide each other
+
+std::string rate_text(double rate) { return fmt::format("{:.2f}", rate); }
+std::string amount(double value) {
+  return value == 0 ? "–" : value < 10 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
+}
+
+// Names of a method's rows: its id and the options in which they differ; then what else tells them apart.
+std::vector<std::string> names_of(const std::vector<Standing>& all) {
+  std::map<std::string, std::map<std::string, std::set<Json>>> options;  // by id
+  for (const Standing& s : all)
+    for (const auto& [option, value] : s.entry->identity.row.options.items())
+      options[s.entry->identity.row.id][option].insert(value);
+  std::vector<std::string> names;
+  std::map<std::string, int> times;
+  for (const Standing& s : all) {
+    const Identity& identity = s.entry->identity;
+    std::string name = identity.row.id;
+    for (const auto& [option, value] : identity.row.options.items())
+      if (options[identity.row.id][option].size() > 1) name += fmt::format("+{}={}", option, option_text(value));
+    names.push_back(name);
+    ++times[name];
+  }
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (times[names[i]] > 1) {
+      const Identity& identity = all[i].entry->identity;
+      names[i] += fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
+                              identity.answers.substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
+    }
+  return names;
+}
+
+Cell rate_button(const std::string& text, double rate, std::size_t row) {
+  Cell cell(Span::number(text));
+  cell.rate = rate;
+  cell.episodes = row;
+  return cell;
+}
+
+Spans marks_of(const Standing& s) {
+  std::vector<std::string> words;
+  if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
+  const std::string confined = s.entry->evidence.front().at("confinement");
+  if (confined.find("no ") != std::string::npos || confined == "unknown") words.emplace_back("unconfined");
+  if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
+  if (s.entry->fresh() > 0) words.emplace_back("fresh");
+  return {Span(fmt::format("{}", fmt::join(words, "; ")))};
+}
+
+// The table, with a column for each number of demonstrations, or for each arm where there is one number alone.
+Grid standings_grid(const NamedTable& table, std::size_t first_row) {
+  const Setting& setting = table.setting;
+  std::set<std::string> arms;
+  for (const Standing& s : table.standings)
+    for (const auto& arm : s.in_arm) arms.insert(arm.first);
+  Grid grid;
+  grid.name = setting.name();
+  grid.caption = title_of(setting);
+  grid.heads = {"rank", "entry", "success"};
+  for (const int n : setting.demonstrations) grid.heads.emplace_back(fmt::format("n = {}", n));
+  if (arms.size() > 1)
+    for (const std::string& arm : arms) grid.heads.emplace_back(arm);
+  for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier", "marks", "by"})
+    grid.heads.emplace_back(head);
+  grid.align = "rl" + std::string(grid.heads.size() - 2, 'r');
+  std::vector<std::string> names;
+  for (const std::string& name : table.names) names.push_back(name);
+  const MethodStyles styles(names);
+  for (std::size_t i = 0; i < table.standings.size(); ++i) {
+    const Standing& s = table.standings[i];
+    const bool reference = s.entry->identity.row.is_reference();
+    Cell name(Span(display_name(table.names[i])));
+    name.style = reference ? MethodStyle() : styles(table.names[i]);
+    Grid::Row row{
+        {},
+        {Span::number(rank_text(s)), name, rate_button(score_text(s), s.score, (first_row + i) * scenarios_of_a_row)},
+        reference};
+    for (const int n : setting.demonstrations) {
+      const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
+      row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(rate_text(at->second))));
+    }
+    if (arms.size() > 1)
+      for (const std::string& arm : arms) row.cells.emplace_back(Span::number(rate_text(s.in_arm.at(arm))));
+    for (const auto& part : {s.precision, s.recall})
+      row.cells.emplace_back(Span::number(part ? rate_text(*part) : "–"));
+    for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
+      row.cells.emplace_back(Span::number(amount(value)));
+    row.cells.emplace_back(Span(to_string(s.entry->tier())));
+    row.cells.emplace_back(marks_of(s));
+    row.cells.emplace_back(Span(s.entry->about.at("by").get<std::string>()));
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+// The best entries along the demonstrations.
+Chart curve_chart(const NamedTable& table) {
+  Chart chart;
+  const std::vector<int>& demonstrations = table.setting.demonstrations;
+  chart.title = "Success against the number of demonstrations";
+  chart.subtitle = fmt::format("mean over {} scenarios; the first {} entries and reference rows",
+                               table.setting.scenarios.size(), curves);
+  chart.axis = "demonstrations";
+  chart.alternative = chart.title + ", as in the table's columns";
+  const double pad = .08 * (demonstrations.back() - demonstrations.front());
+  chart.left = demonstrations.front() - pad;
+  chart.right = demonstrations.back() + pad;
+  for (const int n : demonstrations) chart.ticks.push_back({static_cast<double>(n), std::to_string(n)});
+  const MethodStyles styles(table.names);
+  std::size_t drawn = 0;
+  for (std::size_t i = 0; i < table.standings.size(); ++i) {
+    const Standing& s = table.standings[i];
+    const bool reference = s.entry->identity.row.is_reference();
+    if (!reference && ++drawn > curves) continue;
+    const std::string name = display_name(table.names[i]);
+    Series series{reference ? Series::reference : Series::measured, name,
+                  reference ? MethodStyle() : styles(table.names[i]), true};
+    for (const int n : demonstrations)
+      if (const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0); at != s.at.end()) {
+        const double rate = at->second;
+        series.points.push_back(
+            {static_cast<double>(n), rate, rate, rate, fmt::format("{} at {}: {}", name, n, rate_text(rate))});
+      }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+// Which scenarios an entry can do: a colour for each.
+Grid heat_grid(const NamedTable& table, std::size_t first_row) {
+  Grid grid;
+  grid.name = table.setting.name() + "_scenarios";
+  grid.caption = "Success in each scenario, over all arms and numbers of demonstrations";
+  grid.heads = {"entry"};
+  for (const Setting::Scenario& scenario : table.setting.scenarios) {
+    std::string words = scenario.id;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    grid.heads.emplace_back(words);
+  }
+  grid.align = "l" + std::string(table.setting.scenarios.size(), 'r');
+  for (std::size_t i = 0; i < table.standings.size(); ++i) {
+    const Standing& s = table.standings[i];
+    Grid::Row row{{}, {Cell(Span(display_name(table.names[i])))}, s.entry->identity.row.is_reference()};
+    for (std::size_t k = 0; k < table.setting.scenarios.size(); ++k) {
+      const double rate = s.in_scenario.at(table.setting.scenarios[k].id);
+      row.cells.push_back(rate_button(rate_text(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));
+    }
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+std::string base64(const std::string& bytes) {
+  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
+  const int length =
+      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  text.resize(static_cast<std::size_t>(length));
+  return text;
+}
+
+// Successes of all cells, in the order of places, arms and episodes, eight to a byte, the first in its highest bit.
+std::string success_bits(const Entry& entry) {
+  std::string bytes;
+  std::size_t bit = 0;
+  for (const PlayedCell& cell : entry.cells)
+    for (const std::string& arm : entry.setting.scenario(cell.place.scenario).arms)
+      for (const char letter : cell.outcomes.at(arm)) {
+        if (bit % 8 == 0) bytes.push_back('\0');
+        if (letter == success_letter) bytes.back() = static_cast<char>(bytes.back() | (0x80 >> bit % 8));
+        ++bit;
+      }
+  return base64(bytes);
+}
+
+std::string command_of(const Entry& entry) {
+  const Identity& identity = entry.identity;
+  std::string text = fmt::format("lgabench run {} --preset {} --engines {}", entry.setting.suite, entry.setting.preset,
+                                 identity.engine);
+  if (!identity.row.is_reference()) text += fmt::format(" --methods '{}' --no-reference", entry.spec());
+  if (identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers))
+    return text + fmt::format(" --answers cassette:answers/{}.jsonl", identity.answers_sha256);
+  return text + " --answers " + identity.answers;
+}
+
+}  // namespace
+
+NamedTable named_table(const std::vector<const Entry*>& table) {
+  NamedTable named{table.front()->setting, standings(table), {}, 0};
+  named.names = names_of(named.standings);
+  named.withdrawn = static_cast<int>(table.size() - named.standings.size());
+  return named;
+}
+
+std::string title_of(const Setting& setting) { return fmt::format("{}, preset {}", setting.suite, setting.preset); }
+
+std::string what_was_played(const Setting& setting) {
+  return fmt::format(
+      "{} scenarios, {} demonstrations, {} training seeds, {} test scenes of each arm and {}; scene seed {}, preset "
+      "{}.",
+      setting.scenarios.size(), fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.episodes,
+      setting.test_scenes == "per_seed" ? "training seed" : "scenario", setting.scene_seed, hash(setting).substr(0, 8));
+}
+
+std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
+
+std::string score_text(const Standing& standing) {
+  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", standing.score, standing.interval.low, standing.interval.high);
+}
+
+report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
+  Document document;
+  document.suite = suite;
+  document.title = "lgabench leaderboard: " + suite;
+  document.headline = {Span::link("All suites", "index.html"),
+                       ". Success is the mean over scenarios of the share of successful episodes, over all arms and "
+                       "numbers of demonstrations, with its 95 % interval. An entry's rank is 1 plus the number of "
+                       "entries significantly better by the paired test on these scenes (Holm): equal ranks are ties. "
+                       "A click on a number shows the episodes behind it."};
+  std::size_t first_row = 0, number = 0;
+  for (const NamedTable& table : tables) {
+    const std::string id = fmt::format("table{}", ++number);
+    Section section{id, title_of(table.setting)};
+    section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
+    section.add<Grid>(reading, standings_grid(table, first_row));
+    if (table.withdrawn > 0)
+      section.add<Paragraph>(reading,
+                             {{fmt::format("{} entries were withdrawn; their files remain.", table.withdrawn)}});
+    document.sections.push_back(std::move(section));
+    if (table.setting.demonstrations.size() > 1) {
+      Section curve{id + "-curves", "Demonstrations"};
+      curve.add<Charts>(on_page, {{curve_chart(table)}});
+      document.sections.push_back(std::move(curve));
+    }
+    Section heat{id + "-scenarios", "Scenarios"};
+    heat.add<Grid>(reading, heat_grid(table, first_row));
+    document.sections.push_back(std::move(heat));
+    first_row += table.standings.size();
+  }
+  return document;
+}
+
+Json suite_data(const std::vector<NamedTable>& tables) {
+  Json settings = Json::array(), entries = Json::array();
+  for (const NamedTable& table : tables) {
+    settings.push_back(to_json(table.setting));
+    for (std::size_t i = 0; i < table.standings.size(); ++i) {
+      const Entry& entry = *table.standings[i].entry;
+      Json failed = Json::array(), evidence = Json::array();
+      for (std::size_t c = 0; c < entry.cells.size(); ++c)
+        if (!entry.cells[c].failed.empty()) failed.push_back({c, entry.cells[c].failed});
+      const Json& source = entry.about.at("source");
+      entries.push_back(
+          {{"table", settings.size() - 1},
+           {"name", display_name(table.names[i])},
+           {"id", entry.id()},
+           {"place", entry.place().string()},
+           {"learns", learns(entry.identity.row)},
+           {"version", entry.identity.row.version},
+           {"answers", entry.identity.answers},
+           {"command", command_of(entry)},
+           {"authors", entry.about.at("authors")},
+           {"license", entry.about.at("license")},
+           {"source",
+            source.contains("repository")
+                ? source.at("repository").get<std::string>() + " @ " + source.at("commit").get<std::string>()
+                : source.at("file").get<std::string>() + ", SHA-256 " + source.at("sha256").get<std::string>()},
+           {"program", entry.evidence.front().at("program")},
+           {"processor", entry.evidence.front().at("machine").at("processor")},
+           {"tier", to_string(entry.tier())},
+           {"failed", failed},
+           {"successes", success_bits(entry)}});
+    }
+  }
+  return {{"settings", settings}, {"entries", entries}};
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,34 @@
+// The tables of one suite as a document, and what its page shows on a click.
+#pragma once
+#include <string>
+#include <vector>
+
+#include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/report/document.hpp>
+
+namespace lgabench::leaderboard {
+
+/// One table with what its rows are called.
+struct NamedTable {
+  Setting setting;
+  std::vector<Standing> standings;
+  std::vector<std::string> names;  // of each standing, as report/names.hpp takes them; no two alike
+  int withdrawn = 0;
+};
+NamedTable named_table(const std::vector<const Entry*>& table);
+
+/// "q1, preset leaderboard"
+std::string title_of(const Setting& setting);
+/// "heart, 13 scenarios, ..." in a sentence.
+std::string what_was_played(const Setting& setting);
+/// "3", or why there is none.
+std::string rank_text(const Standing& standing);
+/// ".57 [.52, .61]"
+std::string score_text(const Standing& standing);
+
+/// A page for the tables of one suite.
+report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);
+/// What page/leaderboard.js shows (docs/formats).
+Json suite_data(const std::vector<NamedTable>& tables);
+
+}  // namespace lgabench::leaderboard

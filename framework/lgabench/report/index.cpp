@@ -1,0 +1,104 @@
+#include <lgabench/report/index.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+Cell linked(const Report& report, const fs::path& place) {
+  const fs::path directory = report.run.directory.lexically_normal(),
+                 named = directory.has_filename() ? directory : directory.parent_path();
+  Cell cell(named.filename().string());
+  cell.link = (fs::absolute(named).lexically_normal().lexically_relative(fs::absolute(place).lexically_normal()) /
+               "report.html")
+                  .generic_string();
+  return cell;
+}
+
+Grid runs_grid(const std::vector<Report>& reports, const fs::path& place) {
+  Grid grid;
+  grid.name = "runs";
+  grid.caption = "The runs";
+  grid.heads = {"run", "suite", "preset", "version", "begun", "cells", "failed", "not run"};
+  grid.align = "lllllrrr";
+  for (const Report& report : reports) {
+    const RunResults& run = report.run;
+    const std::size_t failed = report.summary.failed.size();
+    grid.rows.push_back({{},
+                         {linked(report, place), run.suite, run.json.value("preset", ""), run.json.value("version", ""),
+                          run.json.value("started", ""), Span::number(std::to_string(run.cells.size() - failed)),
+                          Span::number(std::to_string(failed)), Span::number(std::to_string(run.not_run))}});
+  }
+  return grid;
+}
+
+// What rows must share to be compared, in words.
+std::string setting(const Report& report, const Table& table, const std::string& arm) {
+  const std::vector<std::string> scenarios = table.scenarios_with(arm);
+  return fmt::format("{}, {}, arm {}, {}: {}", report.run.suite, table.title(), arm,
+                     table.demonstrations_text(table.demonstrations().back()), fmt::join(scenarios, ", "));
+}
+
+Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
+  struct Entry {
+    const Report* report;
+    const Row* row;
+  };
+  std::map<std::string, std::vector<Entry>> settings;
+  for (const Report& report : reports)
+    for (const Table& table : report.summary.tables)
+      for (const std::string& arm : table.arms)
+        for (const std::string& method : table.methods(mean_scenario))
+          if (const Row* row = table.find(arm, mean_scenario, method, table.demonstrations().back());
+              row && row->success)
+            settings[setting(report, table, arm)].push_back({&report, row});
+  std::vector<std::string> methods;
+  for (const auto& item : settings)
+    for (const Entry& entry : item.second) methods.push_back(entry.row->method);
+  const MethodStyles styles(methods);
+  Grid grid;
+  grid.name = "runs_success";
+  grid.caption = "Mean success, best first; brackets: 95 % interval over test scenes and training seeds";
+  grid.group_head = "setting";
+  grid.heads = {"method", "run", "success", "interval", "seeds", "failed"};
+  grid.align = "lllrrrr";
+  for (auto& [words, entries] : settings) {
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b) { return *a.row->success > *b.row->success; });
+    for (const Entry& entry : entries) {
+      const Row& row = *entry.row;
+      Cell method(Span(display_name(row.method), Emphasis::strong));
+      method.style = styles(row.method);
+      grid.rows.push_back(
+          {words,
+           {method, linked(*entry.report, place), Span::number(fixed(*row.success) + marks_text(row)),
+            Span::number(fmt::format("[{}, {}]", fixed(row.interval.low), fixed(row.interval.high))),
+            Span::number(std::to_string(row.seeds)), Span::number(std::to_string(row.episodes - row.successes))}});
+    }
+  }
+  return grid;
+}
+
+}  // namespace
+
+Document index_document(const std::vector<Report>& reports, const fs::path& place) {
+  Document document{"", fmt::format("{} runs", reports.size()), {}, {}, {}};
+  Section& runs = document.sections.emplace_back(Section{"run", "The runs"});
+  runs.add(everywhere, runs_grid(reports, place));
+  Section& success = document.sections.emplace_back(Section{"success", "Success of all methods"});
+  Grid grid = success_grid(reports, place);
+  if (grid.rows.empty())
+    document.sections.pop_back();
+  else
+    success.add(everywhere, std::move(grid));
+  return document;
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,163 @@
+
+// The dialog: the episodes of a row of summary.json, and one of them.
+const episodeId = (e) => `${e.cell.cell}/${e.arm}/${e.index}`;
+
+function episodesOf(row) {
+  const all = [];
+  for (const cell of data.cells)
+    for (const played of cell.arms)
+      if (played.rows.includes(row))
+        [...played.outcomes].forEach((outcome, index) => {
+          const command = played.commands[index], scene = data.scenes[played.scenes][index];
+          const to = played.attribution[index];
+          all.push({
+            cell, arm: played.arm, index, scene, command: cell.commands[command],
+            failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
+            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : "",
+            action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
+            oracle: data.oracle[scene], targets: data.targets[scene],
+            mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
+            phi: data.phi[cell.phi[command]],
+          });
+        });
+  return all.sort((a, b) => !a.failure - !b.failure);
+}
+
+// A PNG's width and height, from its header.
+function sizeOf(base64) {
+  const bytes = Uint8Array.from(atob(base64.slice(0, 32)), (c) => c.charCodeAt(0)), view = new DataView(bytes.buffer);
+  return [view.getUint32(16), view.getUint32(20)];
+}
+
+function picture(bytes, alt, over = "") {
+  const [width, height] = sizeOf(bytes);
+  return `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escaped(alt)}">` +
+    `<image href="data:image/png;base64,${bytes}" width="${width}" height="${height}"/>${over}</svg>`;
+}
+
+// From the action's first place to its last, if it has two, on black, so that it shows on every texture.
+function arrow(action, colour, dashes = "none") {
+  if (!action) return "";
+  const [x0, y0] = action[0], [x1, y1] = action[action.length - 1], angle = Math.atan2(y1 - y0, x1 - x0);
+  const wing = (turn) => `${x1 - 9 * Math.cos(angle + turn)} ${y1 - 9 * Math.sin(angle + turn)}`;
+  const way = `M${x0} ${y0}L${x1} ${y1}`, head = action.length < 2 ? "" : `M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
+  return `<g fill="none" stroke-linecap="round"><path d="${way}${head}" stroke="#000" stroke-width="4"/>` +
+    `<path d="${way}" stroke="${colour}" stroke-width="1.8" stroke-dasharray="${dashes}"/>` +
+    `<path d="${head}" stroke="${colour}" stroke-width="1.8"/>` +
+    `<circle cx="${x0}" cy="${y0}" r="3.5" fill="${colour}" stroke="#000" stroke-width="1.2"/></g>`;
+}
+const own = (e) => arrow(e.action, "#fff");
+const oracle = (e) => arrow(e.oracle, "#5dff8f", "5 4");
+const outline = (e) => e.targets ? `<g fill="none"><path d="${e.targets}" stroke="#000" stroke-width="2.6"/>` +
+  `<path d="${e.targets}" stroke="#ffe100" stroke-width="1.3"/></g>` : "";
+
+const meaning = { better: "selected and true", missed: "missed", worse: "selected, not true" };
+const chips = (e) => !e.phi.length ? "" : `<div class="chips">` + e.phi.map(([what, kind, names]) =>
+  `<span class="${kind}" title="${escaped(what)}: ${meaning[kind]}">${escaped(names)}</span>`).join("") + `</div>`;
+
+const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`;
+const where = (e) => `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
+const wayOf = (name, action) => action ? `, ${name} from ${action.map((place) => place.join(",")).join(" to ")}` : `, no ${name}`;
+const told = (e) => `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
+
+const before = (e) => picture(e.picture, `before: ${where(e)}${wayOf("action", e.action)}${wayOf("oracle", e.oracle)}`,
+  outline(e) + oracle(e) + own(e));
+const kept = (e) => e.mask ? picture(e.mask, `goal mask: ${where(e)}`, outline(e) + own(e)) : "";
+const after = (e) => e.end === undefined ? "" : picture(e.end || e.picture, `after the action: ${where(e)}`);
+
+const card = (e) =>
+  `<figure><button type="button" class="zoom" data-episode="${escaped(episodeId(e))}"><span class="pair">` +
+  `${before(e)}${kept(e)}</span></button><figcaption>${told(e)}<br>${escaped(e.command)}${chips(e)}` +
+  `<small>${escaped(where(e))}</small></figcaption></figure>`;
+
+// One episode, as large as the dialog.
+function single(e) {
+  const shown = [["before: the action is white, the oracle’s green, the target outlined", before(e)],
+    [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)],
+    ["goal mask: what the policy was told to look at", kept(e)]].filter(([, drawn]) => drawn);
+  return `<p>${told(e)}. ${escaped(e.command)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
+    shown.map(([name, drawn]) =>
+      `<figure><button type="button" class="zoom" aria-pressed="false">${drawn}</button><figcaption>${name}</figcaption></figure>`)
+      .join("") +
+    `</div><p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
+}
+
+function listOf(shown) {
+  const seen = shown.filter((e) => e.picture), list = document.createElement("div");
+  list.innerHTML = `<p>${shown.length} episodes, ${shown.filter((e) => e.failure).length} failed; ${seen.length} with a ` +
+    "picture on this page. White: the action, from where it takes hold to where it lets go; green: the oracle’s; " +
+    "outlined: the target. A click enlarges.</p>";
+  if (seen.length) list.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
+  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
+    .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
+  list.append(growing(shown, 100, (some) =>
+    `<div class="frame" tabindex="0" role="region" aria-label="Episodes"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +
+    ["scenario", "arm", "training seed", "scene", "command", "outcome", "attributed to"]
+      .map((head) => `<th scope="col">${head}</th>`).join("") +
+    `</tr></thead><tbody>${some.map(line).join("")}</tbody></table></div>`));
+  return list;
+}
+
+// What the dialog shows, which its address says too: #row=3&outcome=missed%20object&episode=KEY/ARM/INDEX
+const panel = $("panel"), body = $("panel-body");
+let now = { row: 0, outcome: "", episode: "" };
+const shownOf = ({ row, outcome }) => episodesOf(row).filter((e) => !outcome || (e.failure || "success") === outcome);
+
+function show(row, outcome = "", episode = "") {
+  now = { row, outcome, episode };
+  const all = episodesOf(row), counts = new Map(), shown = shownOf(now);
+  for (const e of all) counts.set(e.failure || "success", (counts.get(e.failure || "success") || 0) + 1);
+  const one = shown.find((e) => episodeId(e) === episode);
+  $("panel-title").textContent = data.titles[row];
+  $("outcome").innerHTML = `<option value="">all outcomes</option>` + [...counts].map(([word, n]) =>
+    `<option${word === outcome ? " selected" : ""} value="${escaped(word)}">${escaped(word)} (${n})</option>`).join("");
+  $("all").hidden = !one;
+  $("previous").textContent = one ? "Previous episode" : "Row before";
+  $("next").textContent = one ? "Next episode" : "Row after";
+  if (one) body.innerHTML = single(one);
+  else body.replaceChildren(listOf(shown));
+  tip.hidden = true;
+  if (!panel.open) panel.showModal();
+  panel.scrollTop = 0;
+  const part = (name, value) => value ? `&${name}=${encodeURIComponent(value)}` : "";
+  history.replaceState(null, "", `#row=${row}${part("outcome", outcome)}${part("episode", one && episode)}`);
+}
+
+// To the episode with a picture, or the row, before or after.
+function step(by) {
+  if (!now.episode) return data.titles[now.row + by] && show(now.row + by, now.outcome);
+  const seen = shownOf(now).filter((e) => e.picture), next = seen[seen.findIndex((e) => episodeId(e) === now.episode) + by];
+  if (next) show(now.row, now.outcome, episodeId(next));
+}
+$("previous").onclick = () => step(-1);
+$("next").onclick = () => step(1);
+$("all").onclick = () => show(now.row, now.outcome);
+$("outcome").onchange = () => show(now.row, $("outcome").value);
+panel.onkeydown = (event) => {
+  const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
+  if (by && event.target.tagName !== "SELECT") step(by);
+};
+body.onclick = (event) => {
+  const zoom = event.target.closest(".zoom");
+  if (!zoom) return;
+  if (zoom.dataset.episode) {
+    show(now.row, now.outcome, zoom.dataset.episode);
+    $("all").focus();
+  } else {
+    zoom.setAttribute("aria-pressed", zoom.getAttribute("aria-pressed") !== "true");
+  }
+};
+panel.onclose = () => history.replaceState(null, "", location.pathname + location.search);
+
+const linked = new URLSearchParams(location.hash.slice(1));
+if (data.titles[linked.get("row")])
+  show(Number(linked.get("row")), linked.get("outcome") || "", linked.get("episode") || "");
+
+for (const number of document.querySelectorAll("[data-row]")) {
+  const open = () => show(Number(number.dataset.row), number.dataset.outcome || "");
+  number.addEventListener("click", open);
+  if (!(number instanceof HTMLButtonElement))
+    number.addEventListener("keydown", (event) => {
+      if (event.key === "Enter" || event.key === " ") event.preventDefault(), open();
+    });
+}

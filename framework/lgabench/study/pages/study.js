@@ -1,0 +1,391 @@
+'use strict';
+// The pages of a study. The server knows where a session is; this script shows it, and says what happens.
+
+const random = () => [...crypto.getRandomValues(new Uint8Array(16))].map(b => b.toString(16).padStart(2, '0')).join('');
+const page = random();  // of this load of the page: the server takes events of the last one alone
+const id = (location.pathname.match(/^\/p\/([0-9a-f]{32})$/) || [])[1];
+const main = document.getElementById('main'), trouble = document.getElementById('trouble');
+const wait = ms => new Promise(done => setTimeout(done, ms));
+const troubleAfter = 5000, idleAfter = 30000;  // ms; the server's limits too
+let about;                                     // /study.json
+
+// --- elements; text is only ever set as text ---
+
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, '');
+    else if (value !== false) element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+const button = (text, onclick, kind = 'main') => make('button', {type: 'button', class: kind, onclick}, text);
+
+function show(title, ...content) {
+  const head = make('h1', {tabindex: '-1'}, title);
+  main.replaceChildren(head, ...content);
+  window.scrollTo(0, 0);
+  head.focus({preventScroll: true});
+}
+
+const words = (...content) => make('div', {class: 'words'}, ...content);
+const paragraphs = (...texts) => texts.map(text => make('p', {}, text));
+
+function say(text) {
+  trouble.hidden = !text;
+  trouble.textContent = text;
+}
+
+function stop(title, ...texts) {
+  trial = null;
+  say('');
+  show(title, words(...paragraphs(...texts)));
+}
+
+// --- the server ---
+
+async function ask(path, body) {
+  const timeout = new AbortController(), timer = setTimeout(() => timeout.abort(), 15000);
+  try {
+    const options = {cache: 'no-store', credentials: 'omit', signal: timeout.signal};
+    if (body !== undefined)
+      Object.assign(options, {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)});
+    const answer = await fetch(path, options);
+    return {status: answer.status, json: await answer.json()};
+  } finally {
+    clearTimeout(timer);
+  }
+}
+
+// Until there is an answer. What was sent twice counts once: it has a key.
+async function deliver(path, body) {
+  const begun = performance.now();
+  for (let pause = 250;; pause = Math.min(2 * pause, 4000)) {
+    const late = setTimeout(() => say('The connection to the study is lost. Trying again…'),
+                            Math.max(0, troubleAfter - (performance.now() - begun)));
+    try {
+      const answer = await ask(path, body);
+      if (answer.status < 500) return say(''), answer;
+    } catch (error) {  // no connection, or a broken one
+    } finally {
+      clearTimeout(late);
+    }
+    if (performance.now() - begun > troubleAfter) say('The connection to the study is lost. Trying again…');
+    await wait(pause);
+  }
+}
+
+// --- events: at once, in order, each until it is acknowledged ---
+
+const waiting = [];
+let sending = false, longest = 0;
+
+function post(kind, more = {}) {
+  waiting.push({key: random(), page, kind, page_ms: performance.now(), ...more});
+  if (!sending) send();
+}
+
+async function send() {
+  sending = true;
+  while (waiting.length) {
+    const events = waiting.slice(0, 50);
+    const answer = await deliver(`/p/${id}/events`, {events});
+    if (answer.status === 409)
+      return stop('This session goes on elsewhere', 'It was opened in another window or tab. You can close this one.');
+    if (answer.status === 404) return gone();
+    if (answer.status !== 200)
+      return stop('Something went wrong', `Please tell ${about.contact}. What you did so far is kept.`, answer.json.error || '');
+    longest = Math.max(longest, performance.now() - events[0].page_ms);
+    waiting.splice(0, events.length);
+    if (answer.json.step) enter(answer.json);
+  }
+  sending = false;
+}
+
+const longestWait = () => Math.max(longest, waiting.length ? performance.now() - waiting[0].page_ms : 0);
+
+// --- consent, withdrawal ---
+
+function consentText(text) {
+  return text.split(/\n\s*\n/).filter(part => part.trim()).map(
+    part => part.startsWith('# ') ? make('h2', {}, part.slice(2).trim()) : make('p', {}, part.trim()));
+}
+
+function consent() {
+  const key = random();
+  const agree = button('I agree and begin', async () => {
+    agree.disabled = true;
+    const answer = await deliver('/begin', {key, consent: about.consent_sha256});
+    if (answer.status === 200) location.replace('/p/' + answer.json.id);
+    else stop('Something went wrong', `Please reload the page, or tell ${about.contact}.`);
+  });
+  const decline = button('I do not agree', () => stop('Thank you', 'Nothing was stored. You can close this page.'), '');
+  show(about.title, words(...consentText(about.consent), make('div', {class: 'buttons'}, agree, decline)));
+}
+
+function withdraw() {
+  const code = make('input', {type: 'text', id: 'code', autocomplete: 'off', spellcheck: 'false'});
+  const said = make('p', {role: 'status'});
+  const go = button('Delete all that is stored about me', async () => {
+    if (!code.value.trim()) return code.focus();
+    const answer = await deliver('/withdraw', {code: code.value});
+    if (answer.status === 200)
+      stop('You have withdrawn', `What was stored under this code is deleted. If you have a question: ${about.contact}`);
+    else said.textContent = 'There is nothing under this code. It has 16 letters and digits.';
+  });
+  show('Withdraw from the study',
+       words(make('p', {}, make('label', {for: 'code'}, 'Your withdrawal code')), code, said, make('div', {class: 'buttons'}, go)));
+}
+
+const gone = () => stop('There is no such session', 'It was withdrawn, or the address is not complete.');
+
+// --- familiarisation ---
+
+const featureNames = {object_types: 'Object types', textures: 'Colors'};
+
+function picture(feature, name) {
+  const {names, tile, step, across} = about.pictures[feature], at = names.indexOf(name), scale = 72 / tile;
+  const element = make('span', {class: 'picture ' + feature, 'aria-hidden': 'true'});
+  const width = (across * step - (step - tile)) * scale;
+  element.style.backgroundSize = `${width}px auto`;
+  element.style.backgroundPosition = `${-(at % across) * step * scale}px ${-Math.floor(at / across) * step * scale}px`;
+  return element;
+}
+
+function gallery(feature, names) {
+  return make('section', {}, make('h2', {}, `${featureNames[feature]} (${names.length})`),
+              make('ul', {class: 'tiles'},
+                   ...names.map(name => make('li', {}, make('span', {class: 'tile'}, picture(feature, name), name)))));
+}
+
+function once(text, kind) {
+  const go = button(text, () => {
+    go.disabled = true;
+    post(kind);
+  });
+  return make('div', {class: 'buttons'}, go);
+}
+
+function familiarisation(state) {
+  show('What the robot can see',
+       words(...paragraphs(
+         'You are helping to teach a robot which properties of objects matter for a task. The robot is given a command, such as “pick up the red bowl”.',
+         'For each command you say which objects it could mean: which object types, and which colors. Any type can have any color; an object has exactly one type and one color.',
+         'Here is everything there is. Take your time to look at it; the lists will be at hand later.'),
+         make('p', {class: 'note'}, 'You may stop at any time by closing this page. With your withdrawal code, ',
+              make('code', {}, state.withdrawal_code), ', you can have deleted what is stored. You will see it again at the end.')),
+       gallery('object_types', state.object_types), gallery('textures', state.textures), once('Go on', 'familiarised'));
+}
+
+function example(state) {
+  show('An example',
+       words(make('p', {class: 'command'}, `“${state.command}”`),
+             ...paragraphs('Geometric shapes are these object types, and these colors have polka dots. An object that fits has one of these types and one of these colors:')),
+       gallery('object_types', state.answer.object_types), gallery('textures', state.answer.textures),
+       words(...paragraphs('Next come two commands for practice, which are not timed. Then it begins.')),
+       once('Go on', 'example_seen'));
+}
+
+// --- a trial ---
+
+let trial = null;  // while a command is shown: {lastInput, idle, away}
+
+function ready({condition, practice, number, of, first_of_part, interrupted}) {
+  const filled = condition === 'lga_hill';
+  const texts = filled
+    ? ['A large language model has answered already: its answer is filled in. Change it as you like, or submit it as it is.']
+    : ['The lists are empty at first: choose all object types and all colors that the command could mean.'];
+  if (!practice) texts.push('Time runs from when the command appears until you submit. Please stay on this page until then.');
+  const notes = interrupted ? [make('p', {class: 'note'}, practice
+    ? 'The last command was interrupted: it comes again.' : 'The last command was interrupted. It does not count; the study goes on with the next one.')] : [];
+  if (first_of_part) notes.push(make('p', {class: 'note'}, filled ? 'In this part the answers are filled in.' : 'In this part the lists begin empty.'));
+  show(practice ? `Practice ${number} of 2` : `Command ${number} of ${of}`, words(...notes, ...paragraphs(...texts), once('Start', 'start')));
+}
+
+function list(set, feature, names, chosen, changed) {
+  const title = featureNames[feature], boxes = [];
+  const search = make('input', {type: 'search', placeholder: 'Search', 'aria-label': `Search ${title.toLowerCase()}`,
+                                autocomplete: 'off', spellcheck: 'false'});
+  const count = make('p', {class: 'count soft'});
+  const all = button('', () => choose(shown(), true), ''), none = button('', () => choose(shown(), false), '');
+  const tiles = make('ul', {class: 'tiles', role: 'group', 'aria-label': `${title}: arrow keys move, space chooses`});
+  const shown = () => boxes.filter(box => !box.closest('li').hidden);
+
+  function choose(some, on) {
+    const values = some.filter(box => chosen.has(box.value) !== on).map(box => box.value);
+    if (!values.length) return;
+    for (const value of values) on ? chosen.add(value) : chosen.delete(value);
+    for (const box of boxes) box.checked = chosen.has(box.value);
+    post('edit', {role: set.role, feature, values, on});
+    refresh();
+  }
+  function refresh() {
+    const all_shown = shown().length === boxes.length;
+    all.textContent = all_shown ? 'Select all' : `Select the ${shown().length} shown`;
+    none.textContent = all_shown ? 'Select none' : `Unselect the ${shown().length} shown`;
+    all.disabled = none.disabled = shown().length === 0;
+    count.textContent = `${chosen.size} of ${boxes.length} chosen`;
+    changed();
+  }
+  function reach(box) {  // one stop of the Tab key for the whole list
+    for (const other of boxes) other.tabIndex = other === box ? 0 : -1;
+  }
+  for (const name of names) {
+    const box = make('input', {type: 'checkbox', value: name});
+    box.checked = chosen.has(name);
+    box.addEventListener('change', () => choose([box], box.checked));
+    box.addEventListener('focus', () => reach(box));
+    boxes.push(box);
+    tiles.append(make('li', {}, make('label', {class: 'tile'}, box, picture(feature, name), name)));
+  }
+  reach(boxes[0]);
+  search.addEventListener('input', () => {
+    const parts = search.value.toLowerCase().split(/\s+/);
+    for (const box of boxes) box.closest('li').hidden = !parts.every(part => box.value.toLowerCase().includes(part));
+    if (shown().length) reach(shown()[0]);
+    refresh();
+  });
+  tiles.addEventListener('keydown', event => {
+    const here = shown(), at = here.indexOf(event.target);
+    const top = here.length ? here[0].closest('li').offsetTop : 0;
+    const across = here.filter(box => box.closest('li').offsetTop === top).length;
+    const to = {ArrowRight: at + 1, ArrowLeft: at - 1, ArrowDown: at + across, ArrowUp: at - across, Home: 0, End: here.length - 1}[event.key];
+    if (to === undefined || at < 0) return;
+    event.preventDefault();
+    if (here[to]) here[to].focus();
+  });
+  refresh();
+  return make('section', {'aria-label': title}, make('h2', {}, title), make('div', {class: 'tools'}, count, search, all, none), tiles);
+}
+
+function running(state) {
+  const chosen = state.sets.map(set => ({object_types: new Set(set.first.object_types), textures: new Set(set.first.textures)}));
+  const submit = button('Submit', () => {
+    const selection = {};
+    state.sets.forEach((set, i) => selection[set.role] =
+      {object_types: [...chosen[i].object_types], textures: [...chosen[i].textures]});
+    submit.disabled = true;
+    submit.textContent = 'Saving…';
+    post('submit', {selection, longest_wait_ms: longestWait()});
+    trial = null;
+  });
+  const bar = make('p', {class: 'soft', role: 'status'});
+  const changed = () => {
+    const complete = chosen.every(set => set.object_types.size && set.textures.size);
+    submit.disabled = !complete;
+    const sizes = chosen.map(set => `${set.object_types.size} object types, ${set.textures.size} colors`);
+    bar.textContent = complete ? `Chosen: ${sizes.join('; ')}`
+      : 'Choose at least one object type and one color' + (chosen.length > 1 ? ' in each part.' : '.');
+  };
+  const sets = state.sets.map((set, i) => make('fieldset', {},
+    state.sets.length > 1 ? make('legend', {}, set.phrase[0].toUpperCase() + set.phrase.slice(1)) : '',
+    make('div', {class: 'lists'}, ...['object_types', 'textures'].map(
+      feature => list(set, feature, state[feature], chosen[i][feature], changed)))));
+  show('Which objects could this command mean?', make('p', {class: 'command'}, `“${state.command}”`),
+       ...(state.hint ? [make('p', {class: 'soft'}, `(${state.hint})`)] : []), ...sets, make('div', {class: 'bar'}, submit, bar));
+  longest = 0;
+  requestAnimationFrame(() => requestAnimationFrame(() => {  // the command is painted
+    trial = {lastInput: performance.now(), idle: false, away: false};
+    post('shown');
+    if (!document.hasFocus() || document.hidden) away(true);
+  }));
+}
+
+function away(now) {
+  if (!trial || trial.away === now) return;
+  trial.away = now;
+  post(now ? 'blur' : 'focus');
+}
+
+function input() {
+  if (!trial) return;
+  trial.lastInput = performance.now();
+  if (!trial.idle) return;
+  trial.idle = false;
+  post('active');
+}
+
+setInterval(() => {
+  if (!trial || trial.idle || performance.now() - trial.lastInput <= idleAfter) return;
+  trial.idle = true;
+  post('idle', {since_ms: trial.lastInput});
+}, 1000);
+for (const kind of ['keydown', 'pointerdown', 'pointermove', 'wheel', 'scroll', 'input'])
+  window.addEventListener(kind, input, {capture: true, passive: true});
+window.addEventListener('blur', () => away(true));
+window.addEventListener('focus', () => away(false));
+document.addEventListener('visibilitychange', () => away(document.hidden));
+
+// --- questionnaire, debriefing ---
+
+const scales = [
+  ['mental', 'Mental demand: how mentally demanding was it?', 'very low', 'very high'],
+  ['physical', 'Physical demand: how physically demanding was it?', 'very low', 'very high'],
+  ['temporal', 'Temporal demand: how hurried or rushed was the pace?', 'very low', 'very high'],
+  ['performance', 'Performance: how successful were you?', 'perfect', 'failure'],
+  ['effort', 'Effort: how hard did you have to work?', 'very low', 'very high'],
+  ['frustration', 'Frustration: how insecure, discouraged, irritated, stressed or annoyed were you?', 'very low', 'very high']];
+
+function questionnaire(state) {
+  const tlx = Object.fromEntries(scales.map(([name]) => [name, null]));
+  const content = [];
+  if (state.tlx)
+    for (const [name, question, low, high] of scales) {
+      const answer = make('output', {class: 'soft'}, 'not answered');
+      const range = make('input', {type: 'range', min: 0, max: 100, step: 5, value: 50, id: name, class: 'open'});
+      const take = () => {
+        tlx[name] = Number(range.value);
+        answer.textContent = range.value;
+        range.classList.remove('open');
+      };
+      range.addEventListener('input', take);
+      range.addEventListener('click', take);
+      content.push(make('div', {class: 'scale'}, make('label', {for: name}, question), range,
+                        make('div', {class: 'ends'}, make('span', {}, low), answer, make('span', {}, high))));
+    }
+  const text = make('textarea', {id: 'text', maxlength: 1000});
+  if (state.free_text)
+    content.push(make('p', {}, make('label', {for: 'text'}, 'Is there anything you want to say? Please name nobody.')), text);
+  const send = button('Send', () => {
+    send.disabled = true;
+    post('questionnaire', {tlx, free_text: text.value});
+  });
+  show('Almost done', words(...paragraphs('All commands are answered. These questions are about all of them together; leave out what you like.'),
+                            ...content, make('div', {class: 'buttons'}, send)));
+}
+
+function debriefing(state) {
+  show('Thank you', words(
+    ...paragraphs('You have finished. Your answers are stored.',
+                  'The study compares how long people need to say what a command means, from nothing and with a language model’s answer to correct, and how good the result is for a robot that learns from it.'),
+    make('p', {}, 'Your withdrawal code: ', make('code', {}, state.withdrawal_code)),
+    ...paragraphs('Please write it down. Whoever has it can have your answers deleted, at the address of this study with /withdraw at its end.',
+                  `If you have a question: ${about.contact}`, 'You can close this page.')));
+}
+
+// --- where the session is ---
+
+function enter(state) {
+  trial = null;
+  if (state.step === 'trial') return state.trial.running ? running(state.trial) : ready(state.trial);
+  ({familiarisation, example, questionnaire, debriefing})[state.step](state);
+}
+
+async function begin() {
+  about = (await deliver('/study.json')).json;
+  document.title = about.title;
+  document.getElementById('rehearsal').hidden = !about.rehearsal;
+  if (location.pathname === '/withdraw') return withdraw();
+  if (!id) return location.pathname === '/' ? consent() : gone();
+  for (const feature of ['object_types', 'textures']) {  // no picture comes in while time runs
+    const image = new Image();
+    image.src = `/${feature}.png`;
+    await image.decode().catch(() => {});
+  }
+  post('opened');
+}
+
+begin();

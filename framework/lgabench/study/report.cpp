@@ -1,0 +1,337 @@
+#include <lgabench/study/report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <lgabench/abstraction/quality.hpp>
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/writers.hpp>
+
+namespace lgabench::study {
+namespace {
+
+using namespace lgabench::report;
+
+constexpr std::array both{Condition::human, Condition::lga_hill};
+constexpr const char* simulated_words = "rehearsal, not people";
+
+std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
+std::string name(Condition condition) { return display_name(to_string(condition)); }
+std::string seconds(double s) { return fmt::format("{:.1f}", s); }
+std::string p_words(double p) { return p < .001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
+std::string change_words(const Change& c, const char* unit) {
+  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", c.difference, unit, c.interval.low, c.interval.high);
+}
+// An effect on log seconds as a ratio of seconds.
+std::string ratio_words(const Change& c) {
+  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", std::exp(c.difference), std::exp(c.interval.low),
+                     std::exp(c.interval.high));
+}
+std::string share(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "–"; }
+
+// Mean and error bar of the paper's figure 3b, by method's name.
+std::map<std::string, std::pair<double, double>> published() {
+  const Json all = read_json(data_directory() / "paper" / "reference_results.json").at("figure_3b_user_seconds");
+  std::map<std::string, std::pair<double, double>> values;
+  for (const auto& [method, value] : all.items())
+    values[method] = {value.at("mean").get<double>(), value.at("err").get<double>()};
+  return values;
+}
+
+// As the paper's figure 3b: mean seconds a command of each condition, with standard errors.
+Chart seconds_chart(const StudyResults& results) {
+  Chart chart;
+  chart.file = "seconds";
+  chart.title = "Seconds a command";
+  chart.subtitle = fmt::format("mean of {} people's means, ± 1 standard error{}", results.used(),
+                               results.record->kind == Kind::rehearsal ? fmt::format(" ({})", simulated_words) : "");
+  chart.width = 420, chart.height = 340;
+  const MethodStyles styles({"human", "lga_hill"});
+  double highest = 0;
+  chart.alternative = "Mean seconds a command:";
+  const auto paper = published();
+  for (const Condition condition : both) {
+    const double x = condition == Condition::human ? .3 : .7;
+    const Spread& s = results.seconds[index(condition)];
+    chart.ticks.push_back({x, name(condition)});
+    const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s.mean), seconds(s.se));
+    chart.series.push_back({Series::measured,
+                            name(condition),
+                            styles(to_string(condition)),
+                            false,
+                            {{x, s.mean, s.mean - s.se, s.mean + s.se, words, {}}}});
+    chart.alternative += " " + words + ";";
+    highest = std::max(highest, s.mean + s.se);
+    if (const auto found = paper.find(name(condition)); found != paper.end()) {
+      const auto& [mean, error] = found->second;
+      chart.series.push_back({Series::published,
+                              name(condition),
+                              styles(to_string(condition)),
+                              false,
+                              {{x + .08,
+                                mean,
+                                mean - error,
+                                mean + error,
+                                fmt::format("the paper: {} {} ± {}", name(condition), mean, error),
+                                {}}}});
+      highest = std::max(highest, mean + error);
+    }
+  }
+  chart.alternative.back() = '.';
+  chart.top = 25 * std::ceil(highest * 1.05 / 25);
+  return chart;
+}
+
+Section seconds_section(const StudyResults& results) {
+  Section section{"seconds", "Seconds a command"};
+  Grid grid;
+  grid.name = "seconds";
+  grid.caption = "Seconds a command: over people, each with the mean of their trials";
+  grid.heads = {"condition", "people", "mean", "sd", "se", "mean active", "the paper"};
+  grid.align = "lrrrrrr";
+  const auto paper = published();
+  for (const Condition condition : both) {
+    const Spread &raw = results.seconds[index(condition)], &active = results.active_s[index(condition)];
+    const auto& [mean, error] = paper.at(name(condition));
+    grid.rows.push_back({{},
+                         {name(condition), std::to_string(results.used()), seconds(raw.mean), seconds(raw.sd),
+                          seconds(raw.se), seconds(active.mean), fmt::format("{} ± {}", mean, error)}});
+  }
+  section.add(everywhere, std::move(grid));
+  List tests;
+  if (results.primary)
+    tests.items.push_back(
+        {fmt::format("Primary: Human − LGA-HILL {}, {} (paired t on people's means, {} people)",
+                     change_words(*results.primary, " s"), p_words(results.primary->p), results.used())});
+  else
+    tests.items.push_back({"Primary: not tested, two people are needed"});
+  if (results.active)
+    tests.items.push_back(
+        {fmt::format("The same on active seconds (without loss of focus, and without pauses over {:g} s): {}, {}",
+                     idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
+  for (const Condition condition : both)
+    if (const auto& first = results.by_first[index(condition)])
+      tests.items.push_back(
+          {fmt::format("Who began with {}: {:+.1f} s (sd {:.1f})", name(condition), first->mean, first->sd)});
+  section.add(everywhere, std::move(tests));
+  section.add(reading, Charts{{seconds_chart(results)}});
+  return section;
+}
+
+Section model_section(const StudyResults& results) {
+  Section section{"model", "Crossover"};
+  if (results.log_model.empty()) {
+    section.add(everywhere, List{{{"Crossover model: not fitted, more people in all of its orders are needed"}}});
+    return section;
+  }
+  Grid grid;
+  grid.name = "crossover";
+  grid.caption = "Ratios of seconds: linear model on each person's difference of mean log seconds between periods";
+  grid.heads = {"effect", "ratio", "p"};
+  grid.align = "llr";
+  constexpr const char* effects[] = {"condition: Human / LGA-HILL", "period: first / second", "set: first / second"};
+  for (std::size_t i = 0; i < 3; ++i)
+    grid.rows.push_back(
+        {{}, {effects[i], ratio_words(results.log_model[i]), fmt::format("{:.3f}", results.log_model[i].p)}});
+  section.add(everywhere, std::move(grid));
+  return section;
+}
+
+std::string mean_of(const std::vector<double>& values) {
+  return values.empty() ? "–" : fmt::format("{} ({})", seconds(spread(values).mean), values.size());
+}
+
+Section commands_section(const StudyResults& results) {
+  Section section{"commands", "By command"};
+  Grid grid;
+  grid.name = "commands";
+  grid.caption = fmt::format("Seconds by command (people); p: {}, Holm's over the commands",
+                             results.record->protocol->crossover() ? "Welch's t between people" : "paired t");
+  grid.heads = {"command", "Human", "LGA-HILL", "difference", "p"};
+  grid.align = "lrrrr";
+  for (const CommandResult& command : results.commands)
+    grid.rows.push_back({{},
+                         {command.item->asked_as, mean_of(command.seconds[0]), mean_of(command.seconds[1]),
+                          command.change ? change_words(*command.change, "") : "–",
+                          command.change ? fmt::format("{:.3f}", command.p_holm) : "–"}});
+  section.add(everywhere, std::move(grid));
+  return section;
+}
+
+Section phi_section(const StudyResults& results) {
+  Section section{"phi", "φ̂ against the released truth"};
+  Grid grid;
+  grid.name = "phi";
+  grid.caption = "φ̂ against the released truth, mean over trials";
+  grid.heads = {"condition", "types: precision", "recall", "textures: precision", "recall"};
+  grid.align = "lrrrr";
+  for (const Condition condition : both) {
+    const PhiQuality& q = results.phi[index(condition)];
+    grid.rows.push_back({{},
+                         {name(condition), share(q.object_types.precision), share(q.object_types.recall),
+                          share(q.textures.precision), share(q.textures.recall)}});
+  }
+  section.add(everywhere, std::move(grid));
+  return section;
+}
+
+Section left_out_section(const StudyResults& results) {
+  Section section{"left_out", "Left out, and checks"};
+  List list;
+  const auto add = [&list](const std::string& text) { list.items.push_back({text}); };
+  add(fmt::format("People: {} consented and stayed, {} withdrew (nothing of them is left), {} planned; {} used",
+                  results.people.size(), results.record->withdrawn, results.record->protocol->planned, results.used()));
+  for (const PersonResult& person : results.people)
+    if (!person.excluded.empty())
+      add(fmt::format("{} is left out: {}", pseudonym(person.session->slot()), person.excluded));
+  add(fmt::format("Trials that do not count: {} interrupted, {} too long, {} for practice", results.interrupted,
+                  results.too_long, results.practice));
+  add(fmt::format("Trials whose clicks do not add up to what was submitted: {}", results.disagree));
+  add(fmt::format("Trials that took another time by the server's clock, by more than 2 s: {}", results.clocks_apart));
+  section.add(everywhere, std::move(list));
+  return section;
+}
+
+// Of those who answered: the mean of each scale, and words as they were typed.
+Section questionnaire_section(const StudyResults& results) {
+  Section section{"questionnaire", "Asked at the end", reading};
+  std::map<std::string, std::vector<double>> scales;
+  List words;
+  for (const PersonResult& person : results.people) {
+    const Json& answers = person.session->answers();
+    if (answers.is_null()) continue;
+    for (const auto& [scale, value] : answers.at("tlx").items())
+      if (value.is_number()) scales[scale].push_back(value.get<double>());
+    if (const std::string text = answers.at("free_text"); !text.empty())
+      words.items.push_back({fmt::format("{}: {}", pseudonym(person.session->slot()), text)});
+  }
+  if (!scales.empty()) {
+    Grid grid;
+    grid.name = "nasa_tlx";
+    grid.caption = "NASA-TLX, raw, 0 to 100";
+    grid.heads = {"scale", "people", "mean", "sd"};
+    grid.align = "lrrr";
+    for (const auto& [scale, values] : scales) {
+      const Spread s = spread(values);
+      grid.rows.push_back({{}, {scale, std::to_string(values.size()), seconds(s.mean), seconds(s.sd)}});
+    }
+    section.add(reading, std::move(grid));
+  }
+  if (!words.items.empty()) section.add(reading, std::move(words));
+  return section;
+}
+
+Json change_json(const std::optional<Change>& c) {
+  if (!c) return nullptr;
+  return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
+}
+Json spread_json(const Spread& s) { return {{"mean", s.mean}, {"sd", s.sd}, {"se", s.se}}; }
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+Json quality_json(const PhiQuality& q) {
+  const auto of = [](const PhiQuality::Of& one) {
+    return Json{{"precision", optional_json(one.precision)}, {"recall", optional_json(one.recall)}};
+  };
+  return {{"object_types", of(q.object_types)}, {"textures", of(q.textures)}};
+}
+
+}  // namespace
+
+Document document_of(const StudyResults& results) {
+  const Record& record = *results.record;
+  Document document;
+  document.suite = record.protocol->id;
+  document.title = fmt::format("Study: {}", record.protocol->title);
+  const auto note = [&document](const std::string& text) { document.notes.push_back({Note::note, text}); };
+  if (record.kind == Kind::rehearsal) note(fmt::format("{}: no number here is a result.", simulated_words));
+  if (!record.shown_as_now)
+    note(
+        "People were shown other scenarios or answers than this version of lgabench has; φ̂ is judged by this "
+        "version's.");
+  note("The paper does not say whether its ± is a standard deviation or a standard error; here both are printed.");
+  if (!record.protocol->crossover())
+    note(
+        "Everybody answers each command twice: the second time profits from the first, which the order of conditions "
+        "balances only on average.");
+  document.sections = {seconds_section(results), commands_section(results), phi_section(results),
+                       left_out_section(results), questionnaire_section(results)};
+  if (record.protocol->crossover()) document.sections.insert(document.sections.begin() + 1, model_section(results));
+  return document;
+}
+
+Json to_json(const StudyResults& results) {
+  const Record& record = *results.record;
+  Json json{{"study", record.protocol->id},
+            {"rehearsal", record.kind == Kind::rehearsal},
+            {"people", results.people.size()},
+            {"used", results.used()},
+            {"withdrawn", record.withdrawn},
+            {"primary", change_json(results.primary)},
+            {"active", change_json(results.active)},
+            {"trials",
+             {{"interrupted", results.interrupted},
+              {"too_long", results.too_long},
+              {"practice", results.practice},
+              {"clicks_disagree", results.disagree},
+              {"clocks_apart", results.clocks_apart}}},
+            {"conditions", Json::object()},
+            {"commands", Json::array()},
+            {"crossover", nullptr}};
+  for (const Condition condition : both)
+    json["conditions"][to_string(condition)] = {{"seconds", spread_json(results.seconds[index(condition)])},
+                                                {"active_seconds", spread_json(results.active_s[index(condition)])},
+                                                {"phi", quality_json(results.phi[index(condition)])}};
+  for (const CommandResult& command : results.commands)
+    json["commands"].push_back({{"scenario", command.item->scenario},
+                                {"change", change_json(command.change)},
+                                {"p_holm", command.change ? Json(command.p_holm) : Json()}});
+  if (!results.log_model.empty())
+    json["crossover"] = {{"condition", change_json(results.log_model[0])},
+                         {"period", change_json(results.log_model[1])},
+                         {"set", change_json(results.log_model[2])}};
+  return json;
+}
+
+std::string trials_csv(const StudyResults& results) {
+  constexpr const char* states[] = {"waiting", "started", "shown", "finished", "interrupted"};
+  std::string text =
+      csv_line({"participant", "excluded", "condition", "period", "set", "practice", "scenario", "asked_as", "state",
+                "counts", "raw_seconds", "active_seconds", "server_seconds", "edits", "quality"});
+  for (const PersonResult& person : results.people)
+    for (const Trial& trial : person.session->all()) {
+      Selection selection = trial.selection;
+      selection.provenance = Provenance::human;
+      const bool done = trial.state == Trial::finished;
+      const auto number = [done](double value) { return done ? fmt::format("{:.3f}", value) : ""; };
+      text += csv_line({pseudonym(person.session->slot()), person.excluded, to_string(trial.condition),
+                        std::to_string(trial.period + 1), trial.set < 0 ? "" : std::to_string(trial.set + 1),
+                        trial.practice ? "1" : "0", trial.item->scenario, trial.item->asked_as,
+                        trial.why.empty() ? states[trial.state] : fmt::format("interrupted: {}", trial.why),
+                        counts(*results.record->protocol, trial) ? "1" : "0", number(trial.raw_s),
+                        number(trial.active_s), number(trial.server_s), std::to_string(trial.edits),
+                        done && trial.item->truth ? canonical(quality(selection, *trial.item->truth)) : ""});
+    }
+  return text;
+}
+
+Document write_report(const fs::path& directory) {
+  const Record record = read_study(directory);
+  const StudyResults results = results_of(record);
+  Document document = document_of(results);
+  for (const Chart* chart : document.charts()) {
+    write_file(directory / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
+    write_file(directory / "figures" / (chart->file + ".pdf"), pdf(*chart));
+  }
+  for (const Grid* grid : document.grids()) {
+    write_file(directory / "tables" / (grid->name + ".tex"), latex(*grid));
+    write_file(directory / "tables" / (grid->name + ".csv"), csv(*grid));
+  }
+  write_file(directory / "trials.csv", trials_csv(results));
+  write_file(directory / "results.json", to_json(results).dump(1) + "\n");
+  write_file(directory / "report.md", markdown(document));
+  return document;
+}
+
+}  // namespace lgabench::study

@@ -1,0 +1,189 @@
+#include <lgabench/study/results.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <lgabench/abstraction/quality.hpp>
+
+namespace lgabench::study {
+namespace {
+
+constexpr std::array both{Condition::human, Condition::lga_hill};
+std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
+
+std::string why_excluded(const Protocol& protocol, const PersonResult& person) {
+  if (!person.session->answered()) return "did not finish";
+  for (const Condition condition : both)
+    if (person.counted[index(condition)].size() < static_cast<std::size_t>(protocol.fewest_trials))
+      return fmt::format("{} trials of {} count, {} needed", person.counted[index(condition)].size(),
+                         to_string(condition), protocol.fewest_trials);
+  return "";
+}
+
+class MeanOf {
+ public:
+  void add(const Json& value) {
+    if (!value.is_number()) return;
+    sum_ += value.get<double>();
+    ++n_;
+  }
+  std::optional<double> value() const { return n_ == 0 ? std::nullopt : std::optional(sum_ / n_); }
+
+ private:
+  double sum_ = 0;
+  int n_ = 0;
+};
+
+PhiQuality quality_of(const StudyResults& results, Condition condition) {
+  PhiQuality all;
+  const std::pair<const char*, PhiQuality::Of*> features[] = {{"object_types", &all.object_types},
+                                                              {"textures", &all.textures}};
+  for (const auto& [feature, of] : features) {
+    MeanOf precision, recall;
+    for (const PersonResult& person : results.people)
+      for (const Trial* trial : person.counted[index(condition)]) {
+        if (!person.excluded.empty()) continue;
+        Selection selection = trial->selection;
+        selection.provenance = Provenance::human;
+        const Json of_trial = quality(selection, *trial->item->truth).at("target").at(feature);
+        precision.add(of_trial.at("precision"));
+        recall.add(of_trial.at("recall"));
+      }
+    *of = {precision.value(), recall.value()};
+  }
+  return all;
+}
+
+std::vector<CommandResult> commands_of(const StudyResults& results) {
+  std::vector<CommandResult> all;
+  const Protocol& protocol = *results.record->protocol;
+  for (const auto* items : {&protocol.sets.front(), &protocol.sets.back(), &protocol.spares}) {
+    if (items == &protocol.sets.back() && !protocol.crossover()) continue;
+    for (const Item& item : *items) {
+      CommandResult command;
+      command.item = &item;
+      std::vector<double> differences;
+      for (const PersonResult& person : results.people) {
+        if (!person.excluded.empty()) continue;
+        std::array<std::optional<double>, 2> s;
+        for (const Condition condition : both)
+          for (const Trial* trial : person.counted[index(condition)])
+            if (trial->item == &item) s[index(condition)] = trial->raw_s;
+        for (const std::size_t c : {0, 1})
+          if (s[c]) command.seconds[c].push_back(*s[c]);
+        if (s[0] && s[1]) differences.push_back(*s[0] - *s[1]);
+      }
+      if (!protocol.crossover() && differences.size() >= 2) command.change = report::paired_t(differences);
+      if (protocol.crossover() && command.seconds[0].size() >= 2 && command.seconds[1].size() >= 2)
+        command.change = report::welch_t(command.seconds[0], command.seconds[1]);
+      all.push_back(std::move(command));
+    }
+  }
+  std::vector<double> p;
+  for (const CommandResult& command : all)
+    if (command.change) p.push_back(command.change->p);
+  const std::vector<double> adjusted = report::holm(p);
+  std::size_t next = 0;
+  for (CommandResult& command : all)
+    if (command.change) command.p_holm = adjusted[next++];
+  return all;
+}
+
+// Mean log seconds of a period's trials that count.
+double mean_log(const PersonResult& person, int period) {
+  double sum = 0;
+  int n = 0;
+  for (const auto& trials : person.counted)
+    for (const Trial* trial : trials)
+      if (trial->period == period) sum += std::log(trial->raw_s), ++n;
+  return sum / n;
+}
+
+void count_trials(StudyResults& results, const PersonResult& person) {
+  constexpr double apart_s = 2;
+  const Protocol& protocol = *results.record->protocol;
+  for (const Trial& trial : person.session->all()) {
+    if (trial.practice) {
+      ++results.practice;
+      continue;
+    }
+    results.interrupted += trial.state == Trial::interrupted;
+    results.too_long += trial.state == Trial::finished && !counts(protocol, trial);
+    if (trial.state != Trial::finished) continue;
+    results.disagree += !trial.edits_agree;
+    results.clocks_apart += !person.session->simulated() && std::abs(trial.server_s - trial.raw_s) > apart_s;
+  }
+}
+
+void compare(StudyResults& results) {
+  std::array<std::vector<double>, 2> raw, active, by_first;
+  std::vector<double> differences, active_differences;
+  std::vector<CrossoverPerson> crossed;
+  for (const PersonResult& person : results.people) {
+    if (!person.excluded.empty()) continue;
+    for (const Condition condition : both) {
+      raw[index(condition)].push_back(person.mean_s(condition));
+      active[index(condition)].push_back(person.mean_s(condition, &Trial::active_s));
+    }
+    differences.push_back(raw[0].back() - raw[1].back());
+    active_differences.push_back(active[0].back() - active[1].back());
+    const Assignment& assignment = person.session->assignment();
+    by_first[index(assignment.conditions[0])].push_back(differences.back());
+    crossed.push_back({assignment.conditions[0] == Condition::human, assignment.sets[0] == 0,
+                       mean_log(person, 0) - mean_log(person, 1)});
+  }
+  for (const std::size_t c : {0, 1}) {
+    if (!raw[c].empty()) results.seconds[c] = report::spread(raw[c]), results.active_s[c] = report::spread(active[c]);
+    if (!by_first[c].empty()) results.by_first[c] = report::spread(by_first[c]);
+  }
+  if (differences.size() >= 2) {
+    results.primary = report::paired_t(differences);
+    results.active = report::paired_t(active_differences);
+  }
+  if (results.record->protocol->crossover()) results.log_model = crossover_model(crossed);
+}
+
+}  // namespace
+
+double PersonResult::mean_s(Condition condition, double Trial::*seconds) const {
+  double sum = 0;
+  for (const Trial* trial : counted[index(condition)]) sum += trial->*seconds;
+  return sum / static_cast<double>(counted[index(condition)].size());
+}
+
+int StudyResults::used() const {
+  return static_cast<int>(
+      std::count_if(people.begin(), people.end(), [](const PersonResult& p) { return p.excluded.empty(); }));
+}
+
+std::vector<report::Change> crossover_model(const std::vector<CrossoverPerson>& people) {
+  std::vector<std::vector<double>> rows;
+  std::vector<double> differences;
+  for (const CrossoverPerson& person : people) {
+    rows.push_back({person.human_first ? 1. : -1., 1, person.first_set_first ? 1. : -1.});
+    differences.push_back(person.difference);
+  }
+  return report::least_squares(rows, differences);
+}
+
+StudyResults results_of(const Record& record) {
+  StudyResults results;
+  results.record = &record;
+  for (const Session& session : record.people) {
+    PersonResult person;
+    person.session = &session;
+    for (const Trial& trial : session.all())
+      if (counts(*record.protocol, trial)) person.counted[index(trial.condition)].push_back(&trial);
+    person.excluded = why_excluded(*record.protocol, person);
+    count_trials(results, person);
+    results.people.push_back(std::move(person));
+  }
+  compare(results);
+  results.commands = commands_of(results);
+  for (const Condition condition : both) results.phi[index(condition)] = quality_of(results, condition);
+  return results;
+}
+
+}  // namespace lgabench::study

@@ -1,0 +1,68 @@
+// What a study says: seconds by condition and command, φ̂ against the truth, what was left out.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/report/statistics.hpp>
+#include <lgabench/study/study.hpp>
+
+namespace lgabench::study {
+
+/// One person, with the trials that count.
+struct PersonResult {
+  const Session* session = nullptr;
+  std::string excluded;                              // why; "" for one whom the tests use
+  std::array<std::vector<const Trial*>, 2> counted;  // by condition
+
+  /// Mean seconds of the trials that count, raw or active. @pre there is one
+  double mean_s(Condition condition, double Trial::*seconds = &Trial::raw_s) const;
+};
+
+/// Precision and recall of φ̂ in a condition, mean over trials; none where nobody chose anything.
+struct PhiQuality {
+  struct Of {
+    std::optional<double> precision, recall;
+  };
+  Of object_types, textures;
+};
+
+/// A command in both conditions, in their order, with the test between them.
+struct CommandResult {
+  const Item* item = nullptr;
+  std::array<std::vector<double>, 2> seconds;
+  std::optional<report::Change> change;  // human minus lga_hill: paired, or for a crossover Welch's
+  double p_holm = 1;                     // over the commands
+};
+
+struct StudyResults {
+  const Record* record = nullptr;
+  std::vector<PersonResult> people;                 // all, by slot
+  std::array<report::Spread, 2> seconds, active_s;  // of people's means, by condition
+  std::optional<report::Change> primary, active;    // paired t, human minus lga_hill; none with fewer than two people
+  /// Crossover: effects on log seconds of condition (human over lga_hill), period (first over second) and set (the
+  /// first over the second): each person's difference of periods on three columns. Empty where it has no solution.
+  std::vector<report::Change> log_model;
+  std::vector<CommandResult> commands;
+  std::array<PhiQuality, 2> phi;
+  std::array<std::optional<report::Spread>, 2> by_first;  // human minus lga_hill, of who began with each condition
+  int interrupted = 0, too_long = 0, practice = 0, disagree = 0;  // trials; disagree: clicks that do not add up to φ̂
+  int clocks_apart =
+      0;  // trials in which the server's clock says another time by more than 2 s; not of simulated people
+
+  int used() const;  // people
+};
+
+/// @p record must outlive it.
+StudyResults results_of(const Record& record);
+
+/// Each person's mean log seconds of the first period minus that of the second, on condition, period and set, coded
+/// so that a coefficient is the difference of the two levels (Jones and Kenward 2014, 2.5; Senn 2002, 3.6).
+struct CrossoverPerson {
+  bool human_first = false, first_set_first = false;
+  double difference = 0;
+};
+std::vector<report::Change> crossover_model(const std::vector<CrossoverPerson>& people);
+
+}  // namespace lgabench::study

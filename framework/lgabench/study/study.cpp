@@ -1,0 +1,248 @@
+#include <lgabench/study/study.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <set>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/version.hpp>
+#include <lgabench/study/withdrawal.hpp>
+
+namespace lgabench::study {
+namespace {
+
+std::int64_t now_ms() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+const char* name_of(Kind kind) { return kind == Kind::people ? "people" : "rehearsal"; }
+
+fs::path log_file(const fs::path& directory) { return directory / "study.events"; }
+fs::path people_of(const fs::path& directory) { return directory / "people"; }
+
+// Ids of the people in a directory.
+std::vector<std::string> ids_in(const fs::path& directory) {
+  std::vector<std::string> ids;
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(people_of(directory), none_there))
+    if (entry.path().extension() == ".events" && is_id(entry.path().stem())) ids.push_back(entry.path().stem());
+  return ids;
+}
+
+fs::path events_of(const fs::path& directory, const std::string& id) { return people_of(directory) / (id + ".events"); }
+fs::path export_of(const fs::path& directory, int slot) {
+  return directory / "participants" / (pseudonym(slot) + ".json");
+}
+
+// Slots that the log says were given, and withdrawn.
+struct Slots {
+  std::set<int> given, withdrawn;
+  explicit Slots(const EventLog& log) {
+    for (const Json& event : log.events()) {
+      if (event.at("kind") == "assigned") given.insert(event.at("slot").get<int>());
+      if (event.at("kind") == "withdrawn") withdrawn.insert(event.at("slot").get<int>());
+    }
+  }
+};
+
+Json assigned(const Session& session) {
+  return {{"kind", "assigned"}, {"slot", session.slot()}, {"assignment", to_json(session.assignment())}};
+}
+
+}  // namespace
+
+Study::Study(fs::path directory, Protocol protocol, const fs::path& protocol_file, Kind kind)
+    : directory_(std::move(directory)), protocol_(std::move(protocol)), kind_(kind) {
+  fs::create_directories(people_of(directory_));
+  fs::permissions(directory_, fs::perms::owner_all);
+  const fs::path lock = directory_ / "study.lock";
+  lock_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock_ < 0 || ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    const int reason = errno;
+    if (lock_ >= 0) ::close(lock_);
+    throw InputError(reason == EWOULDBLOCK
+                         ? fmt::format("{}: another lgabench serves this study", directory_.string())
+                         : fmt::format("{}: cannot be locked: {}", lock.string(), std::strerror(reason)));
+  }
+  try {
+    open_log(protocol_file);
+    open_people();
+  } catch (...) {
+    ::close(lock_);
+    throw;
+  }
+}
+
+Study::~Study() { ::close(lock_); }
+
+void Study::open_log(const fs::path& protocol_file) {
+  log_ = std::make_unique<EventLog>(log_file(directory_), true);
+  if (log_->events().empty()) {
+    const std::string consent = protocol_.json.at("consent").get<std::string>();
+    write_file(directory_ / "protocol.json", protocol_.bytes);
+    write_file(directory_ / consent, protocol_.consent);
+    log_->append({{"kind", "created"},
+                  {"at", now_ms()},
+                  {"of", name_of(kind_)},
+                  {"study", protocol_.id},
+                  {"pin", protocol_.pin},
+                  {"lgabench", LGABENCH_VERSION}});
+    return;
+  }
+  const Json& created = log_->events().front();
+  if (created.at("of") != name_of(kind_))
+    throw InputError(fmt::format("{}: holds a study of {}; expected another directory for one of {}",
+                                 directory_.string(), created.at("of").get<std::string>(), name_of(kind_)));
+  if (created.at("pin") != protocol_.pin)
+    throw InputError(fmt::format("{}: holds another study than {}: protocol, consent or what people are shown changed",
+                                 directory_.string(), protocol_file.string()));
+}
+
+void Study::open_people() {
+  Slots slots(*log_);
+  for (const std::string& id : ids_in(directory_)) {
+    EventLog log(events_of(directory_, id), true);
+    if (log.events().empty()) {  // nobody was told of this person
+      fs::remove(log.file());
+      continue;
+    }
+    auto session = std::make_unique<Session>(protocol_, std::move(log));
+    if (slots.withdrawn.count(session->slot()) != 0) {
+      fs::remove(export_of(directory_, session->slot()));
+      fs::remove(events_of(directory_, id));
+      continue;
+    }
+    if (slots.given.insert(session->slot()).second) log_->append(assigned(*session));
+    if (session->answered()) finish(*session);
+    people_[id] = std::move(session);
+  }
+  if (!slots.given.empty()) slots_ = *slots.given.rbegin() + 1;
+}
+
+std::string Study::begin(const std::string& key, const std::string& consent_sha256, bool simulated) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, session] : people_)
+    if (session->key() == key) return id;
+  if (consent_sha256 != sha256(protocol_.consent)) throw Refused(Refused::bad, "consent to another text than is shown");
+  if (simulated && kind_ == Kind::people) throw Refused(Refused::bad, "simulated people take part in rehearsals alone");
+  const std::string id = random_id();
+  EventLog log(events_of(directory_, id));
+  Json event{{"kind", "begin"},
+             {"at", now_ms()},
+             {"key", key},
+             {"slot", slots_},
+             {"assignment", to_json(assign(protocol_, slots_))},
+             {"consent", {{"given", true}, {"sha256", consent_sha256}, {"at", now_ms()}}}};
+  if (simulated) event["simulated"] = true;
+  log.append(event);  // from here on the person is there
+  auto session = std::make_unique<Session>(protocol_, std::move(log));
+  ++slots_;
+  const Json entry = assigned(*session);
+  people_[id] = std::move(session);
+  log_->append(entry);
+  return id;
+}
+
+std::optional<Json> Study::post(const std::string& id, const Json& event) {
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(id);
+  if (found == people_.end()) return std::nullopt;
+  Session& session = *found->second;
+  const bool changed = session.post(event, now_ms());
+  if (changed && session.answered()) finish(session);
+  return changed ? session.state() : Json::object();
+}
+
+void Study::finish(const Session& session) const {
+  const Json json = participant_json(protocol_, kind_, session);
+  const std::string text = json.dump(1) + "\n";
+  const fs::path file = export_of(directory_, session.slot());
+  std::error_code error;
+  if (!json.is_null() && !(fs::exists(file, error) && read_file(file) == text)) write_file(file, text);
+}
+
+bool Study::withdraw(const std::string& code) {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(people_.begin(), people_.end(), [&code](const auto& item) {
+    return plain_code(withdrawal_code(item.first)) == plain_code(code);
+  });
+  if (found == people_.end()) return false;
+  const int slot = found->second->slot();
+  log_->append({{"kind", "withdrawn"}, {"slot", slot}});  // from here on it is done, whatever happens
+  const std::string id = found->first;
+  people_.erase(found);
+  fs::remove(export_of(directory_, slot));
+  fs::remove(events_of(directory_, id));
+  sync_directory(people_of(directory_));
+  return true;
+}
+
+Record read_study(const fs::path& directory) {
+  const EventLog log(log_file(directory));
+  if (log.events().empty()) throw InputError(directory.string() + ": expected a study's directory (study serve --out)");
+  Record record;
+  record.protocol = std::make_unique<Protocol>(read_protocol(directory / "protocol.json"));
+  const Json& created = log.events().front();
+  record.kind = created.at("of") == name_of(Kind::people) ? Kind::people : Kind::rehearsal;
+  record.shown_as_now = created.at("pin") == record.protocol->pin;
+  const Slots slots(log);
+  record.withdrawn = static_cast<int>(slots.withdrawn.size());
+  for (const std::string& id : ids_in(directory)) {
+    EventLog events(events_of(directory, id));
+    if (events.events().empty()) continue;
+    Session session(*record.protocol, std::move(events));
+    if (slots.withdrawn.count(session.slot()) == 0) record.people.push_back(std::move(session));
+  }
+  std::sort(record.people.begin(), record.people.end(),
+            [](const Session& a, const Session& b) { return a.slot() < b.slot(); });
+  return record;
+}
+
+std::string pseudonym(int slot) { return fmt::format("p{:02}", slot + 1); }
+
+bool counts(const Protocol& protocol, const Trial& trial) {
+  return trial.state == Trial::finished && !trial.practice &&
+         (!protocol.longest_s || trial.raw_s <= *protocol.longest_s);
+}
+
+Json participant_json(const Protocol& protocol, Kind kind, const Session& session) {
+  std::map<std::string, Json> answers;  // by scenario
+  for (const Trial& trial : session.all()) {
+    if (!counts(protocol, trial)) continue;
+    const Item& item = *trial.item;
+    Json& answer = answers[item.scenario];
+    answer["scenario"] = item.scenario;
+    answer["command"] = item.command.utterance;
+    answer["asked_as"] = item.asked_as;
+    Json made{{"selection", distribution_json(trial.selection)}, {"seconds", trial.raw_s}};
+    if (trial.condition == Condition::human) {
+      answer["specified"] = std::move(made);
+      continue;
+    }
+    made["proposal"] = distribution_json(item.proposal);
+    made["proposed_by"] = item.proposed_by;
+    answer["edited"] = std::move(made);
+  }
+  if (answers.empty()) return nullptr;
+  Json json{{"participant", pseudonym(session.slot())},
+            {"study", fmt::format("{} (protocol {})", protocol.title, protocol.sha256.substr(0, 16))},
+            {"consent",
+             {{"given", true},
+              {"statement", "sha256 " + session.consent().at("sha256").get<std::string>()},
+              {"ethics", protocol.ethics}}},
+            {"license", protocol.license},
+            {"answers", Json::array()}};
+  if (kind == Kind::rehearsal || session.simulated()) json["rehearsal"] = true;
+  for (auto& [scenario, answer] : answers) json["answers"].push_back(std::move(answer));
+  return json;
+}
+
+}  // namespace lgabench::study

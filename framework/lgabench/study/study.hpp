@@ -1,0 +1,75 @@
+// A study's directory: its log, a file of events for each person, what `lgabench run --humans` reads.
+#pragma once
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/study/session.hpp>
+
+namespace lgabench::study {
+
+/// People's answers, or what was tried out before: never in one directory.
+enum class Kind { people, rehearsal };
+
+/// DIR/study.events (the study's log: what it is, every slot, withdrawals), DIR/people/ID.events,
+/// DIR/participants/pNN.json, and copies of protocol and consent. Any thread.
+class Study {
+ public:
+  /// Opens or begins the study in `directory`, for this process alone, and puts right what a kill left undone.
+  /// @throws InputError where another protocol, consent or kind of data is there, or another process serves it.
+  Study(fs::path directory, Protocol protocol, const fs::path& protocol_file, Kind kind);
+  ~Study();
+  Study(const Study&) = delete;
+  Study& operator=(const Study&) = delete;
+
+  const Protocol& protocol() const { return protocol_; }
+  Kind kind() const { return kind_; }
+  int slots() const { return slots_; }  // given so far; while nobody begins
+
+  /// Takes a person's consent to the text with that SHA-256; the same key gives the same person. Returns their id.
+  /// @throws Refused for another text, InputError where the disk takes nothing.
+  std::string begin(const std::string& key, const std::string& consent_sha256, bool simulated);
+  /// Session::post(): what to show where that changed, {} where it did not; none for an unknown id.
+  std::optional<Json> post(const std::string& id, const Json& event);
+  /// Deletes a person's events and participant's file; the log keeps the slot, without the id. False for an unknown
+  /// code.
+  bool withdraw(const std::string& code);
+
+ private:
+  void open_log(const fs::path& protocol_file);
+  void open_people();
+  void finish(const Session& session) const;
+
+  std::mutex mutex_;
+  fs::path directory_;
+  Protocol protocol_;
+  Kind kind_;
+  int lock_ = -1;
+  std::unique_ptr<EventLog> log_;
+  std::map<std::string, std::unique_ptr<Session>> people_;  // by id
+  int slots_ = 0;                                           // given so far
+};
+
+/// A study as it lies in a directory, to be read.
+struct Record {
+  std::unique_ptr<Protocol> protocol;  // sessions point into it
+  Kind kind = Kind::people;
+  bool shown_as_now = true;  // people were shown what this version of lgabench would show
+  int withdrawn = 0;
+  std::vector<Session> people;  // by slot
+};
+/// @throws InputError where there is no study.
+Record read_study(const fs::path& directory);
+
+/// "p07", of a slot.
+std::string pseudonym(int slot);
+/// What `lgabench run --humans` reads of a person (docs/formats: a participant's file); null where no trial was
+/// finished.
+Json participant_json(const Protocol& protocol, Kind kind, const Session& session);
+/// Whether the trial counts: finished, not practice, not longer than the protocol allows.
+bool counts(const Protocol& protocol, const Trial& trial);
+
+}  // namespace lgabench::study

@@ -1,0 +1,170 @@
+"""`lgabench cluster` and `lgabench status`: scripts for Slurm, and how far the parts are.
+
+Elements are played by bash here; on a real Slurm of this machine in ./test --full, where it is installed.
+By hand: python3 cluster_test.py Elements
+"""
+import getpass
+import json
+import os
+import re
+import shutil
+import subprocess
+import textwrap
+import time
+import unittest
+
+from case import FIXTURES, Case, with_options
+
+RUN = ("q1", "--scenarios", "heart,letter", "--methods", "fixture_constant", "--plugin-path", FIXTURES / "good",
+       "--demos", "2,4", "--seeds", "0:2", "--episodes", "2", "--engines", "kinematic")
+SLURM = all(map(shutil.which, ("slurmctld", "slurmd", "sbatch", "sacct", "scontrol")))
+
+
+class Elements(Case):
+    def cluster(self, *words, expect=0):
+        return self.call("cluster", *RUN, "--time", "00:30:00", "--cpus", "1", "--out", "out", *words, expect=expect)
+
+    def play(self, element):
+        environment = dict(self.environment, SLURM_ARRAY_TASK_ID=str(element))
+        return subprocess.run(["bash", self.dir / "out/array.sbatch"], capture_output=True, text=True, env=environment,
+                              cwd="/", timeout=300)
+
+    def test_elements_make_the_same_run(self):
+        said = self.cluster("--elements", "3").stdout
+        self.assertRegex(said, r"^20 cells in 3 elements; the longest takes about \d+ s on 1 cores, by cells measured elsewhere")
+        self.assertIn(f"To submit: {self.dir}/out/submit", said)
+        script = (self.dir / "out/array.sbatch").read_text()
+        for line in ("--array=1-3", "--cpus-per-task=1", "--time=00:30:00", "--signal=B:TERM@120", "--requeue"):
+            self.assertIn(f"#SBATCH {line}\n", script)
+        for element in 1, 3:
+            done = self.play(element)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(list(self.dir.glob("lgabench-*")), [], "an element's scratch is gone")
+        status = self.call("status", "out", expect=3).stdout
+        self.assertIn("not begun: 2\nto finish: --array=2\n", status)
+        self.assertEqual(self.play(2).returncode, 0)
+        done = self.play(1)  # again: harmless
+        self.assertIn("0 cells computed, 7 were there, 0 failed", done.stderr)
+        self.assertRegex(self.call("status", "out").stdout, r" 1/3 +7 +7 +0 +0 +0 ")
+        merged = subprocess.run(["bash", self.dir / "out/merge.sbatch"], capture_output=True, text=True, cwd="/",
+                                env=self.environment, timeout=300)
+        self.assertEqual(merged.returncode, 0, merged.stderr)
+        self.call("run", *RUN, "--out", "undisturbed")
+        self.assert_same_results("out/whole", "undisturbed")
+        self.assertNotIn("shard", json.loads((self.dir / "out/whole/run.json").read_text()))
+        self.assert_matches_schemas("undisturbed")
+
+    def test_status_counts_what_failed_and_what_is_missing(self):
+        self.call("run", *RUN, "--shard", "1/2", "--out", "part")
+        cells = sorted((self.dir / "part/cells").iterdir())
+        shutil.rmtree(cells[0])
+        status = json.loads((cells[1] / "status.json").read_text())
+        (cells[1] / "status.json").write_text(json.dumps({**status, "state": "failed"}))
+        said = json.loads(self.call("status", "part", "--json", expect=3).stdout)
+        part = said["parts"][0]
+        self.assertEqual([part[name] for name in ("shard", "cells", "done", "failed", "missing")], [1, 10, 8, 1, 1])
+        self.assertEqual((said["array"], said["absent"]), ("1-2", "2"))
+
+    def test_what_is_wrong_is_said_before_anything_is_written(self):
+        for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
+                              (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),
+                              (("--elements", "2", "--time", "2h"), "--time 2h: expected HH:MM:SS")]:
+            with self.subTest(words):
+                done = self.call("cluster", *with_options(RUN + ("--time", "00:30:00", "--out", "out"), *words), expect=2)
+                self.assertIn(reason, done.stderr)
+                self.assertFalse((self.dir / "out").exists())
+
+    def test_a_smoke_runs_cells_tell_the_time(self):
+        self.call("run", *with_options(RUN, "--demos", "2", "--seeds", "0"), "--out", "smoke")
+        for cell in (self.dir / "smoke/cells").iterdir():
+            timing = json.loads((cell / "timing.json").read_text())
+            (cell / "timing.json").write_text(json.dumps({**timing, "total_s": 3600}))
+        said = self.cluster("--elements", "2", "--timings", "smoke").stdout
+        self.assertIn("by the cells of smoke", said)
+        self.assertRegex(said, r"--time 00:30:00 is short for that: \d+ elements would fit")
+
+
+@unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
+@unittest.skipUnless(SLURM, "Slurm (slurm-wlm) is not installed")
+class Slurm(Case):
+    """slurmctld and two slurmd of this user's own, in this test's directory and on ports of their own."""
+
+    def setUp(self):
+        super().setUp()
+        host = os.uname().nodename
+        user = getpass.getuser()
+        (self.dir / "slurm.conf").write_text(textwrap.dedent(f"""\
+            ClusterName=test
+            SlurmctldHost={host}(127.0.0.1)
+            SlurmctldPort=16817
+            AuthType=auth/none
+            CredType=cred/none
+            ProctrackType=proctrack/linuxproc
+            TaskPlugin=task/none
+            MpiDefault=none
+            ReturnToService=2
+            SlurmUser={user}
+            SlurmdUser={user}
+            StateSaveLocation={self.dir}/state
+            SlurmdSpoolDir={self.dir}/spool.%n
+            SlurmctldPidFile={self.dir}/ctld.pid
+            SlurmdPidFile={self.dir}/%n.pid
+            SlurmctldLogFile={self.dir}/ctld.log
+            SlurmdLogFile={self.dir}/%n.log
+            SelectType=select/cons_tres
+            SelectTypeParameters=CR_Core
+            JobAcctGatherType=jobacct_gather/none
+            AccountingStorageType=accounting_storage/none
+            NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port=16818 CPUs=1 RealMemory=16000
+            NodeName=n2 NodeHostname={host} NodeAddr=127.0.0.1 Port=16819 CPUs=1 RealMemory=16000
+            PartitionName=p Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP OverSubscribe=FORCE
+            """))
+        (self.dir / "state").mkdir()
+        self.environment["SLURM_CONF"] = str(self.dir / "slurm.conf")
+        for words in (["slurmctld", "-D"], ["slurmd", "-D", "-N", "n1"], ["slurmd", "-D", "-N", "n2"]):
+            process = subprocess.Popen(words, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            self.addCleanup(process.wait)
+            self.addCleanup(process.terminate)
+
+    def slurm(self, *words):
+        done = subprocess.run(list(map(str, words)), env=self.environment, capture_output=True, text=True, timeout=60, cwd=self.dir)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def wait(self):
+        for _ in range(600):
+            if not self.slurm("squeue", "-h").strip():
+                return
+            time.sleep(.5)
+        self.fail(self.slurm("squeue") + (self.dir / "ctld.log").read_text()[-3000:])
+
+    def test_an_array_with_an_element_killed_makes_the_same_run(self):
+        for _ in range(60):
+            if subprocess.run(["scontrol", "ping"], env=self.environment, capture_output=True).returncode == 0:
+                break
+            time.sleep(.5)
+        self.call("cluster", *RUN, "--elements", "4", "--time", "00:10:00", "--cpus", "1", "--memory", "1", "--out", "out")
+        job = self.slurm("sbatch", "--parsable", "out/array.sbatch").strip()
+        for _ in range(200):
+            if list(self.dir.glob("out/part-1/cells/*/status.json")):
+                break
+            time.sleep(.1)
+        self.slurm("scancel", "--signal=KILL", "--full", f"{job}_1")
+        self.wait()
+        said = self.call("status", "out", expect=None).stdout
+        element = re.search(r"--array=(\S+)", said)
+        self.slurm("bash", "out/submit", f"--array={element[1] if element else 1}")
+        self.wait()
+        self.call("status", "out")
+        self.call("run", *RUN, "--out", "undisturbed")
+        self.assert_same_results("out/whole", "undisturbed")
+
+    def call(self, *words, expect=0, **more):
+        if expect is not None:
+            return super().call(*words, expect=expect, **more)
+        from case import command_line
+        return subprocess.run(command_line(*words), capture_output=True, text=True, env=self.environment, cwd=self.dir)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

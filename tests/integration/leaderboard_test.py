@@ -1,0 +1,353 @@
+"""`lgabench leaderboard`: from a run to a page, and what is refused on the way.
+
+The suite is a tiny one of the test's own, in a copy of the installed data. By hand: python3 leaderboard_test.py Submissions
+"""
+import hashlib
+import json
+import os
+import pathlib
+import re
+import shutil
+import unittest
+
+from case import BUILD, ENGINE, FIXTURES, Case
+from verify_test import canonical, rewrite
+
+SUITE = {"id": "tiny", "environment": "tabletop", "scenarios": ["heart", "letter"], "layouts": ["cells"],
+         "engines": [ENGINE["run"][1]], "methods": ["fixture_constant"], "demonstrations": [2, 4], "seeds": [0, 1],
+         "episodes": 4, "scene_seed": 0,
+         "presets": {"paper": {}, "board": {"scene_seed": 77, "test_scenes": "per_seed"},
+                     "small": {"scene_seed": 77, "test_scenes": "per_seed", "smoke": True}}}
+META = {"authors": ["A. Author"], "license": "Apache-2.0", "by": "A. Author",
+        "source": {"repository": "https://example.org/mine", "commit": "0" * 40}}
+ROWS = "fixture_constant,fixture_constant+demonstration=1"
+PLUGIN = ("--plugin-path", FIXTURES / "good")
+
+
+class Board(Case):
+    """A board beside one run of the tiny suite, which every test copies."""
+
+    def prepare(self):
+        shutil.copytree(BUILD / "share/lgabench", self.dir / "data", ignore=shutil.ignore_patterns("encoder"))
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(SUITE))
+        self.environment["LGABENCH_DATA"] = str(self.dir / "data")
+        (self.dir / "me.json").write_text(json.dumps(META))
+
+    @classmethod
+    def setUpClass(cls):
+        cls.first = cls()
+        cls.first.setUp()
+        cls.addClassCleanup(cls.first.doCleanups)
+        cls.first.prepare()
+        cls.first.play("run")
+
+    def runTest(self):
+        pass
+
+    def play(self, out, *words, expect=0):
+        return self.call("run", "tiny", "--preset", "board", "--methods", ROWS, *PLUGIN, "--out", out, *words, expect=expect)
+
+    def take_run(self):
+        """This test's own copy of the class's run."""
+        self.prepare()
+        self.environment["LGABENCH_CACHE"] = str(self.first.dir / "cache")
+        shutil.copytree(self.first.dir / "run", self.dir / "run")
+
+    def leaderboard(self, *words, expect=0):
+        return self.call("leaderboard", *words, "--board", "board", expect=expect)
+
+    def add(self, run="run", expect=0, *words):
+        return self.leaderboard("add", run, "--entry", "me.json", *words, expect=expect)
+
+    def refused(self, run="run"):
+        """What is said, line by line; nothing is written."""
+        done = self.add(run, 1)
+        self.assertFalse((self.dir / "board/entries").exists())
+        self.assertEqual(done.stdout, "")
+        lines = done.stderr.splitlines()
+        self.assertTrue(all(line.startswith("refused: ") for line in lines), lines)
+        return [line[len("refused: "):] for line in lines]
+
+    def cell(self, run="run", **wanted):
+        """A cell of the run with these members, by their path."""
+        for path in sorted((self.dir / run).glob("cells/*/cell.json")):
+            cell = json.loads(path.read_text())
+            if all(cell[name] == value for name, value in wanted.items()) and cell["method"]["id"] == "fixture_constant":
+                return path.parent
+        raise AssertionError(wanted)
+
+    def change_run(self, run="run", **members):
+        file = self.dir / run / "run.json"
+        file.write_text(json.dumps({**json.loads(file.read_text()), **members}))
+
+    def fail(self, cell, fault):
+        status = {"state": "failed", "reason": "ended by signal 11", "signal": 11, "fault": fault, "build": {}, "files": {},
+                  "log_tail": []}
+        for name in ("selection.json", "training.jsonl", "episodes.jsonl", "timing.json"):
+            (cell / name).unlink()
+        (cell / "status.json").write_text(canonical(status))
+
+
+class Submissions(Board):
+    def test_from_a_run_to_a_page(self):
+        self.take_run()
+        said = self.add().stdout
+        self.assertEqual(len(re.findall(r"^added entries/\w+/[0-9a-f]{16}/tiny-board$", said, re.M)), 5, said)
+        self.leaderboard("build")
+        self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
+        board = self.dir / "board"
+        self.assertEqual(sorted(file.name for file in board.glob("*.*")),
+                         ["README.md", "index.html", "leaderboard.csv", "tiny.html"])
+        self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant demonstration=[01] \|")
+        entry = json.loads(next(board.glob("entries/fixture_constant/*/tiny-board/entry.json")).read_text())
+        self.assertEqual(entry["about"], META)
+        self.assertEqual(entry["identity"]["scene_seed"], 77)
+        self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
+        said = self.add(expect=1).stderr
+        self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
+
+    def test_the_page_names_the_command_that_plays_a_cell_again(self):
+        self.take_run()
+        self.add()
+        self.leaderboard("build")
+        page = (self.dir / "board/tiny.html").read_text()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+        entry = next(entry for entry in data["entries"] if "demonstration=1" in entry["command"])
+        words = entry["command"].replace("'", "").split()[1:]
+        self.call(*words, *PLUGIN, "--scenarios", "heart", "--demos", "4", "--seeds", "1", "--out", "again")
+        again = next((self.dir / "again/cells").iterdir())
+        cells = [json.loads(line) for line in (self.dir / "board" / entry["place"] / "cells.jsonl").read_text().splitlines()]
+        self.assertIn(again.name, [cell["key"] for cell in cells], "the cell has the board's key")
+        results = "".join(hashlib.sha256((again / name).read_bytes()).hexdigest()
+                          for name in ("selection.json", "training.jsonl", "episodes.jsonl"))
+        digest = next(cell["digest"] for cell in cells if cell["key"] == again.name)
+        self.assertEqual(hashlib.sha256(results.encode()).hexdigest(), digest)
+
+    def test_rows_can_be_chosen(self):
+        self.take_run()
+        self.assertEqual(self.add("run", 0, "--rows", "fixture_constant").stdout.count("added"), 1)
+        self.assertIn("no row nobody, the run has:", self.add("run", 2, "--rows", "nobody").stderr)
+
+    def test_another_run_with_the_same_outcomes_is_evidence(self):
+        self.take_run()
+        self.add()
+        self.change_run(started="2030-01-01T00:00:00Z")
+        self.assertEqual(self.add().stdout.count("evidence added to"), 5)
+        entry = json.loads(next((self.dir / "board").glob("entries/oracle/*/*/entry.json")).read_text())
+        self.assertEqual(len(entry["evidence"]), 2)
+
+    def test_other_outcomes_of_one_identity_are_refused(self):
+        self.take_run()
+        self.add()
+        cell = self.cell()
+        rewrite(cell, "episodes.jsonl", lambda e: {**e, "success": not e["success"], "attribution": None,
+                                                   "failure": "missed_object" if e["success"] else "none"})
+        before = {file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}
+        self.assertIn("this identity is there, with other outcomes in 1 of 8 cells", self.add(expect=1).stderr)
+        self.assertEqual({file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}, before)
+
+    def test_a_cell_that_the_method_failed_counts_as_lost(self):
+        self.take_run()
+        self.fail(self.cell(demonstrations=4), "plugin")
+        self.add()
+        lines = [json.loads(line) for file in (self.dir / "board").glob("entries/fixture_constant/*/*/cells.jsonl")
+                 for line in file.read_text().splitlines()]
+        failed = [line for line in lines if "failed" in line]
+        self.assertEqual([line["outcomes"] for line in failed], [{"test": "!!!!"}])
+
+    def test_withdrawn_entries_keep_their_record(self):
+        self.take_run()
+        self.add("run", 0, "--rows", "fixture_constant")
+        ids = [path.name for path in (self.dir / "board/entries/fixture_constant").iterdir()]
+        self.leaderboard("withdraw", ids[0], "--reason", "a mistake in its training")
+        self.leaderboard("build")
+        self.assertIn("1 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertNotIn("| 1 |", (self.dir / "board/README.md").read_text())
+        self.assertIn("was withdrawn before", self.leaderboard("withdraw", ids[0], "--reason", "again", expect=2).stderr)
+        self.change_run(started="2030-01-01T00:00:00Z")
+        self.assertIn("this identity was withdrawn", self.add("run", 1, "--rows", "fixture_constant").stderr)
+
+
+class Refusals(Board):
+    def setUp(self):
+        super().setUp()
+        if self is not getattr(type(self), "first", self):
+            self.take_run()
+
+    def test_a_smoke_run(self):
+        self.change_run(smoke=True)
+        self.assertIn("a smoke or limited run (run.json: smoke)", self.refused())
+
+    def test_a_limited_run(self):
+        self.play("limited", "--limit", "3")
+        lines = self.refused("limited")
+        self.assertIn("a smoke or limited run (run.json: smoke)", lines)
+        self.assertTrue(any(line.startswith("missing: ") for line in lines))
+
+    def test_an_unconfined_run(self):
+        self.change_run(confinement="none, by --unconfined")
+        self.assertEqual(self.refused(), ["methods were not confined (--unconfined)"])
+
+    def test_a_preset_whose_scenes_methods_are_tuned_on(self):
+        self.call("run", "tiny", "--preset", "paper", "--methods", "fixture_constant", *PLUGIN, "--out", "paper")
+        self.assertRegex(self.refused("paper")[0], r'preset "paper" has no scene_seed of its own.*\(board, small\)$')
+
+    def test_another_scene_seed(self):
+        suite = {**SUITE, "presets": {"board": {"scene_seed": 78, "test_scenes": "per_seed"}}}
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(suite))
+        self.assertRegex(" ".join(self.refused()), r"scene_seed is 77, the board's preset has 78: .* and \d+ more cells")
+
+    def test_a_cell_that_was_not_played(self):
+        shutil.rmtree(self.cell(demonstrations=4, training_seed=1))
+        lines = self.refused()
+        self.assertIn("1 cells of the run have not been played", lines)
+        self.assertIn("missing: fixture_constant", " ".join(lines))
+
+    def test_a_part_of_the_preset(self):
+        self.play("part", "--seeds", "0")
+        missing = [line for line in self.refused("part") if line.startswith("missing: ")]
+        self.assertIn("missing: fixture_constant heart cells n=2 seed=1", missing)
+        self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
+
+    def test_a_cell_that_the_host_failed(self):
+        self.fail(self.cell(), "host")
+        self.assertRegex(self.refused()[0], "^failed by the host, not by the method: fixture_constant.*: ended by signal 11$")
+
+    def test_an_edited_file(self):
+        file = self.cell() / "episodes.jsonl"
+        file.write_text(file.read_text().replace('"success":false', '"success":true').replace('"failure":"missed_object"', '"failure":"none"'))
+        self.assertEqual(len(self.refused()), 1)
+
+    def test_a_setting_that_is_not_the_boards(self):
+        self.play("more", "--episodes", "6")
+        self.assertIn("episodes is 6, the board's preset has 4", " ".join(self.refused("more")))
+
+    def test_other_scenes_under_the_scenarios_name(self):
+        for cell in (self.dir / "run/cells").iterdir():
+            rewrite(cell, "cell.json", lambda c: {**c, "scenario": {**c["scenario"], "note": "easier"}})
+        self.assertIn("the scenario is not as the board's preset has it", " ".join(self.refused()))
+
+    def test_a_suite_that_somebody_brings_along(self):
+        shutil.copy(self.dir / "data/suites/tiny.json", self.dir / "tiny.json")
+        self.change_run(suite=str(self.dir / "tiny.json"))
+        self.assertRegex(self.refused()[0], "expected one that is installed, not a file$")
+
+    def test_an_id_that_leads_elsewhere(self):
+        for cell in (self.dir / "run/cells").iterdir():
+            rewrite(cell, "cell.json", lambda c: c if c["method"]["kind"] == "reference" else
+                    {**c, "method": {**c["method"], "id": "../../elsewhere"}})
+        self.assertIn("expected an id of letters, digits, _ and -", self.add(expect=2).stderr)
+        self.assertFalse((self.dir / "elsewhere").exists())
+
+    def test_live_answers_without_their_cassette(self):
+        for cell in (self.dir / "run/cells").iterdir():
+            rewrite(cell, "cell.json", lambda c: {**c, "answers": "openai:m", "data": {**c["data"], "prompt": "0" * 64}})
+        self.assertIn("openai:m: a live model's answers without their cassette (answers/ of the run)", self.refused())
+
+    def test_what_authors_must_say(self):
+        (self.dir / "me.json").write_text(json.dumps({k: v for k, v in META.items() if k != "license"}))
+        self.assertIn("me.json: /license", self.add(expect=2).stderr)
+        (self.dir / "me.json").write_text(json.dumps({**META, "source": {"repository": "r", "commit": "main"}}))
+        self.assertIn("/source/commit: expected 40 hexadecimal digits", self.add(expect=2).stderr)
+
+
+class Replays(Board):
+    """`leaderboard verify`: what somebody made up is found, and what was found stays."""
+
+    def setUp(self):
+        super().setUp()
+        if self is not getattr(type(self), "first", self):
+            self.take_run()
+            self.add("run", 0, "--rows", "fixture_constant")
+            self.entry = next((self.dir / "board/entries/fixture_constant").glob("*/tiny-board"))
+
+    def verify(self, *words, expect=0):
+        done = self.leaderboard("verify", "--by", "B. Reader", *PLUGIN, *words, expect=expect)
+        self.leaderboard("build")
+        self.assertIn("1 entries, 0 problems", self.leaderboard("check").stdout)
+        return done.stdout
+
+    def forge(self, share):
+        """Success in that share of the cells, in all episodes."""
+        lines = [json.loads(line) for line in (self.entry / "cells.jsonl").read_text().splitlines()]
+        for line in lines[:round(share * len(lines))]:
+            line["outcomes"] = {"test": "...."}
+            line["digest"] = "0" * 64
+        (self.entry / "cells.jsonl").write_text("".join(map(canonical, lines)))
+
+    def tier(self):
+        return (self.dir / "board/README.md").read_text().split("| fixture_constant |")[1].split("|")[1].strip()
+
+    def test_an_honest_entry_is_bit_identical(self):
+        said = self.verify("--cells", "3")
+        self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended otherwise \(nonce [0-9a-f]{32}\)")
+        self.assertEqual(self.tier(), "replayed")
+        self.verify(self.entry.parent.name, "--cells", "2")
+        lines = [json.loads(line) for line in (self.entry / "verifications.jsonl").read_text().splitlines()]
+        self.assertEqual([len(line["cells"]) for line in lines], [3, 2])
+        self.assertNotEqual(lines[0]["nonce"], lines[1]["nonce"])
+
+    def test_a_made_up_cell_is_found_and_not_outvoted(self):
+        honest = (self.entry / "cells.jsonl").read_bytes()
+        self.forge(1)
+        self.assertIn("DIFFERS", self.verify("--cells", "2", expect=1))
+        self.assertEqual(self.tier(), "recomputed")
+        self.assertIn("a replay differed", (self.dir / "board/leaderboard.csv").read_text())
+        (self.entry / "cells.jsonl").write_bytes(honest)
+        self.assertIn("expected the cells that the nonce chooses", self.leaderboard("check", expect=1).stderr)
+
+    def test_scenes_learned_by_heart_differ_from_fresh_ones(self):
+        self.assertRegex(self.verify("--fresh"), r"^agrees .*: [+-]0.\d+ \[-.*\] on fresh scenes")
+        (self.entry / "verifications.jsonl").unlink()
+        self.forge(1)
+        self.assertIn("DIFFERS", self.verify("--fresh", expect=1))
+        self.assertIn("differs on fresh scenes", (self.dir / "board/leaderboard.csv").read_text())
+
+    def test_another_version_or_preset_is_not_what_was_entered(self):
+        suite = {**SUITE, "presets": {"board": {"scene_seed": 77, "test_scenes": "per_seed", "episodes": 5}}}
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(suite))
+        self.assertRegex(self.leaderboard("verify", "--by", "B", *PLUGIN, expect=2).stderr,
+                         r"preset tiny-board: [0-9a-f]{8} here, [0-9a-f]{8} in the entry")
+        self.assertIn("expected --by NAME", self.leaderboard("verify", expect=2).stderr)
+        self.assertFalse((self.entry / "verifications.jsonl").exists())
+
+
+class Versions(Case):
+    """A version of a method promises its actions: entries of one version, by two builds, are one entry."""
+    golden = pathlib.Path(__file__).parent / "golden/versions.json"
+
+    def test_a_shipped_methods_actions_change_with_its_version_alone(self):
+        self.call("run", "q1", "--engines", "kinematic", "--scenarios", "heart,sweep_block_without_touching_pan", "--demos", "6",
+                  "--seeds", "0", "--episodes", "12", "--set", "*.epochs=30", "--no-reference", "--out", "run")
+        found = {}
+        for key, (cell, status) in self.cells("run").items():
+            self.assertEqual(status["state"], "ok")
+            episodes = (self.dir / "run/cells" / key / "episodes.jsonl").read_text().splitlines()
+            # To a centimetre: last bits are the processor's.
+            actions = [[round(x, 2) for x in json.loads(line)["action"][:2]] for line in episodes]
+            found.setdefault(cell["method"]["id"], {"version": cell["method"]["version"]})[cell["scenario"]["id"]] = actions
+        if os.environ.get("LGABENCH_WRITE_GOLDEN"):
+            self.golden.parent.mkdir(exist_ok=True)
+            self.golden.write_text(json.dumps(found, sort_keys=True) + "\n")
+        promised = json.loads(self.golden.read_text())
+        self.assertEqual(sorted(found), sorted(promised))
+        for method, now in found.items():
+            if now["version"] != promised[method]["version"]:
+                self.fail(f"{method}: version {now['version']}: LGABENCH_WRITE_GOLDEN=1 writes what it promises")
+            for scenario in set(now) - {"version"}:
+                for one, other in zip(now[scenario], promised[method][scenario]):
+                    for x, y in zip(one, other):
+                        self.assertAlmostEqual(x, y, delta=.021, msg=f"{method} acts otherwise in {scenario}, and is still "
+                                               f"version {now['version']}: give it a new one")
+
+
+class Published(Case):
+    """The repository's own board, as continuous integration checks it."""
+
+    def test_it_is_what_its_entries_make(self):
+        done = self.call("leaderboard", "check", "--board", pathlib.Path(__file__).parents[2] / "results/leaderboard")
+        self.assertRegex(done.stdout, r"^\d+ entries, 0 problems\n$")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,143 @@
+"""report.html as a browser shows it: nothing that axe-core objects to, nothing wider than the screen or the paper, few stops
+of the tab key, and a dialog that leads from a number to an episode. Needs Chromium, its driver and axe-selenium-python."""
+import shutil
+import unittest
+
+from case import BesideOneRun
+
+try:
+    import selenium.webdriver
+    from axe_selenium_python import Axe
+except ImportError:
+    selenium = None
+
+PROGRAMS = [shutil.which("chromium"), shutil.which("chromedriver")]
+A4 = 680  # pixels of CSS between its margins
+
+
+@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
+class PageInABrowser(BesideOneRun):
+    run_of_class = ("run", "q2", "--scenarios", "q2_heart,q2_letter", "--methods", "lga,lga_s,gcbc_dart", "--demos", "10",
+                    "--seeds", "0,1", "--episodes", "5", "--set", "*.epochs=20")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        options = selenium.webdriver.ChromeOptions()
+        options.binary_location = PROGRAMS[0]
+        for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"):
+            options.add_argument(argument)
+        cls.browser = selenium.webdriver.Chrome(options, selenium.webdriver.ChromeService(PROGRAMS[1]))
+        cls.addClassCleanup(cls.browser.quit)
+
+    def open(self, width=1280, scheme="light", media="", place=""):
+        self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                                     {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+        self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {
+            "media": media, "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+        self.browser.get("about:blank")
+        self.browser.get(f"file://{self.first.dir}/run/report.html{place}")
+        self.script("for (const folded of document.querySelectorAll('details')) folded.open = true")
+        self.script("return new Promise((then) => requestAnimationFrame(() => requestAnimationFrame(then)))")
+        self.assertEqual([entry for entry in self.browser.get_log("browser")], [])
+
+    def script(self, text, *arguments):
+        return self.browser.execute_script(text, *arguments)
+
+    def click(self, selector):
+        self.script("document.querySelector(arguments[0]).click()", selector)
+
+    def shown(self, selector):
+        return self.script("return [...document.querySelectorAll(arguments[0])].map((e) => e.textContent)", selector)
+
+    def press(self, key, of="document.activeElement"):
+        self.script(f"{of}.dispatchEvent(new KeyboardEvent('keydown', {{key: arguments[0], bubbles: true, cancelable: true}}))", key)
+
+    def findings(self):
+        axe = Axe(self.browser)
+        axe.inject()
+        return [(found["id"], [node["html"][:200] for node in found["nodes"]][:3]) for found in axe.run()["violations"]]
+
+    def test_axe_finds_nothing(self):
+        for scheme in ("light", "dark"):
+            for width in (1280, 390):
+                self.open(width, scheme)
+                with self.subTest(scheme, width=width, what="page"):
+                    self.assertEqual(self.findings(), [])
+                self.click("button.rate")
+                with self.subTest(scheme, width=width, what="episodes"):
+                    self.assertEqual(self.findings(), [])
+                self.click("dialog .zoom")
+                with self.subTest(scheme, width=width, what="an episode"):
+                    self.assertEqual(self.findings(), [])
+
+    def test_nothing_is_wider_than_its_place(self):
+        wide = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrollWidth > f.clientWidth + 1)
+                  .map((f) => f.getAttribute("aria-label"))"""
+        page = "return document.documentElement.scrollWidth"
+        for width in (1280, 768, 390):
+            with self.subTest(width):
+                self.open(width)
+                self.assertEqual(self.script(wide), [])
+                self.assertLessEqual(self.script(page), width)
+        self.open(A4, media="print")
+        self.script("dispatchEvent(new Event('beforeprint'))")
+        self.assertEqual(self.script(wide), [])
+        self.assertLessEqual(self.script(page), A4)
+        self.assertEqual(self.script("return document.querySelectorAll('main details:not([open])').length"), 0)
+
+    def test_a_table_and_a_chart_are_one_stop_each(self):
+        self.open()
+        stops = """return [...document.querySelectorAll("main *")].filter((e) => e.tabIndex >= 0).length"""
+        boxes = len(self.script("return [...document.querySelectorAll('main table, main svg.chart')].map(() => 1)"))
+        folded = len(self.shown("main summary"))
+        self.assertGreater(len(self.shown("main button")), 60)
+        self.assertLessEqual(self.script(stops), boxes + folded)
+        self.script("document.querySelector('tbody button.rate').focus()")
+        begun = self.script("return document.activeElement.dataset.row")
+        self.press("ArrowRight")
+        beside = self.script("return document.activeElement.dataset.row")
+        self.assertNotEqual(beside, begun)
+        self.assertEqual(self.script("return document.activeElement.tabIndex"), 0)
+        self.press("ArrowLeft")
+        self.assertEqual(self.script("return document.activeElement.dataset.row"), begun)
+        self.assertLessEqual(self.script(stops), boxes + folded)
+
+    def test_a_number_leads_to_its_episodes_and_these_to_one(self):
+        self.open()
+        self.click("tbody button.rate")
+        address = self.browser.current_url
+        self.assertRegex(address, r"#row=\d+$")
+        pictured = len(self.shown("dialog .scenes figure"))
+        self.assertGreater(pictured, 1)
+        self.click("dialog .zoom")
+        self.assertRegex(self.browser.current_url, r"&episode=[0-9a-f]{16}%2F\w+%2F\d+$")
+        (before, *_) = self.script("return [...document.querySelectorAll('.large figure')].map((f) => f.innerHTML)")
+        for colour, what in (("#fff", "the action"), ("#5dff8f", "the oracle's"), ("#ffe100", "the target")):
+            self.assertIn(f'stroke="{colour}"', before, what)
+        self.assertTrue(any(caption.startswith("after the action") for caption in self.shown(".large figcaption")))
+        one = self.browser.current_url
+        self.press("ArrowRight", "document.getElementById('panel')")
+        self.assertNotEqual(self.browser.current_url, one)
+        self.press("ArrowLeft", "document.getElementById('panel')")
+        self.assertEqual(self.browser.current_url, one)
+
+        narrow = "return document.querySelector('.large figure').getBoundingClientRect().width"
+        small = self.script(narrow)
+        self.click(".large .zoom")
+        self.assertGreater(self.script(narrow), 1.8 * small)
+
+        self.open(place=one[one.index("#"):])  # a link to this episode
+        self.assertEqual(len(self.shown(".large figure")) > 0, True)
+        self.click("#all")
+        self.assertEqual(self.browser.current_url, address)
+
+        # A count of failures leads to these.
+        self.click("#close")
+        outcome = self.script("const count = document.querySelector('.count'); count.click(); return count.dataset.outcome")
+        self.assertEqual(set(self.shown("dialog .scenes figcaption b")), {outcome})
+        self.assertEqual(self.script("return document.getElementById('outcome').value"), outcome)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,95 @@
+// A board's pages, and what `leaderboard check` finds: with 200 entries of q1's size, in seconds.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+
+#include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/pages.hpp>
+
+#include "leaderboard_board.hpp"
+
+namespace lgabench::leaderboard {
+namespace {
+
+void git(const fs::path& board, const std::string& words) {
+  const std::string command =
+      "git -C " + board.string() + " -c user.name=a -c user.email=a@b.c " + words + " >/dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+}
+
+std::string all(const std::vector<std::string>& lines) { return fmt::format("{}", fmt::join(lines, "\n")); }
+
+TEST(Board, WhatIsBuiltIsCurrentAndAnEditIsNot) {
+  const TemporaryDirectory board;
+  for (const char* name : {"a", "b"}) write_entry(board.path, made_entry(small_setting(), name, .5));
+  EXPECT_SAYS(all(check(board.path).problems), "not what lgabench leaderboard build makes");
+  build(board.path);
+  EXPECT_EQ(all(check(board.path).problems), "");
+  EXPECT_SAYS(read_file(board.path / "README.md"), "(q1.html)");
+  write_file(board.path / "leaderboard.csv", read_file(board.path / "leaderboard.csv") + "a line more\n");
+  EXPECT_SAYS(all(check(board.path).problems), "leaderboard.csv: not what lgabench leaderboard build makes");
+}
+
+TEST(Board, EntriesOfOneTablePlayedTheSameScenes) {
+  const TemporaryDirectory board;
+  Entry other = made_entry(small_setting(), "b", .5);
+  other.cells[1].scenes = std::string(64, '0');
+  write_entry(board.path, made_entry(small_setting(), "a", .5));
+  write_entry(board.path, other);
+  EXPECT_SAYS(all(check(board.path).problems), "other test scenes than entries/method_of_a");
+}
+
+TEST(Board, AnOldOutcomeDoesNotChangeAndARecordStays) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5), gone = made_entry(small_setting(), "b", .5);
+  for (const Entry& one : {entry, gone}) write_entry(board.path, one);
+  build(board.path);
+  EXPECT_SAYS(all(check(board.path, "HEAD").notes), "not compared with HEAD");
+  git(board.path, "init -q");
+  git(board.path, "add .");
+  git(board.path, "commit -qm before");
+  write_entry(board.path, made_entry(small_setting(), "c", .5));  // a new one may come
+  withdraw(board.path, gone.id(), "a mistake", "2026-01-01");     // and an old one be withdrawn
+  build(board.path);
+  EXPECT_EQ(all(check(board.path, "HEAD").problems), "");
+  EXPECT_EQ(all(check(board.path, "HEAD").notes), "");
+  char& letter = entry.cells[3].outcomes["test"][0];
+  letter = letter == '.' ? 'a' : '.';
+  entry.about["by"] = "somebody else";
+  write_entry(board.path, entry);
+  fs::remove_all(board.path / gone.place());
+  const std::string problems = all(check(board.path, "HEAD").problems);
+  EXPECT_SAYS(problems, "cells.jsonl: an outcome or a cell changed since HEAD");
+  EXPECT_SAYS(problems, "/about changed since HEAD");
+  EXPECT_SAYS(problems, "is gone (leaderboard withdraw keeps the record) since HEAD");
+}
+
+// Generated once, with rates that differ from row to row.
+TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
+  const TemporaryDirectory scratch;
+  const char* keep = std::getenv("LGABENCH_KEEP_BOARD");  // to look at its pages
+  const fs::path board = keep ? fs::path(keep) : scratch.path;
+  for (int i = 0; i < 197; ++i)
+    write_entry(board, made_entry(large_setting(), fmt::format("author_{}", i), .2 + .003 * i));
+  for (const auto& [name, rate] : {std::pair("oracle", .99), {"random_object", .4}, {"constant_action", .2}})
+    write_entry(board, made_entry(large_setting(), name, rate, "reference"));
+  build(board);
+  const auto begin = std::chrono::steady_clock::now();
+  const Checked checked = check(board);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_EQ(all(checked.problems), "");
+  EXPECT_EQ(checked.entries, 200u);
+  RecordProperty("check_seconds", std::to_string(seconds));
+  EXPECT_LT(seconds, 10);
+  for (const auto& file : fs::directory_iterator(board))
+    if (file.is_regular_file()) EXPECT_LT(fs::file_size(file.path()), 3'000'000u) << file.path();
+  for (const fs::path& entry : entry_directories(board))
+    EXPECT_LT(fs::file_size(board / entry / "cells.jsonl") + fs::file_size(board / entry / "entry.json"), 300'000u);
+  const std::string page = read_file(board / "q1.html");
+  for (const char* reference : {"src=\"http", "href=\"http", "url(http", "@import"})
+    EXPECT_SILENT(page, reference) << "a page needs nothing from elsewhere";
+}
+
+}  // namespace
+}  // namespace lgabench::leaderboard

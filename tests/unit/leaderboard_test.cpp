@@ -1,0 +1,213 @@
+// Entries of a leaderboard: what is written is read again, what was changed is found.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include <lgabench/leaderboard/check.hpp>
+#include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/report/bootstrap.hpp>
+
+#include "../schemas.hpp"
+#include "leaderboard_board.hpp"
+
+namespace lgabench::leaderboard {
+namespace {
+
+Json replay_of(const Entry& entry, const std::string& by, const std::string& processor, bool passed = true) {
+  const std::string nonce(32, '7');
+  Json cells = Json::array();
+  for (const std::size_t i : chosen_cells(entry, nonce, 3)) cells.push_back(entry.cells[i].key);
+  return {{"kind", "replay"},
+          {"nonce", nonce},
+          {"cells", cells},
+          {"bit_identical", 3},
+          {"flips", 0},
+          {"episodes", 120},
+          {"passed", passed},
+          {"by", by},
+          {"when", "2026-01-02"},
+          {"program", "lgabench 0.2.0"},
+          {"build", Json::object()},
+          {"machine", {{"processor", processor}}},
+          {"confinement", "Landlock 6, seccomp"}};
+}
+
+TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5);
+  entry.cells[2].failed = "signal 11";
+  entry.cells[2].scenes = entry.cells[2].digest = "";
+  for (auto& arm : entry.cells[2].outcomes) arm.second = std::string(40, failed_cell_letter);
+  write_entry(board.path, entry);
+  add_verification(board.path, entry, replay_of(entry, "somebody", "another"));
+  const Entry read = read_entry(board.path, entry.place());
+  EXPECT_EQ(entry_text(read), entry_text(entry));
+  EXPECT_EQ(cells_text(read), cells_text(entry));
+  EXPECT_EQ(read.tier(), Tier::reproduced);
+  EXPECT_EQ(read.place(), fs::path("entries/method_of_a") / entry.id() / "q1-board");
+  const fs::path path = board.path / entry.place();
+  using Complaints = std::vector<std::string>;
+  EXPECT_EQ(complaints("entry", read_json(path / "entry.json")), Complaints());
+  EXPECT_EQ(complaints("entry_meta", entry.about), Complaints());
+  for (const Json& line : documents(path / "cells.jsonl")) EXPECT_EQ(complaints("cells", line), Complaints());
+  for (const Json& line : documents(path / "verifications.jsonl"))
+    EXPECT_EQ(complaints("verifications", line), Complaints());
+}
+
+TEST(LeaderboardEntry, AVersionOrASceneSeedIsAnotherEntryAndABuildIsNot) {
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  Entry other = entry;
+  other.evidence.front()["build"] = {{"lgabench-worker", std::string(64, 'f')}};
+  EXPECT_EQ(other.id(), entry.id());
+  other.identity.row.version = "1.1";
+  EXPECT_NE(other.id(), entry.id());
+  Setting seed = small_setting();
+  ++seed.scene_seed;
+  EXPECT_NE(made_entry(seed, "a", .5).id(), entry.id());
+  EXPECT_EQ(hash(seed), hash(small_setting()));
+}
+
+// What somebody could change in the files, and what is said of it.
+TEST(LeaderboardEntry, WhatWasChangedIsFound) {
+  const auto after = [](const std::function<void(const fs::path&)>& change) {
+    const TemporaryDirectory board;
+    const Entry entry = made_entry(small_setting(), "a", .5);
+    write_entry(board.path, entry);
+    change(board.path / entry.place());
+    return message_of<InputError>([&] { read_entry(board.path, entry.place()); });
+  };
+  const auto edit = [](const fs::path& file, const std::string& from, const std::string& to) {
+    std::string text = read_file(file);
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    write_file(file, text.replace(text.find(from), from.size(), to));
+  };
+  const auto json = [](const fs::path& path, const std::function<void(Json&)>& change) {
+    Json json = read_json(path / "entry.json");
+    change(json);
+    write_file(path / "entry.json", json.dump(1) + "\n");
+  };
+  EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"test\":\"", "\"test\":\"."); }),
+              "expected 40 letters, one an episode");
+  EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "a", "z"); }), "expected");
+  EXPECT_SAYS(after([&](auto& path) {
+                const std::string text = read_file(path / "cells.jsonl");
+                write_file(path / "cells.jsonl", text.substr(text.find('\n') + 1));
+              }),
+              "expected the cell heart cells n=10 seed=0");
+  EXPECT_SAYS(after([&](auto& path) {
+                const std::string text = read_file(path / "cells.jsonl");
+                write_file(path / "cells.jsonl", text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+              }),
+              "expected 12 cells, got 11; the next is letter cells n=20 seed=2");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["identity"]["version"] = "2.0"; }); }),
+              "the hash of /identity");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["preset"]["episodes"] = 20; }); }),
+              "the hash of /preset");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
+  EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "alone here");
+  EXPECT_SAYS(after([&](auto& path) { edit(path / "entry.json", "\n", "\n\n"); }), "not as it is written");
+}
+
+TEST(LeaderboardEntry, AVerificationPlaysTheCellsThatItsNonceChooses) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  write_entry(board.path, entry);
+  Json forged = replay_of(entry, "b", "another");
+  std::swap(forged["cells"][0], forged["cells"][1]);
+  add_verification(board.path, entry, forged);
+  EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
+              "the cells that the nonce chooses");
+}
+
+TEST(LeaderboardEntry, TiersFollowFromVerifications) {
+  Entry entry = made_entry(small_setting(), "a", .5);
+  EXPECT_EQ(entry.tier(), Tier::recomputed);
+  entry.verifications.push_back(replay_of(entry, "a", "another"));  // by the same person
+  EXPECT_EQ(entry.tier(), Tier::replayed);
+  entry.verifications.push_back(replay_of(entry, "b", "another"));
+  EXPECT_EQ(entry.tier(), Tier::reproduced);
+  entry.verifications.push_back(replay_of(entry, "c", "third", false));
+  EXPECT_EQ(entry.tier(), Tier::recomputed);
+  EXPECT_EQ(why_not_ranked(entry), "a replay differed");
+}
+
+TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {
+  const Setting setting = small_setting();
+  for (const bool shared : {false, true}) {
+    std::vector<std::vector<std::vector<std::vector<double>>>> rows(2);
+    RandomStream random("rows");
+    report::Samples differences, first;
+    for (int scenario = 0; scenario < 3; ++scenario) {
+      report::Outcomes of_first, of_both;
+      for (auto& row : rows) row.emplace_back();
+      for (int seed = 0; seed < 3; ++seed) {
+        std::vector<double> a, b, difference;
+        std::vector<std::string> scenes;
+        for (int i = 0; i < 30; ++i) {
+          a.push_back(random.uniform() < .4);
+          b.push_back(a.back() > 0 || random.uniform() < .08);
+          difference.push_back(b.back() - a.back());
+          scenes.push_back(fmt::format("{}/{}/{}", scenario, shared ? 0 : seed, i));
+        }
+        rows[0].back().push_back(a);
+        rows[1].back().push_back(b);
+        of_first.add("", scenes, a);
+        of_both.add("", scenes, difference);
+      }
+      first.push_back(of_first.sample());
+      differences.push_back(of_both.sample());
+    }
+    const report::SharedResamples resamples(rows, shared, "name");
+    const report::Change alone = report::paired_change(differences, "name");
+    EXPECT_NEAR(resamples.p(0, 1), alone.p, .01);
+    EXPECT_NEAR(resamples.p(1, 0), alone.p, .01);
+    const report::Interval interval = report::success_interval(first, "name");
+    EXPECT_NEAR(resamples.interval(0).low, interval.low, .01);
+    EXPECT_NEAR(resamples.interval(0).high, interval.high, .01);
+  }
+}
+
+TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
+  const Setting setting = small_setting();
+  const std::vector<Entry> entries{made_entry(setting, "a", .8), made_entry(setting, "b", .8),
+                                   made_entry(setting, "c", .3), made_entry(setting, "oracle", 1, "reference")};
+  std::vector<const Entry*> table;
+  for (const Entry& entry : entries) table.push_back(&entry);
+  const std::vector<Standing> all = standings(table);
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0].rank, 1);
+  EXPECT_EQ(all[1].rank, 1);
+  EXPECT_EQ(all[2].rank, 3);
+  EXPECT_EQ(all[2].entry->about.at("by"), "c");
+  EXPECT_FALSE(all[3].rank) << "a reference row has none";
+  for (const Standing& s : all) {
+    EXPECT_LE(s.interval.low, s.score);
+    EXPECT_GE(s.interval.high, s.score);
+  }
+  EXPECT_DOUBLE_EQ(*all[0].precision, .5);
+}
+
+TEST(Standings, EpisodesOfAFailedCellAreLost) {
+  Entry entry = made_entry(small_setting(), "a", 1);
+  entry.cells[0].failed = "signal 11";
+  entry.cells[0].outcomes["test"] = std::string(40, failed_cell_letter);
+  const Standing standing = standings({&entry}).front();
+  EXPECT_EQ(standing.failed_cells, 1);
+  EXPECT_NEAR(standing.score, 1 - .5 / 6, 1e-9);
+  EXPECT_EQ(standing.episodes, 6 * 40 + 6 * 80);
+}
+
+TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {
+  Entry entry = made_entry(small_setting(), "a", 1);
+  entry.identity.row.asks = "truth";
+  EXPECT_EQ(why_not_ranked(entry), "asks for the truth");
+  entry.identity.row.asks = "";
+  EXPECT_EQ(why_not_ranked(entry), "");
+  entry.phi["heart"][0][0]["selection"]["provenance"] = "truth";
+  EXPECT_EQ(why_not_ranked(entry), "the truth stands in for people");
+}
+
+}  // namespace
+}  // namespace lgabench::leaderboard

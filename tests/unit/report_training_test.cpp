@@ -1,0 +1,119 @@
+// Learning curves, and the page over several runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <lgabench/report/index.hpp>
+#include <lgabench/report/report.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+using Spec = FabricatedRun::Spec;
+
+const report::Chart& chart_named(const report::Document& document, const std::string& file) {
+  const auto charts = document.charts();
+  const auto found = std::find_if(charts.begin(), charts.end(), [&](const auto* chart) { return chart->file == file; });
+  if (found == charts.end()) throw std::runtime_error("no chart " + file);
+  return **found;
+}
+
+TEST(LearningCurves, AreMeansOfTheCellsWithTheMostDemonstrations) {
+  FabricatedRun run;
+  for (int seed = 0; seed < 2; ++seed) {
+    Spec lga{"lga", 15, "heart", 50, seed};
+    lga.curves = {{"validation", seed ? 4. : 2.}};
+    run.add(lga);
+    run.add({"lga", 3, "heart", 10, seed});
+    run.add({"gcbc_dart", 3, "heart", 50, seed});
+  }
+  const report::Report report = report::write_report(run.save().path);
+  const report::Chart& loss = chart_named(report.document, "training_loss_cells_mujoco");
+  ASSERT_EQ(loss.series.size(), 2u);
+  EXPECT_EQ(loss.series[0].name, "LGA");
+  ASSERT_EQ(loss.series[0].points.size(), 3u);
+  EXPECT_EQ(loss.series[0].points[2].x, 3);
+  EXPECT_EQ(loss.series[0].points[2].y, 1. / 3) << "a loss that falls to a third stands on a plain scale";
+
+  // The mean of 2 and 4, then of 1 and 2; a curve that one method alone logs.
+  const report::Chart& validation = chart_named(report.document, "training_validation_cells_mujoco");
+  ASSERT_EQ(validation.series.size(), 1u);
+  EXPECT_EQ(validation.series[0].points[0].y, 3);
+  EXPECT_EQ(validation.series[0].points[1].y, 1.5);
+  EXPECT_LE(validation.bottom, 1);
+  EXPECT_GE(validation.top, 3);
+  for (const char* file : {"training_loss_cells_mujoco.svg", "training_validation_cells_mujoco.pdf"})
+    EXPECT_TRUE(fs::exists(run.path / "figures" / file)) << file;
+  EXPECT_SAYS(read_file(run.path / "report.html"), "<h2 id=\"training-title\">Learning curves</h2>");
+}
+
+TEST(LearningCurves, ThatFallFarStandOnPowersOfTen) {
+  FabricatedRun run;
+  Spec spec{"lga", 15};
+  spec.curves = {{"far", 1e-9}};
+  run.add(spec);
+  Spec other{"gcbc_dart", 15};
+  other.curves = {{"far", 1000.}};
+  run.add(other);
+  const report::Report report = report::write_report(run.save().path);
+  const report::Chart& chart = chart_named(report.document, "training_far_cells_mujoco");
+  EXPECT_NEAR(chart.series[1].points[0].y, 3, 1e-9);
+  EXPECT_LE(chart.levels.front().at, chart.series[0].points[2].y);
+  EXPECT_GE(chart.levels.back().at, 3);
+  EXPECT_EQ(chart.levels.back().label, "1000");
+}
+
+TEST(LearningCurves, AreThereOnlyWhereSomethingWasLogged) {
+  FabricatedRun run;
+  const fs::path cell = run.add({"lga", 15});
+  write_file(cell / "training.jsonl", "");
+  Json status = read_json(cell / "status.json");
+  status["files"]["training.jsonl"] = sha256("");
+  write_file(cell / "status.json", canonical(status) + "\n");
+  report::write_report(run.save().path);
+  EXPECT_SILENT(read_file(run.path / "report.html"), "Learning curves");
+}
+
+TEST(LearningCurves, ALineThatIsNoneIsNamed) {
+  FabricatedRun run;
+  const fs::path cell = run.add({"lga", 15});
+  write_file(cell / "training.jsonl", "{\"epoch\":1,\"steps\":1,\"loss\":\"low\"}\n");
+  EXPECT_SAYS(message_of<InputError>([&] { report::read_run(run.save().path); }), "training.jsonl: line 1");
+}
+
+TEST(Index, HasEveryRunAndItsMethodsBestFirst) {
+  TemporaryDirectory place;
+  FabricatedRun a, b;
+  a.add({"lga", 10});
+  b.add({"my_method", 15});
+  b.add({"lga", 20, "letter"});
+  std::vector<report::Report> reports;
+  reports.push_back(report::write_report(a.save().path));
+  reports.push_back(report::write_report(b.save().path));
+  FabricatedRun c;
+  c.add({"my_method", 15});
+  reports.push_back(report::write_report(c.save().path));
+  const report::Document index = report::write_index(reports, place.path / "index.html");
+  const std::vector<const report::Grid*> grids = index.grids();
+  ASSERT_EQ(grids.size(), 2u);
+  ASSERT_EQ(grids[0]->rows.size(), 3u);
+  const std::string link = grids[0]->rows[0].cells[0].link;
+  EXPECT_TRUE(fs::equivalent(place.path / link, a.path / "report.html")) << link;
+
+  // a and c share a setting; b has another set of scenarios.
+  const auto& rows = grids[1]->rows;
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0].group.text(), rows[1].group.text());
+  EXPECT_NE(rows[1].group.text(), rows[2].group.text());
+  EXPECT_EQ(rows[0].cells[0].text(), "my_method");
+  EXPECT_EQ(rows[0].cells[2].text(), "0.75");
+  EXPECT_EQ(rows[1].cells[0].text(), "LGA");
+  const std::string page = read_file(place.path / "index.html");
+  EXPECT_SAYS(page, "<a href=\"" + link + "\">");
+}
+
+}  // namespace
+}  // namespace lgabench
