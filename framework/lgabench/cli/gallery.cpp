@@ -56,14 +56,10 @@ Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
   return tile;
 }
 
-// Row by row, in cells of the largest tile's size.
+// Row by row; all tiles have one size.
 Sheet sheet(const std::vector<Tile>& tiles, int across) {
   const int count = static_cast<int>(tiles.size()), down = (count + across - 1) / across;
-  int width = 0, height = 0;  // of the largest tile
-  for (const Tile& tile : tiles) {
-    width = std::max(width, zoom * tile.columns + gutter);
-    height = std::max(height, zoom * tile.rows + gutter);
-  }
+  const int width = zoom * tiles[0].columns + gutter, height = zoom * tiles[0].rows + gutter;
   Picture picture(across * width - gutter, down * height - gutter);
   std::string header, rule, body;
   Json names = Json::array();
@@ -107,14 +103,17 @@ Sheet gallery(const std::string& what) {
       tiles.push_back(close_up("pallet", texture, texture));
     return sheet(tiles, 7);
   }
-  if (what == "scenes") {
+  const std::vector<std::string> environments = environment_ids();
+  const std::string environment = what == "scenes" ? "tabletop" : what;
+  if (std::find(environments.begin(), environments.end(), environment) != environments.end()) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
+      if (scenario.environment != environment) continue;
       for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
     }
     return sheet(tiles, 2);
   }
-  throw InputError(fmt::format("--gallery {}: expected objects, textures or scenes", what));
+  throw InputError(fmt::format("--gallery {}: expected objects, textures, scenes or an environment", what));
 }
 
 }  // namespace lgabench::cli

@@ -91,9 +91,13 @@ void render(const Arguments& arguments) {
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
+  std::vector<std::string> galleries{"objects", "textures", "scenes"};
+  for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
-  verb->add_option("--gallery", arguments->gallery, "Every object, texture or scenario's scene on one sheet instead")
-      ->check(one_of("gallery", {"objects", "textures", "scenes"}))
+  verb->add_option(
+          "--gallery", arguments->gallery,
+          "Every object, texture or scenario's scene on one sheet instead; an environment: scenes of its scenarios")
+      ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
                    "With --gallery: a file that says as JSON where each picture lies; nothing is printed")
@@ -117,7 +121,7 @@ void add_render(CLI::App& app, int&) {
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   const std::string layouts = fmt::format("{}", fmt::join(installed_layouts(), "|"));
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes"},
+          {{"--gallery", "objects|textures|scenes|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", layouts.c_str()},
