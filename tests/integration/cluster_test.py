@@ -6,7 +6,6 @@ By hand: python3 cluster_test.py Elements
 import getpass
 import json
 import os
-import re
 import shutil
 import subprocess
 import textwrap
@@ -143,27 +142,22 @@ class Slurm(Case):
             if subprocess.run(["scontrol", "ping"], env=self.environment, capture_output=True).returncode == 0:
                 break
             time.sleep(.5)
-        self.call("cluster", *RUN, "--elements", "4", "--time", "00:10:00", "--cpus", "1", "--memory", "1", "--out", "out")
+        run = with_options(RUN, "--seeds", "0:10")
+        self.call("cluster", *run, "--elements", "4", "--time", "00:10:00", "--cpus", "1", "--memory", "1", "--out", "out")
         job = self.slurm("sbatch", "--parsable", "out/array.sbatch").strip()
-        for _ in range(200):
+        for _ in range(600):
             if list(self.dir.glob("out/part-1/cells/*/status.json")):
                 break
             time.sleep(.1)
         self.slurm("scancel", "--signal=KILL", "--full", f"{job}_1")
         self.wait()
-        said = self.call("status", "out", expect=None).stdout
-        element = re.search(r"--array=(\S+)", said)
-        self.slurm("bash", "out/submit", f"--array={element[1] if element else 1}")
+        said = json.loads(self.call("status", "out", "--json", expect=3).stdout)
+        self.assertIn("1", said["array"], "the element that was killed is to be played again")
+        self.slurm("bash", "out/submit", f"--array={said['array']}")
         self.wait()
         self.call("status", "out")
-        self.call("run", *RUN, "--out", "undisturbed")
+        self.call("run", *run, "--out", "undisturbed")
         self.assert_same_results("out/whole", "undisturbed")
-
-    def call(self, *words, expect=0, **more):
-        if expect is not None:
-            return super().call(*words, expect=expect, **more)
-        from case import command_line
-        return subprocess.run(command_line(*words), capture_output=True, text=True, env=self.environment, cwd=self.dir)
 
 
 if __name__ == "__main__":

@@ -80,7 +80,7 @@ class Board(Case):
         file = self.dir / run / "run.json"
         file.write_text(json.dumps({**json.loads(file.read_text()), **members}))
 
-    def fail(self, cell, fault):
+    def mark_failed(self, cell, fault):
         status = {"state": "failed", "reason": "ended by signal 11", "signal": 11, "fault": fault, "build": {}, "files": {},
                   "log_tail": []}
         for name in ("selection.json", "training.jsonl", "episodes.jsonl", "timing.json"):
@@ -105,6 +105,17 @@ class Submissions(Board):
         self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
         said = self.add(expect=1).stderr
         self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
+
+    def test_two_shards_make_the_same_entries(self):
+        self.take_run()
+        for shard in 1, 2:
+            self.play(f"part{shard}", "--shard", f"{shard}/2")
+        self.call("merge", "whole", "part1", "part2")
+        self.add()
+        cells = {file: file.read_bytes() for file in (self.dir / "board").rglob("cells.jsonl")}
+        self.assertEqual(self.add("whole").stdout.count("evidence added to"), 5)
+        self.assertEqual({file: file.read_bytes() for file in cells}, cells)
+        self.assertIn("missing: ", self.add("part1", 1).stderr)
 
     def test_the_page_names_the_command_that_plays_a_cell_again(self):
         self.take_run()
@@ -148,7 +159,7 @@ class Submissions(Board):
 
     def test_a_cell_that_the_method_failed_counts_as_lost(self):
         self.take_run()
-        self.fail(self.cell(demonstrations=4), "plugin")
+        self.mark_failed(self.cell(demonstrations=4), "plugin")
         self.add()
         lines = [json.loads(line) for file in (self.dir / "board").glob("entries/fixture_constant/*/*/cells.jsonl")
                  for line in file.read_text().splitlines()]
@@ -210,7 +221,7 @@ class Refusals(Board):
         self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
 
     def test_a_cell_that_the_host_failed(self):
-        self.fail(self.cell(), "host")
+        self.mark_failed(self.cell(), "host")
         self.assertRegex(self.refused()[0], "^failed by the host, not by the method: fixture_constant.*: ended by signal 11$")
 
     def test_an_edited_file(self):
@@ -246,7 +257,7 @@ class Refusals(Board):
 
     def test_what_authors_must_say(self):
         (self.dir / "me.json").write_text(json.dumps({k: v for k, v in META.items() if k != "license"}))
-        self.assertIn("me.json: /license", self.add(expect=2).stderr)
+        self.assertIn('me.json: /: expected a member "license"', self.add(expect=2).stderr)
         (self.dir / "me.json").write_text(json.dumps({**META, "source": {"repository": "r", "commit": "main"}}))
         self.assertIn("/source/commit: expected 40 hexadecimal digits", self.add(expect=2).stderr)
 

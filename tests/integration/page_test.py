@@ -103,6 +103,22 @@ class PageInABrowser(BesideOneRun):
         self.assertEqual(self.script("return document.activeElement.dataset.row"), begun)
         self.assertLessEqual(self.script(stops), boxes + folded)
 
+    def test_figures_and_tables_can_be_taken_away(self):
+        self.open()
+        self.script("""window.saved = [];
+            URL.createObjectURL = (blob) => { blob.text().then((text) => saved.push(text)); return "#saved"; };
+            HTMLAnchorElement.prototype.click = function () { saved.push(this.download); };""")
+        names = self.shown("#take optgroup[label=CSV] option")
+        self.assertEqual(len(names), len(self.shown("main .frame")))
+        for ending, begun in ("SVG", "<svg xmlns=\"http://www.w3.org/2000/svg\""), ("CSV", "group,method,"):
+            text = self.script("""saved.length = 0;
+                const take = document.getElementById("take");
+                take.value = take.querySelector(`optgroup[label=${arguments[0]}] option`).value;
+                take.onchange();
+                return new Promise((then) => setTimeout(() => then(saved), 100));""", ending)
+            self.assertTrue(text[0].endswith(ending.lower()), text[0])
+            self.assertTrue(text[1].startswith(begun), text[1][:100])
+
     def test_a_number_leads_to_its_episodes_and_these_to_one(self):
         self.open()
         self.click("tbody button.rate")

@@ -234,7 +234,7 @@ class StudyRehearsal(StudyCase):
         self.assertRegex(said, r"Primary: Human − LGA-HILL \+\d+\.\d s \[.*6 people")
         for name in "report.md", "results.json", "trials.csv", "figures/seconds.svg", "figures/seconds.pdf", "tables/commands.tex":
             self.assertTrue((self.dir / "data" / name).exists(), name)
-        self.assertNotIn("<b>", (self.dir / "data/report.md").read_text())
+        self.assertIn(r"simulated \<b>words\</b> \| of \*nobody\*", (self.dir / "data/report.md").read_text())
         self.assertIn("holds a study of rehearsal", self.refused_as_people())
 
         run = ["run", "q1", "--humans", "data/participants", "--scenarios", "heart,red_heart,rotate_block", "--methods",

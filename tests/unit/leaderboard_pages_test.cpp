@@ -83,7 +83,9 @@ TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
   RecordProperty("check_seconds", std::to_string(seconds));
   EXPECT_LT(seconds, 10);
   for (const auto& file : fs::directory_iterator(board))
-    if (file.is_regular_file()) EXPECT_LT(fs::file_size(file.path()), 3'000'000u) << file.path();
+    if (file.is_regular_file()) {
+      EXPECT_LT(fs::file_size(file.path()), 3'000'000u) << file.path();
+    }
   for (const fs::path& entry : entry_directories(board))
     EXPECT_LT(fs::file_size(board / entry / "cells.jsonl") + fs::file_size(board / entry / "entry.json"), 300'000u);
   const std::string page = read_file(board / "q1.html");

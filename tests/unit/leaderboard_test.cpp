@@ -83,9 +83,9 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
     write_file(file, text.replace(text.find(from), from.size(), to));
   };
   const auto json = [](const fs::path& path, const std::function<void(Json&)>& change) {
-    Json json = read_json(path / "entry.json");
-    change(json);
-    write_file(path / "entry.json", json.dump(1) + "\n");
+    Json entry = read_json(path / "entry.json");
+    change(entry);
+    write_file(path / "entry.json", entry.dump(1) + "\n");
   };
   EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"test\":\"", "\"test\":\"."); }),
               "expected 40 letters, one an episode");

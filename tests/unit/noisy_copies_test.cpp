@@ -6,15 +6,17 @@
 
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/noisy_copies.hpp>
+#include <tabletop/two_poses.hpp>
 
 namespace lgabench {
 namespace {
 
 constexpr int copies = 5;
 constexpr double scale = .05;
+const SampleShape shape{{{input_size, 3}}, true, tabletop::two_poses()};
 
 // Rows whose pictures and labels differ in mean and in deviation, within and between rows.
-Samples clean_rows(const SampleShape& shape, int rows) {
+Samples clean_rows(int rows) {
   Samples samples(shape, rows);
   for (int row = 0; row < rows; ++row) {
     const auto fill = [&](std::vector<float>& values, double mean, double spread) {
@@ -45,9 +47,8 @@ double noise(const std::vector<float>& clean, const std::vector<float>& noisy, i
 }
 
 TEST(NoisyCopies, HaveTheDeviationOfTheirOwnPictureAndLabel) {
-  const SampleShape shape{{{input_size, 3}}, true};
   constexpr int rows = 3, trials = 60;
-  const Samples clean = clean_rows(shape, rows);
+  const Samples clean = clean_rows(rows);
   double pictures[rows] = {}, labels[rows] = {};
   for (int seed = 0; seed < trials; ++seed) {
     const Samples all = with_noisy_copies(clean, copies, scale, static_cast<std::uint64_t>(seed));
@@ -65,9 +66,8 @@ TEST(NoisyCopies, HaveTheDeviationOfTheirOwnPictureAndLabel) {
 }
 
 TEST(NoisyCopies, StandBesideTheOriginalsWhichKeepTheirNumbers) {
-  const SampleShape shape{{{input_size, 3}}, true};
   constexpr int rows = 4;
-  const Samples clean = clean_rows(shape, rows), all = with_noisy_copies(clean, copies, scale, 7);
+  const Samples clean = clean_rows(rows), all = with_noisy_copies(clean, copies, scale, 7);
   ASSERT_EQ(all.rows, rows * (1 + copies));
   const auto row_of = [](const std::vector<float>& values, int of, int row) {
     const std::size_t n = values.size() / static_cast<std::size_t>(of);
@@ -86,8 +86,7 @@ TEST(NoisyCopies, StandBesideTheOriginalsWhichKeepTheirNumbers) {
 }
 
 TEST(NoisyCopies, AreNotClipped) {
-  const SampleShape shape{{{input_size, 3}}, true};
-  Samples clean = clean_rows(shape, 1);
+  Samples clean = clean_rows(1);
   for (float& value : clean.pictures[0]) value = value > .9F ? 1.0F : 0.0F;
   const Samples all = with_noisy_copies(clean, copies, scale, 0);
   const auto [low, high] = std::minmax_element(all.pictures[0].begin(), all.pictures[0].end());
@@ -96,18 +95,17 @@ TEST(NoisyCopies, AreNotClipped) {
 }
 
 TEST(NoisyCopies, AreAFunctionOfTheSeedAndFurtherRowsChangeNothing) {
-  const SampleShape shape{{{input_size, 3}}, true};
-  const Samples few = with_noisy_copies(clean_rows(shape, 2), copies, scale, 3);
-  const Samples more = with_noisy_copies(clean_rows(shape, 5), copies, scale, 3);
+  const Samples few = with_noisy_copies(clean_rows(2), copies, scale, 3);
+  const Samples more = with_noisy_copies(clean_rows(5), copies, scale, 3);
   EXPECT_TRUE(std::equal(few.labels.begin(), few.labels.end(), more.labels.begin()));
   EXPECT_TRUE(std::equal(few.pictures[0].begin(), few.pictures[0].end(), more.pictures[0].begin()));
-  EXPECT_NE(with_noisy_copies(clean_rows(shape, 2), copies, scale, 4).labels, few.labels);
+  EXPECT_NE(with_noisy_copies(clean_rows(2), copies, scale, 4).labels, few.labels);
 }
 
 TEST(NoisyCopies, OfRangesHaveEachNumbersOwn) {
-  SampleShape shape{{{input_size, 1}}};
-  shape.actions.numbers = {{"share", "", 0, 1}, {"place", "m", -3, 3}};
-  const Samples clean(shape, 1);  // all zeros: no deviation at all
+  SampleShape two_units{{{input_size, 1}}};
+  two_units.actions.numbers = {{"share", "", 0, 1}, {"place", "m", -3, 3}};
+  const Samples clean(two_units, 1);  // all zeros: no deviation at all
   constexpr int trials = 400;
   double squares[3] = {};
   for (int seed = 0; seed < trials; ++seed) {

@@ -130,7 +130,8 @@ TEST_F(ParticipantFile, EveryParticipantHasOne) {
   EXPECT_SAYS(message_of<InputError>([&] { read_participants(path / "none", false, all); }), "No such file");
   read(invented());
   write_file(path / "p02.json", invented().dump());
-  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }), "\"made-up-01\" has another file there");
+  EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }),
+              "\"made-up-01\" has another file there");
 }
 
 }  // namespace

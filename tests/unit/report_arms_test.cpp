@@ -192,7 +192,7 @@ TEST(Figures, OneNumberOfDemonstrationsPutsTheArmsBeside) {
   run.add(shifted("lga", "q2_heart", 0, 20, 20, 10));
   run.add(shifted("gcbc_dart", "q2_heart", 0, 8, 4, 2));
   const report::Report report = report::write_report(run.save().path);
-  ASSERT_EQ(report.document.charts().size(), 1u);
+  ASSERT_EQ(report.document.charts().size(), 2u);  // and the learning curves
   const report::Chart& chart = *report.document.charts().front();
   ASSERT_EQ(chart.ticks.size(), 3u);
   EXPECT_EQ(chart.ticks[1].label, "texture");

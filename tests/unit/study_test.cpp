@@ -43,7 +43,8 @@ class StudyDirectory : public testing::Test, public TemporaryDirectory {
   }
   std::vector<int> withdrawn_and_given() const {
     int given = 0, withdrawn = 0;
-    for (const Json& event : EventLog(data / "study.events").events()) {
+    const EventLog log(data / "study.events");
+    for (const Json& event : log.events()) {
       given += event.at("kind") == "assigned";
       withdrawn += event.at("kind") == "withdrawn";
     }

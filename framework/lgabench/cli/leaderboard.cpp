@@ -77,7 +77,7 @@ int verify(Arguments a) {
 }
 
 int withdraw(const Arguments& a) {
-  if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason TEXT");
+  if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason WORDS");
   leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
   to_stdout("withdrawn; its files remain\n");
   return ok;
@@ -123,7 +123,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
   verb->add_option("--reason", a->reason, "withdraw: why");
   arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
-  arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "TEXT"}});
+  arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
   arrange(*verb, "verify",
           {{"--by", "NAME"},
            {"--cells", "N"},

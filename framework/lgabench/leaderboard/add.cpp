@@ -224,8 +224,9 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   if (rows.empty()) reasons.add("no cell has been played");
   std::vector<Entry> entries, known;
   for (const auto& item : rows) {
+    const std::size_t before = reasons.lines().size();
     entries.push_back(entry_of(run, *installed, item.second, about, reasons));
-    if (!reasons.lines().empty()) continue;
+    if (reasons.lines().size() > before) continue;
     Entry& entry = entries.back();
     if (!fs::exists(board / entry.place())) continue;
     Entry there = read_entry(board, entry.place());

@@ -26,7 +26,6 @@ using report::reading;
 using report::Section;
 using report::Series;
 using report::Span;
-using report::Spans;
 
 constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
 constexpr std::size_t curves = 8;                 // more would hide each other
@@ -68,17 +67,26 @@ Cell rate_button(const std::string& text, double rate, std::size_t row) {
   return cell;
 }
 
-Spans marks_of(const Standing& s) {
-  std::vector<std::string> words;
+// Success, its interval small beside it.
+Cell score_button(const Standing& s, std::size_t row) {
+  Cell cell = rate_button(fmt::format("{:.3f}", s.score), s.score, row);
+  cell.spans.push_back(
+      Span::number(fmt::format(" [{:.3f}, {:.3f}]", s.interval.low, s.interval.high), "", report::Emphasis::detail));
+  return cell;
+}
+
+// "replayed; fresh"
+std::string tier_and_marks(const Standing& s) {
+  std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
   const std::string confined = s.entry->evidence.front().at("confinement");
   if (confined.find("no ") != std::string::npos || confined == "unknown") words.emplace_back("unconfined");
   if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
   if (s.entry->fresh() > 0) words.emplace_back("fresh");
-  return {Span(fmt::format("{}", fmt::join(words, "; ")))};
+  return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// The table, with a column for each number of demonstrations, or for each arm where there is one number alone.
+// The table, with a column for each number of demonstrations, and for each arm where there are several.
 Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   const Setting& setting = table.setting;
   std::set<std::string> arms;
@@ -91,21 +99,17 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (const int n : setting.demonstrations) grid.heads.emplace_back(fmt::format("n = {}", n));
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(arm);
-  for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier", "marks", "by"})
+  for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
     grid.heads.emplace_back(head);
   grid.align = "rl" + std::string(grid.heads.size() - 2, 'r');
-  std::vector<std::string> names;
-  for (const std::string& name : table.names) names.push_back(name);
-  const MethodStyles styles(names);
+  const MethodStyles styles(table.names);
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
     const bool reference = s.entry->identity.row.is_reference();
     Cell name(Span(display_name(table.names[i])));
     name.style = reference ? MethodStyle() : styles(table.names[i]);
     Grid::Row row{
-        {},
-        {Span::number(rank_text(s)), name, rate_button(score_text(s), s.score, (first_row + i) * scenarios_of_a_row)},
-        reference};
+        {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
     for (const int n : setting.demonstrations) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
       row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(rate_text(at->second))));
@@ -116,9 +120,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
       row.cells.emplace_back(Span::number(part ? rate_text(*part) : "–"));
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
       row.cells.emplace_back(Span::number(amount(value)));
-    row.cells.emplace_back(Span(to_string(s.entry->tier())));
-    row.cells.emplace_back(marks_of(s));
-    row.cells.emplace_back(Span(s.entry->about.at("by").get<std::string>()));
+    row.cells.emplace_back(tier_and_marks(s));
     grid.rows.push_back(std::move(row));
   }
   return grid;

@@ -38,7 +38,7 @@ struct Chart {
   double width = 640, height = 400;                // in points, without the legend
   double left = 0, right = 1;                      // of the axis
   double bottom = 0, top = 1;                      // of the values
-  std::vector<Tick> ticks{}, levels{};             // along the axis; of the values, where five equal steps are not wanted
+  std::vector<Tick> ticks{}, levels{};  // along the axis; of the values, where five equal steps are not wanted
   std::vector<Series> series{};
   bool legend = true;
 };

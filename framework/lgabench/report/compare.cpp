@@ -187,13 +187,14 @@ std::string verdict(const RunComparison& comparison) {
                                           row.layout, row.demonstrations, row.arm);
     if (row.worse()) worse.push_back(place + " " + signed_text(row.change.difference));
     if (row.better()) better.push_back(place + " " + signed_text(row.change.difference));
-    same += row.total.same_actions ? 1 : 0;
+    same += row.total.same_actions && row.total.only_first + row.total.only_second == 0 ? 1 : 0;
   }
   const std::size_t rows = comparison.rows.size(), other = rows - worse.size() - better.size();
   std::string text;
   if (comparison.failed_b > 0)
     text += fmt::format("{} of A's cells {} in B. ", comparison.failed_b, comparison.failed_b == 1 ? "fails" : "fail");
-  if (rows > 0 && same == rows) return text + fmt::format("B acts as A does in every scene ({} rows).", rows);
+  if (rows > 0 && same == rows)
+    return text + fmt::format("B acts as A does in every scene ({} row{}).", rows, rows == 1 ? "" : "s");
   if (!worse.empty()) text += fmt::format("B is worse: {}. ", fmt::join(worse, "; "));
   if (!better.empty()) text += fmt::format("B is better: {}. ", fmt::join(better, "; "));
   if (other > 0)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/environments.hpp>
@@ -42,7 +44,11 @@ Item practice_item(const JsonReader& reader) {
   reader.only({"asked_as", "hint", "task", "feature_space", "proposal", "proposed_by"});
   Item item;
   item.asked_as = words(reader, "asked_as");
-  const TaskInfo task = find_task(find_environment("tabletop"), reader.at("task").string());
+  const std::vector<TaskInfo> tasks = installed_tasks();
+  const auto known = std::find_if(tasks.begin(), tasks.end(),
+                                  [&](const TaskInfo& task) { return task.id == reader.at("task").string(); });
+  if (known == tasks.end()) reader.at("task").fail("a task of an installed environment");
+  const TaskInfo& task = *known;
   item.command = {item.asked_as, task.id, task.second};
   item.space = load_feature_space(reader.at("feature_space").string());
   item.proposal = read_distribution(reader.at("proposal"), item.space, task.second);
@@ -175,7 +181,8 @@ Protocol read_protocol(const fs::path& file) {
 
 std::vector<std::string> blanks(const Protocol& protocol) {
   std::vector<std::string> found;
-  for (const auto& [place, value] : protocol.json.flatten().items())  // texts alone: lists begin with [[ as well
+  const Json flat = protocol.json.flatten();
+  for (const auto& [place, value] : flat.items())  // texts alone: lists begin with [[ as well
     if (value.is_string()) find_blanks(value.get<std::string>(), "protocol", found);
   find_blanks(protocol.consent, "consent", found);
   return found;

@@ -59,8 +59,10 @@ PhiQuality quality_of(const StudyResults& results, Condition condition) {
 std::vector<CommandResult> commands_of(const StudyResults& results) {
   std::vector<CommandResult> all;
   const Protocol& protocol = *results.record->protocol;
-  for (const auto* items : {&protocol.sets.front(), &protocol.sets.back(), &protocol.spares}) {
-    if (items == &protocol.sets.back() && !protocol.crossover()) continue;
+  std::vector<const std::vector<Item>*> lists;
+  for (const auto& set : protocol.sets) lists.push_back(&set);
+  lists.push_back(&protocol.spares);
+  for (const auto* items : lists) {
     for (const Item& item : *items) {
       CommandResult command;
       command.item = &item;

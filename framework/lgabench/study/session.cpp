@@ -177,7 +177,8 @@ void Session::apply(const Json& event) {
   } else if (kind == "start") {
     now().state = Trial::started;
     edited_ = first_selection(*now().item, now().condition);
-    away_.clear();
+    unfocused_.clear();
+    idle_.clear();
   } else if (kind == "shown") {
     now().state = Trial::shown;
     shown_ms_ = page_ms(event);
@@ -185,11 +186,12 @@ void Session::apply(const Json& event) {
   } else if (kind == "edit") {
     edit(event);
   } else if (kind == "blur") {
-    away_.emplace_back(page_ms(event), never);
+    unfocused_.emplace_back(page_ms(event), never);
   } else if (kind == "idle") {
-    away_.emplace_back(event.at("since_ms").get<double>(), never);
+    idle_.emplace_back(event.at("since_ms").get<double>(), never);
   } else if (kind == "focus" || kind == "active") {
-    for (auto& interval : away_) interval.second = std::min(interval.second, page_ms(event));
+    for (auto& interval : kind == "focus" ? unfocused_ : idle_)
+      interval.second = std::min(interval.second, page_ms(event));
   } else if (kind == "submit") {
     submit(event);
   } else if (kind == "questionnaire") {
@@ -216,7 +218,9 @@ void Session::submit(const Json& event) {
       distribution_json(read_distribution(JsonReader(edited, "edits"), trial.item->space,
                                           trial.item->command.second)) == distribution_json(trial.selection);
   trial.raw_s = (page_ms(event) - shown_ms_) / 1000;
-  trial.active_s = without(shown_ms_, page_ms(event), away_) / 1000;
+  Intervals away = unfocused_;
+  away.insert(away.end(), idle_.begin(), idle_.end());
+  trial.active_s = without(shown_ms_, page_ms(event), std::move(away)) / 1000;
   trial.server_s = static_cast<double>(event.at("at").get<std::int64_t>() - shown_at_) / 1000;
   if (event.at("longest_wait_ms").get<double>() > 1000 * longest_wait_s && !trial.practice)
     return interrupt("the connection was lost");

@@ -98,7 +98,8 @@ class Session {
   double shown_ms_ = 0;
   std::int64_t shown_at_ = 0;
   Selection edited_;
-  std::vector<std::pair<double, double>> away_;  // by the page's clock; an open end is infinite
+  using Intervals = std::vector<std::pair<double, double>>;  // by the page's clock; an open end is infinite
+  Intervals unfocused_, idle_;
 };
 
 /// The empty Selection, or in lga_hill the proposal.

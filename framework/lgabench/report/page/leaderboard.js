@@ -70,19 +70,26 @@ function show(row) {
   const facts = [["authors", entry.authors.join(", ")], ["license", entry.license], ["source", entry.source],
     ["version", entry.version], ["answers", entry.answers], ["computed by", entry.program], ["processor", entry.processor],
     ["tier", entry.tier], ["id", entry.id]];
-  const choice = document.createElement("select"), body = document.createElement("div"), about = document.createElement("dl");
+  const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");
   about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${escaped(value)}</dd>`).join("");
-  choice.ariaLabel = "Scenario";
   choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(words(one.id))}</option>`).join("");
   choice.onchange = () => fill(body, entry, setting, choice.value);
-  $("panel-body").replaceChildren(about, choice, body);
+  $("panel-body").replaceChildren(about, body);
   choice.onchange();
+  for (const [id, step] of [["previous", -many], ["next", many]]) {
+    $(id).disabled = !data.entries[Math.floor((row + step) / many)];
+    $(id).onclick = () => show(row + step);
+  }
   tip.hidden = true;
   if (!$("panel").open) $("panel").showModal();
   $("panel").scrollTop = 0;
   history.replaceState(null, "", `#row=${row}`);
 }
 
+$("previous").textContent = "Entry before";
+$("next").textContent = "Next entry";
+$("all").hidden = true;
+$("outcome").ariaLabel = "Scenario";
 $("panel").onclose = () => history.replaceState(null, "", location.pathname + location.search);
 document.addEventListener("click", (event) => {
   const number = event.target.closest("[data-row]");

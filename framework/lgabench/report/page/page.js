@@ -115,6 +115,35 @@ for (const box of document.querySelectorAll("main table, svg.chart")) {
   });
 }
 
+// Figures and tables to take away; figures/ and tables/ beside the page have them as PDF and LaTeX too.
+const quoted = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+function csvOf(frame) {
+  const text = (cell) => quoted(cell.textContent.trim().replace(/^(?=[=+@-])/, "'"));
+  let group = "";
+  const lines = [["group", ...[...frame.querySelectorAll("thead th")].map(text)]];
+  for (const row of frame.querySelectorAll("tbody tr"))
+    if (row.className === "group") group = text(row.cells[0]);
+    else lines.push([group, ...[...row.cells].map(text)]);
+  return lines.map((line) => line.join(",") + "\n").join("");
+}
+const takeable = [...document.querySelectorAll("svg.chart"), ...frames].map((element) => ({
+  name: element.getAttribute("aria-label"),
+  ...(element.tagName === "svg" ? { ending: "svg", text: () => new XMLSerializer().serializeToString(element) }
+    : { ending: "csv", text: () => csvOf(element) }),
+}));
+$("take").hidden = takeable.length === 0;
+$("take").innerHTML = "<option value=''>Download …</option>" + ["svg", "csv"].map((ending) =>
+  `<optgroup label="${ending.toUpperCase()}">` + takeable.map((one, i) => one.ending !== ending ? "" :
+    `<option value="${i}">${escaped(one.name)}</option>`).join("") + "</optgroup>").join("");
+$("take").onchange = () => {
+  const one = takeable[$("take").value], link = document.createElement("a");
+  $("take").value = "";
+  if (!one) return;
+  link.href = URL.createObjectURL(new Blob([one.text()]));
+  link.download = `${one.name.replace(/[^\w-]+/g, "_").slice(0, 80)}.${one.ending}`;
+  link.click();
+};
+
 // A point's numbers, under the pointer or the focus.
 const tip = $("tip");
 for (const point of document.querySelectorAll(".point[aria-label]")) {

@@ -227,7 +227,7 @@ function list(set, feature, names, chosen, changed) {
     all.textContent = all_shown ? 'Select all' : `Select the ${shown().length} shown`;
     none.textContent = all_shown ? 'Select none' : `Unselect the ${shown().length} shown`;
     all.disabled = none.disabled = shown().length === 0;
-    count.textContent = `${chosen.size} of ${boxes.length} chosen`;
+    count.textContent = `${chosen.size} of ${boxes.length} chosen` + (shown().length ? '' : '; nothing is called so');
     changed();
   }
   function reach(box) {  // one stop of the Tab key for the whole list
