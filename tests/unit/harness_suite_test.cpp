@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <fstream>
 #include <set>
 
@@ -491,7 +492,7 @@ TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
   }
   std::vector<const Cell*> left;
   for (const Cell& cell : cells) left.push_back(&cell);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   Schedule schedule(left);
   std::set<const Cell*> given;
   double seconds_left = schedule.left_s();
@@ -503,7 +504,7 @@ TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
   }
   EXPECT_EQ(given.size(), cells.size());
   EXPECT_NEAR(seconds_left, 0, 1e-3);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 5);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5);
 }
 
 }  // namespace

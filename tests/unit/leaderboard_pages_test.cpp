@@ -1,8 +1,8 @@
 // A board's pages, and what `leaderboard check` finds: with 200 entries of q1's size, in seconds.
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
@@ -75,9 +75,9 @@ TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
   for (const auto& [name, rate] : {std::pair("oracle", .99), {"random_object", .4}, {"constant_action", .2}})
     write_entry(board, made_entry(large_setting(), name, rate, "reference"));
   build(board);
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();  // processor time: the machine may be busy
   const Checked checked = check(board);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   EXPECT_EQ(all(checked.problems), "");
   EXPECT_EQ(checked.entries, 200u);
   RecordProperty("check_seconds", std::to_string(seconds));

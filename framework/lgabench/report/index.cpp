@@ -16,7 +16,8 @@ Cell linked(const Report& report, const fs::path& place) {
   const fs::path directory = report.run.directory.lexically_normal(),
                  named = directory.has_filename() ? directory : directory.parent_path();
   Cell cell(named.filename().string());
-  cell.link = (fs::absolute(named).lexically_normal().lexically_relative(fs::absolute(place).lexically_normal()) /
+  cell.link = (fs::absolute(named).lexically_normal().lexically_relative(
+                   fs::absolute(place.empty() ? "." : place).lexically_normal()) /
                "report.html")
                   .generic_string();
   return cell;
