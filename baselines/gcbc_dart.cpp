@@ -21,16 +21,19 @@ class GcbcDart : public lgabench::CloningMethod {
   }
 
   lgabench::Samples training_rows(lgabench::Samples clean, const lgabench::Services& services) const override {
-    if (services.options.at("dart") != "posthoc") return clean;
+    const lgabench::Json& dart = services.options.at("dart");
+    if (dart != "posthoc" && dart != "posthoc_ranges") return clean;
     constexpr int copies = 5;
     constexpr double scale = .05;
-    return lgabench::with_noisy_copies(clean, copies, scale, services.seed);
+    return lgabench::with_noisy_copies(
+        clean, copies, scale, services.seed,
+        dart == "posthoc" ? lgabench::CopyNoise::deviations : lgabench::CopyNoise::ranges);
   }
 };
 
 LGABENCH_METHOD("gcbc_dart", "0.1",
                 "Behaviour cloning on the picture and the command, with noise-injected demonstrations", GcbcDart,
                 "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
-  "dart": {"default": "recovery", "values": ["recovery", "posthoc", "none"],
-           "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads; posthoc: five copies of its action and 36 x 72 picture with Gaussian noise of .05 of their standard deviations",
+  "dart": {"default": "recovery", "values": ["recovery", "posthoc", "posthoc_ranges", "none"],
+           "help": "recovery: five noisy rollouts a demonstration, and the oracle's action from where each leads; posthoc: five copies of its action and 36 x 72 picture with Gaussian noise of .05 of their standard deviations; posthoc_ranges: likewise, .05 on the picture and .05 of the range of each of the action's numbers, for actions whose numbers have different units",
            "source": "paper, section 5; docs/protocol.md, section 5; posthoc: released code"}})")

@@ -75,7 +75,7 @@ function(lgabench_link_data)
     endforeach()
     install(FILES ${files} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${kind})
   endforeach()
-  foreach(pair answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
+  foreach(pair mobile:envs/mobile/tables answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols

@@ -1,7 +1,7 @@
 #include <tabletop/oracle.hpp>
 
+#include <common/objects.hpp>
 #include <tabletop/motions.hpp>
-#include <tabletop/objects.hpp>
 
 namespace lgabench::tabletop {
 namespace {

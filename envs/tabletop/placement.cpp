@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {

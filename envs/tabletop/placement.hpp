@@ -6,11 +6,15 @@
 #include <string>
 #include <vector>
 
+#include <common/outline.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scene.hpp>
-#include <tabletop/outline.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
+
+/// What things are brought to: fixed to the table, and never anything else in a scene.
+constexpr const char* goal_type = "pallet";
 
 /// Where objects of a task may stand (docs/protocol.md, section 3). Without places: anywhere, at any yaw.
 struct Layout {

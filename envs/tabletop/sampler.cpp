@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include <common/objects.hpp>
 #include <lgabench/core/random.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <map>
 
+#include <common/objects.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/raster.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>

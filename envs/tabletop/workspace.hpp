@@ -3,7 +3,11 @@
 #include <lgabench/core/geometry.hpp>
 #include <lgabench/core/observation.hpp>
 
+namespace lgabench::common {}
+
 namespace lgabench::tabletop {
+
+using namespace common;  // what things look like
 
 /// VIMA's workspace in metres, seen from straight above without perspective. Picture rows run along +x (row 0 at
 /// x_min), columns along +y (column 0 at y_min); z points at the camera.

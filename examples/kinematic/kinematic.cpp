@@ -45,6 +45,7 @@ Polygon convex_hull(const std::vector<Vec3>& points) {
 struct Prism {
   Polygon outline;
   double bottom = 0, top = 0;
+  Vec2 low{}, high{};  // of the outline's box, once placed
 };
 
 struct Model {
@@ -54,7 +55,12 @@ struct Model {
 
 Prism placed(Prism prism, const Pose& pose) {
   const double yaw = yaw_of(pose.rotation);
-  for (Vec2& p : prism.outline) p = Vec2{pose.position_m.x, pose.position_m.y} + rotated(p, yaw);
+  prism.low = {infinity, infinity}, prism.high = {-infinity, -infinity};
+  for (Vec2& p : prism.outline) {
+    p = Vec2{pose.position_m.x, pose.position_m.y} + rotated(p, yaw);
+    prism.low = {std::min(prism.low.x, p.x), std::min(prism.low.y, p.y)};
+    prism.high = {std::max(prism.high.x, p.x), std::max(prism.high.y, p.y)};
+  }
   prism.bottom += pose.position_m.z;
   prism.top += pose.position_m.z;
   return prism;
@@ -97,8 +103,15 @@ double way_out(const Polygon& a, const Polygon& b, Vec2 way) {
 
 bool beside(const Prism& a, const Prism& b) { return a.bottom < b.top - touch_m && b.bottom < a.top - touch_m; }
 
+/// Farther from one another than touch_m, seen from above, by their boxes: most pairs are, and need no further look.
+bool far_apart(const Prism& a, const Prism& b) {
+  return a.low.x > b.high.x + touch_m || b.low.x > a.high.x + touch_m || a.low.y > b.high.y + touch_m ||
+         b.low.y > a.high.y + touch_m;
+}
+
 bool touch(const Prism& a, const Prism& b) {
-  return a.bottom < b.top + touch_m && b.bottom < a.top + touch_m && separation(a.outline, b.outline) < touch_m;
+  return !far_apart(a, b) && a.bottom < b.top + touch_m && b.bottom < a.top + touch_m &&
+         separation(a.outline, b.outline) < touch_m;
 }
 
 /// Calls visit(a, b) for each pair of prisms, one of each.
@@ -297,7 +310,9 @@ class KinematicWorld final : public PhysicsWorld {
       if (k == i || (grip_ && grip_->body == k)) continue;
       for_each_pair(body.prisms, bodies_[k].prisms, [&](const Prism& p, const Prism& q) {
         const double on_it = q.top - (p.bottom - body.pose.position_m.z);
-        if (on_it <= height_m + pressed_m && separation(p.outline, q.outline) < -touch_m) rest = std::max(rest, on_it);
+        if (on_it > rest && on_it <= height_m + pressed_m && !far_apart(p, q) &&
+            separation(p.outline, q.outline) < -touch_m)
+          rest = on_it;
       });
     }
     if (rest == body.pose.position_m.z) return;

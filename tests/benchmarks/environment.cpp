@@ -3,10 +3,12 @@
 
 #include <map>
 
+#include <common/objects.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <mobile/renderer.hpp>
+#include <mobile/sampler.hpp>
 #include <mujoco/mujoco_world.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/tabletop.hpp>
@@ -133,6 +135,14 @@ void picture(benchmark::State& state) {
   });
 }
 
+// A table with six objects, 480 x 640.
+void mobile_picture(benchmark::State& state) {
+  const Scene scene = mobile::sample_scene(load_scenario("bring_fruit"), {mobile::layout, "test", "crowd", 0}, 0);
+  const auto objects = mobile::visible_objects(scene);
+  mobile::Renderer renderer(mobile::front_camera());
+  for (auto _ : state) benchmark::DoNotOptimize(renderer.render(objects));
+}
+
 }  // namespace
 
 BareMujoco& first_scene() { return *played("heart").episodes[0].bare; }
@@ -146,6 +156,7 @@ void register_environment() {
   benchmark::RegisterBenchmark("reset", reset);
   benchmark::RegisterBenchmark("reset/bare", bare_reset);
   benchmark::RegisterBenchmark("picture", picture);
+  benchmark::RegisterBenchmark("picture/mobile", mobile_picture);
 }
 
 }  // namespace lgabench

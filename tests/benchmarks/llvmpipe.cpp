@@ -13,7 +13,10 @@
 namespace lgabench {
 namespace {
 
-constexpr int columns = 256, rows = 128;
+struct Size {
+  int rows, columns;
+};
+constexpr Size tabletop_picture{128, 256}, mobile_picture{480, 640};
 
 bool make_context() {
   setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe draws in the calling thread
@@ -33,7 +36,8 @@ bool make_context() {
   return context != EGL_NO_CONTEXT && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
 }
 
-void draw(benchmark::State& state, bool shadow) {
+void draw(benchmark::State& state, bool shadow, Size size) {
+  const auto [rows, columns] = size;
   static const bool drawable = make_context();
   if (!drawable) return state.SkipWithError("no software OpenGL here");
   BareMujoco& bare = first_scene();
@@ -53,7 +57,7 @@ void draw(benchmark::State& state, bool shadow) {
   camera.lookat[0] = .5;
   camera.elevation = -90;
   camera.distance = 1;
-  std::vector<unsigned char> picture(rows * columns * 3);
+  std::vector<unsigned char> picture(static_cast<std::size_t>(rows * columns * 3));
   const mjrRect all{0, 0, columns, rows};
   bare.reset();
   const auto render = [&] {
@@ -80,8 +84,9 @@ void draw(benchmark::State& state, bool shadow) {
 }  // namespace
 
 void register_llvmpipe() {
-  benchmark::RegisterBenchmark("picture/llvmpipe", draw, false);
-  benchmark::RegisterBenchmark("picture/llvmpipe_shadow", draw, true);
+  benchmark::RegisterBenchmark("picture/llvmpipe", draw, false, tabletop_picture);
+  benchmark::RegisterBenchmark("picture/llvmpipe_shadow", draw, true, tabletop_picture);
+  benchmark::RegisterBenchmark("picture/mobile/llvmpipe_shadow", draw, true, mobile_picture);
 }
 
 }  // namespace lgabench

@@ -34,6 +34,8 @@ const std::vector<Promise>& promises() {
        4},
       {"picture and ids, MuJoCo on llvmpipe with shadow", "picture", "picture/llvmpipe_shadow", Unit::times_as_fast, 3,
        8},
+      {"picture and ids, 480 x 640, MuJoCo on llvmpipe with shadow, the tabletop's scene", "picture/mobile",
+       "picture/mobile/llvmpipe_shadow", Unit::times_as_fast, 1.5, 4},
       {"picture and ids, PyBullet's TinyRenderer without shadow", "picture", "picture/tinyrenderer",
        Unit::times_as_fast, 15, 50},
       {"act() through a plugin, the same object linked", "act/plugin", "act/linked", Unit::times_as_long, 1.05, 1.05},

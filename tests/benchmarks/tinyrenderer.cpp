@@ -6,13 +6,13 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include <common/objects.hpp>
+#include <common/textures.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/renderer.hpp>
 #include <tabletop/sampler.hpp>
-#include <tabletop/textures.hpp>
 
 #include "benchmarks.hpp"
 
@@ -24,11 +24,11 @@ std::string scene() {
   nlohmann::json objects = nlohmann::json::array();
   const Scene first = tabletop::sample_scene(load_scenario("heart"), {"cells", "test", "test", 0}, 0);
   for (const tabletop::VisibleObject& object : tabletop::visible_objects(first)) {
-    const tabletop::Mesh& mesh = tabletop::object_model(object.object_type).mesh;
+    const common::Mesh& mesh = common::object_model(object.object_type).mesh;
     nlohmann::json vertices = nlohmann::json::array();
     for (const Vec3& v : mesh.vertices_m) vertices.push_back({v.x, v.y, v.z});
     const auto& [p, q] = object.pose;
-    const auto [red, green, blue] = tabletop::texture(object.texture).pixels[0];
+    const auto [red, green, blue] = common::texture(object.texture).pixels[0];
     objects.push_back({{"position", {p.x, p.y, p.z}},
                        {"rotation", {q.x, q.y, q.z, q.w}},
                        {"colour", {red / 255., green / 255., blue / 255.}},

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <common/objects.hpp>
 #include <lgabench/core/random.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 

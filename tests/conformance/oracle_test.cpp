@@ -20,9 +20,12 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.scenario << " " << c.
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const std::string& id : scenario_ids())
-    for (const std::string& layout : find_task(find_environment("tabletop"), load_scenario(id).task).layouts)
+  for (const std::string& id : scenario_ids()) {
+    const Scenario scenario = load_scenario(id);
+    if (scenario.environment != "tabletop") continue;
+    for (const std::string& layout : find_task(find_environment("tabletop"), scenario.task).layouts)
       if (id != "q3_food" || layout != "released") cases.push_back({id, layout});  // whose pan is refused there
+  }
   return cases;
 }
 

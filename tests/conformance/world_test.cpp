@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/tabletop.hpp>
 
 #include "../engine_under_test.hpp"
@@ -14,9 +14,9 @@
 namespace lgabench {
 namespace {
 
+using common::object_model;
+using common::object_types;
 using tabletop::most_bodies;
-using tabletop::object_model;
-using tabletop::object_types;
 
 /// All types, then the fixed pallet: as the environment loads them.
 std::vector<BodyModel> all_models() {
@@ -129,7 +129,7 @@ TEST_P(EveryType, RestsWhereItIsPut) {
 
 TEST_P(EveryType, IsHeldRigidlyAndDroppedToRest) {
   world().reset({at(GetParam(), .4, -.2)});
-  const tabletop::ObjectModel& model = object_model(GetParam());
+  const common::ObjectModel& model = object_model(GetParam());
   const Vec3 from{.4 + model.grasp_m.x, -.2 + model.grasp_m.y, model.height_m}, to = from + Vec3{.1, .3, .1};
   world().grip(0, {from, {}});
   carry(world(), from, to, .5, 1);

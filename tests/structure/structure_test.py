@@ -35,16 +35,16 @@ class IncludeGraph(unittest.TestCase):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
-        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|tabletop/|torch|ATen|opencv|boost|mujoco")
+        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|(tabletop|mobile|common)/|torch|ATen|opencv|boost|mujoco")
 
     def test_abstraction_knows_only_core(self):
-        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|tabletop/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|(tabletop|mobile|common)/|torch|ATen|opencv|mujoco")
 
     def test_learning_knows_core_and_abstraction(self):
-        self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|tabletop/|mujoco")
+        self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|(tabletop|mobile|common)/|mujoco")
 
     def test_host_knows_core_and_plugin(self):
-        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|tabletop/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|(tabletop|mobile|common)/|torch|ATen|opencv|mujoco")
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
@@ -55,20 +55,25 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(headers, [], "torch.h takes 13 s a file: sources only")
 
     def test_engines_stay_in_their_plugins(self):
-        for folder in ("framework", "envs/tabletop", "plugins", "baselines"):
+        for folder in ("framework", "envs/common", "envs/tabletop", "envs/mobile", "plugins", "baselines"):
             self.forbid(folder, r"mujoco/|bullet/|btBullet")
         self.forbid("envs/bullet", r"mujoco/")
         self.forbid("envs/mujoco", r"bullet/|btBullet")
-        self.forbid("examples", r"mujoco/|bullet/|btBullet|tabletop/")
+        self.forbid("examples", r"mujoco/|bullet/|btBullet|(tabletop|mobile|common)/")
 
     def test_the_framework_names_no_environment(self):
-        self.forbid("framework", r"tabletop/")
+        self.forbid("framework", r"(tabletop|mobile|common)/")
 
     def test_the_framework_knows_no_word_of_the_tabletops(self):
         words = re.compile(r"^[^/\n]*\b(Workspace|TwoPoses|angle_rad|pose[01])\b", re.M)
         found = [(str(file.relative_to(SOURCE)), words.findall(file.read_text()))
                  for file in sorted((SOURCE / "framework").rglob("*.[ch]pp"))]
         self.assertEqual([(file, all_of_it) for file, all_of_it in found if all_of_it], [])
+
+    def test_environments_share_the_common_parts_alone(self):
+        self.forbid("envs/common", r"(tabletop|mobile)/")
+        self.forbid("envs/tabletop", r"mobile/")
+        self.forbid("envs/mobile", r"tabletop/")
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
@@ -90,7 +95,7 @@ class Needed(unittest.TestCase):
             self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning|liblgabench_env")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
-        self.forbid("bin/lgabench", r"tabletop|embree|opencv|hdf5")
+        self.forbid("bin/lgabench", r"tabletop|mobile|embree|opencv|hdf5")
 
     def test_core_is_light(self):
         self.forbid("lib/liblgabench_core.so", r"torch|c10|opencv|embree|hdf5")

@@ -222,7 +222,9 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
       {"q2_block", {"gpt4_released", "gpt4_released"}},
       {"q3_food", {"claude", "claude"}},
       {"q3_fruit", {"claude", "claude"}},
-      {"q3_utensil", {"claude", "claude"}}};
+      {"q3_utensil", {"claude", "claude"}},
+      {"bring_fruit", {"claude", "claude"}},
+      {"throw_away_drink", {"claude", "claude"}}};
   int of_study = 0;
   for (const std::string& id : scenario_ids()) {
     SCOPED_TRACE(id);

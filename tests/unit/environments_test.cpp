@@ -13,11 +13,11 @@ namespace {
 using Words = std::vector<std::string>;
 
 TEST(Environments, AreTheLibrariesBesideLgabenchsOwn) {
-  EXPECT_EQ(environment_ids(), Words{"tabletop"});
+  EXPECT_EQ(environment_ids(), (Words{"mobile", "tabletop"}));
   EXPECT_EQ(find_environment("tabletop").id(), "tabletop");
   EXPECT_EQ(&find_environment("tabletop"), &find_environment("tabletop"));
   EXPECT_SAYS(message_of<InputError>([] { find_environment("tabletops"); }),
-              "no environment \"tabletops\" (did you mean \"tabletop\"?), expected one of: tabletop");
+              "no environment \"tabletops\" (did you mean \"tabletop\"?), expected one of: mobile, tabletop");
   for (const char* path : {"", "../lib/liblgabench_env_tabletop", "core"})
     EXPECT_THROW(find_environment(path), InputError) << path;
 }
@@ -43,8 +43,9 @@ TEST(Environments, TasksNameTheirLayoutsSecondSetAndExample) {
 // The order of columns in summary.csv.
 TEST(Environments, FailureWordsKeepTheirOrder) {
   const Words words = failure_words();
-  EXPECT_EQ(words, (Words{"missed_object", "wrong_object", "bad_placement", "bad_angle", "missed_zone",
-                          "touched_obstacle", "left_workspace", "truncated", "abstraction_empty", "method_error"}));
+  EXPECT_EQ(words, (Words{"missed_object", "wrong_object", "blocked_way", "out_of_reach", "dropped_elsewhere",
+                          "moved_another", "bad_placement", "bad_angle", "missed_zone", "touched_obstacle",
+                          "left_workspace", "truncated", "abstraction_empty", "method_error"}));
 }
 
 TEST(Environments, DrawWhatAnEpisodeBeginsWith) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <set>
 
+#include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/environments.hpp>
@@ -167,8 +168,8 @@ int successes(const std::vector<Episode>& episodes) {
 
 TEST_F(Play, ReferenceRows) {
   const auto scenes = tests(*scenario, 60);
-  EXPECT_EQ(successes(evaluate(*environment, scenario->space, scenes, reference_actor("oracle"), [](int) {})), 60);
-  const auto random = evaluate(*environment, scenario->space, scenes, reference_actor("random_object"), [](int) {});
+  EXPECT_EQ(successes(evaluate(*environment, scenes, reference_actor("oracle"), [](int) {})), 60);
+  const auto random = evaluate(*environment, scenes, reference_actor("random_object"), [](int) {});
   // One or two distractors with equal odds: 5/12 expected; 4 sigma of 60 is 15.
   EXPECT_NEAR(successes(random), 25, 15);
   std::set<Failure> kinds;
@@ -202,8 +203,8 @@ TEST_F(Play, WhateverAMethodDoesFailsItsEpisodeOnly) {
   const std::vector<Instruction> instructions{{"u", {}}};
   for (int way = 0; way < 5; ++way) {
     Sometimes policy(way);
-    const auto episodes = evaluate(*environment, scenario->space, tests(*scenario, 6),
-                                   policy_actor(policy, instructions, "p"), [](int) {});
+    const auto episodes =
+        evaluate(*environment, tests(*scenario, 6), policy_actor(policy, instructions, "p"), [](int) {});
     ASSERT_EQ(episodes.size(), 6u);
     EXPECT_EQ(policy.resets, 6);
     for (std::size_t i = 0; i < 6; ++i) {
@@ -235,10 +236,11 @@ TEST_F(Play, AnEpisodeKeepsWhetherItsInputStoodInTraining) {
   Sometimes silent(0);
   const auto scenes = tests(*scenario, 3);
   const auto played = [&](Policy& policy) {
-    return evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    return evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
   };
   auto episodes = played(telling);
-  attribute_failures(*environment, scenario->space, scenes, policy_actor(telling, instructions, "p"), episodes);
+  attribute_failures(*environment, scenes, policy_actor(telling, instructions, "p"),
+                     policy_actor(telling, instructions, "p"), episodes);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(episodes[i].input_seen, i % 2 == 1) << "of the action that counts";
     EXPECT_EQ(to_json(episodes[i]).at("input_seen"), i % 2 == 1);
@@ -249,7 +251,7 @@ TEST_F(Play, AnEpisodeKeepsWhetherItsInputStoodInTraining) {
 TEST_F(Play, WithoutAnAbstractionAnEpisodeIsNotPlayed) {
   auto scenes = tests(*scenario, 4);
   scenes[2].abstraction_empty = true;
-  const auto episodes = evaluate(*environment, scenario->space, scenes, reference_actor("oracle"), [](int) {});
+  const auto episodes = evaluate(*environment, scenes, reference_actor("oracle"), [](int) {});
   ASSERT_EQ(episodes.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(episodes[i].failure, i == 2 ? failure::abstraction_empty : failure::none);
@@ -282,10 +284,10 @@ TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
     const std::vector<Instruction> instructions{{"u", selected}}, true_ones{{"u", true_one}};
     auto scenes = tests(*scenario, 3);
     scenes[2].abstraction_empty = true;
-    auto episodes =
-        evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    auto episodes = evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
     EXPECT_TRUE(to_json(episodes[0]).at("attribution").is_null());
-    attribute_failures(*environment, scenario->space, scenes, policy_actor(policy, true_ones, "p"), episodes);
+    attribute_failures(*environment, scenes, policy_actor(policy, instructions, "p"),
+                       policy_actor(policy, true_ones, "p"), episodes);
     std::vector<std::string> all;
     for (const Episode& e : episodes) all.push_back(e.attribution);
     return all;
@@ -294,6 +296,38 @@ TEST_F(Play, AFailureIsTheAbstractionsWhereTheTruthWouldHaveHelped) {
   EXPECT_EQ(attributions(other, other), (Words{"", "", "abstraction"})) << "won, or nothing selected";
   EXPECT_EQ(attributions(truth, other), (Words{"abstraction", "abstraction", "abstraction"}));
   EXPECT_EQ(attributions(third, other), (Words{"policy", "policy", "abstraction"}));
+}
+
+// Wins where it sees anything.
+class Seeing : public Policy {
+ public:
+  explicit Seeing(std::function<Action()> oracle) : oracle_(std::move(oracle)) {}
+  Action act(const Observation& seen, const Instruction&) override {
+    TwoPoses nothing;
+    nothing.pose0.position_m = nothing.pose1.position_m = {.26, .49};
+    return seen.instances.empty() ? Action(nothing) : oracle_();
+  }
+
+ private:
+  std::function<Action()> oracle_;
+};
+
+TEST_F(Play, AFailureIsPerceptionsWhereThePolicySucceedsOnceItSees) {
+  Seeing policy([] { return environment->expert_action(); });
+  const std::vector<Instruction> instructions{{"u", {}}};
+  auto scenes = tests(*scenario, 3);
+  scenes[1].perception = [](Observation seen, const Scene&) {
+    seen.instances.clear();
+    std::fill(seen.ids.begin(), seen.ids.end(), std::uint8_t{0});
+    return seen;
+  };
+  const Actor actor = policy_actor(policy, instructions, "p");
+  auto episodes = evaluate(*environment, scenes, actor, [](int) {});
+  attribute_failures(*environment, scenes, actor, actor, episodes);
+  std::vector<std::string> all;
+  for (const Episode& e : episodes) all.push_back(e.attribution);
+  EXPECT_EQ(all, (std::vector<std::string>{"", "perception", ""}));
+  EXPECT_FALSE(perception_of(*scenario, scenario->tests.front())) << "no errors: the environment's observation itself";
 }
 
 // Takes note of what it is given.
@@ -317,7 +351,7 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   for (const char* arm : {"seen", "unseen"})
     for (int i = 0; i < 3; ++i) scenes.push_back({test_scene(fruit, "cells", arm, 0, i)});
   Witness policy;
-  const auto episodes = evaluate(*household, fruit.space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+  const auto episodes = evaluate(*household, scenes, policy_actor(policy, instructions, "p"), [](int) {});
   const std::string tomato = "Bring me a tomato.", apple = "Bring me an apple.", any = "Bring me a fruit.";
   EXPECT_EQ(policy.utterances, (std::vector<std::string>{tomato, apple, tomato, any, any, any}));
   EXPECT_EQ(to_json(episodes[1]).at("command"), 1);
@@ -336,11 +370,13 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
 TEST_F(Play, ImperfectTextualizationChangesWhatAPolicySeesAndNothingElse) {
   const auto seen_with = [&](const TextualizationNoise& noise) {
     std::vector<TestScene> scenes = tests(*scenario, 20);
-    for (TestScene& scene : scenes) scene.noise = noise;
+    Arm arm = scenario->tests.front();
+    arm.label_noise = noise.label_noise;
+    arm.missed_segment = noise.missed_segment;
+    for (TestScene& scene : scenes) scene.perception = perception_of(*scenario, arm);
     Witness policy;
     const std::vector<Instruction> instructions{{"u", {}}};
-    const auto episodes =
-        evaluate(*environment, scenario->space, scenes, policy_actor(policy, instructions, "p"), [](int) {});
+    const auto episodes = evaluate(*environment, scenes, policy_actor(policy, instructions, "p"), [](int) {});
     for (std::size_t i = 0; i < episodes.size(); ++i) EXPECT_EQ(episodes[i].scene, scenes[i].scene.hash());
     return policy.observations;
   };

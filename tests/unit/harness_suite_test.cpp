@@ -279,6 +279,15 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
       EXPECT_EQ(expand(suite, grid, {}, shipped).size(), grid.scenarios.size() * each) << id << " " << preset;
     }
   }
+  const Suite mobile = load_suite("mobile");
+  for (const std::string preset : {"", "smoke", "paper", "leaderboard"}) {
+    Grid grid = preset_grid(mobile, preset);
+    grid.engines = {engine_under_test().id};
+    EXPECT_EQ(grid.test_scenes, "per_seed") << "same_place is near each seed's own first demonstration";
+    const std::size_t seeds = grid.seeds.size();
+    const std::size_t each = grid.demonstrations.size() * seeds * (grid.methods.size() + 1) + 2 * seeds;
+    EXPECT_EQ(expand(mobile, grid, {}, shipped).size(), grid.scenarios.size() * each) << preset;
+  }
   Grid smoke = preset_grid(load_suite("factorial"), "smoke");
   smoke.engines = {engine_under_test().id};
   std::set<std::string> pairs;

@@ -26,7 +26,7 @@ double learning_rate(const NetworkShape& shape) {
 // The same network from torch's modules in double precision, its parameters in the order of ours.
 struct Reference {
   std::vector<nn::Sequential> towers;
-  std::vector<nn::Linear> own;  // of each tower in the released code's network with text
+  std::vector<nn::Linear> own;  // of each tower in the released code's network with text, and in a wide one
   nn::Linear words{nullptr}, joined{nullptr}, last{nullptr};
 
   explicit Reference(const NetworkShape& shape) {
@@ -46,7 +46,7 @@ struct Reference {
       block(32, 64, 4, 2);
       block(64, 32, 3, 1, true);
       towers.push_back(tower);
-      if (deep) own.push_back(nn::Linear(160, 100));
+      if (deep || shape.wide) own.push_back(nn::Linear(160, shape.wide ? 1000 : 100));
     }
     const auto count = static_cast<std::int64_t>(towers.size());
     if (deep) {
@@ -54,7 +54,7 @@ struct Reference {
       last = nn::Linear(100, 12);
     } else {
       if (shape.text) words = nn::Linear(384, 100);
-      joined = nn::Linear(160 * count + (shape.text ? 100 : 0), 12);
+      joined = nn::Linear((shape.wide ? 1000 : 160) * count + (shape.text ? 100 : 0), 12);
     }
     for (auto& tower : towers) tower->to(torch::kFloat64);
     for (auto& linear : own) linear->to(torch::kFloat64);
@@ -86,7 +86,7 @@ struct Reference {
           towers[t]
               ->forward(tensor(s.pictures[t], {36, 72, shape.channels[t]}).permute({0, 3, 1, 2}).contiguous())
               .flatten(1));
-      if (last) features.back() = own[t](features.back());
+      if (!own.empty()) features.back() = own[t](features.back());
     }
     if (words) features.push_back(words(tensor(s.text, {384})));
     if (last) features.push_back(tensor(s.text, {384}));
@@ -263,6 +263,10 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"plain_mask_and_rgb", {{1, 3}, false, plain}, mask_tower + rgb_tower + 3852},
             Case{"plain_rgb_segmentation_and_text", {{3, 1}, true, plain}, rgb_tower + mask_tower + 38500 + 5052},
             Case{"plain_text", {{}, true, plain}, 38500 + 1212},
+            Case{"wide_mask", {{1}, false, plain, 12, true}, mask_tower + 161000 + 12012},
+            Case{"wide_rgb_segmentation_and_text",
+                 {{3, 1}, true, plain, 12, true},
+                 rgb_tower + mask_tower + 2 * 161000 + 38500 + 25212},
             Case{"text_mask", {{1}, false, text}, mask_tower + norms + 1932},
             Case{"text_rgb_and_text", {{3}, true, text}, rgb_tower + norms + 38500 + 3132},
             Case{"text_mask_and_rgb", {{1, 3}, false, text}, mask_tower + rgb_tower + 2 * norms + 3852},

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
-#include <tabletop/objects.hpp>
 
 namespace lgabench {
 namespace {
@@ -16,7 +16,7 @@ TEST(MujocoWorld, RefusesABodyWithoutVolume) {
 
 TEST(MujocoWorld, AFaultInsideIsAnErrorNotTheEndOfTheProcess) {
   MujocoWorld world;
-  world.load({tabletop::object_model("block").body}, 1);
+  world.load({common::object_model("block").body}, 1);
   world.reset({{0, {{.5, 0, 0}, {}}}});
   EXPECT_THROW(mju_error("a fault inside"), EngineError);
   EXPECT_NO_THROW(world.step());

@@ -102,5 +102,24 @@ TEST(NoisyCopies, AreAFunctionOfTheSeedAndFurtherRowsChangeNothing) {
   EXPECT_NE(with_noisy_copies(clean_rows(2), copies, scale, 4).labels, few.labels);
 }
 
+TEST(NoisyCopies, OfRangesHaveEachNumbersOwn) {
+  SampleShape two_units{{{input_size, 1}}};
+  two_units.actions.numbers = {{"share", "", 0, 1}, {"place", "m", -3, 3}};
+  const Samples clean(two_units, 1);  // all zeros: no deviation at all
+  constexpr int trials = 400;
+  double squares[3] = {};
+  for (int seed = 0; seed < trials; ++seed) {
+    const Samples all = with_noisy_copies(clean, copies, scale, static_cast<std::uint64_t>(seed), CopyNoise::ranges);
+    EXPECT_EQ(all.labels[0], 0) << "the original";
+    for (int copy = 1; copy <= copies; ++copy) {
+      for (std::size_t i = 0; i < 2; ++i) squares[i] += std::pow(all.label(copy)[i], 2) / (trials * copies);
+      squares[2] += std::pow(all.picture(0, copy)[100], 2) / (trials * copies);
+    }
+  }
+  EXPECT_NEAR(std::sqrt(squares[0]), .05, .004);
+  EXPECT_NEAR(std::sqrt(squares[1]), .3, .024);
+  EXPECT_NEAR(std::sqrt(squares[2]), .05, .004);
+}
+
 }  // namespace
 }  // namespace lgabench

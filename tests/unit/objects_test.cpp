@@ -8,12 +8,12 @@
 #include <set>
 #include <tuple>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/feature_space.hpp>
 #include <lgabench/core/random.hpp>
-#include <tabletop/objects.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -296,4 +296,4 @@ TEST(Outline, HullAreaContains) {
 }
 
 }  // namespace
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

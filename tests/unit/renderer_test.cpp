@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include <common/objects.hpp>
+#include <common/textures.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/renderer.hpp>
-#include <tabletop/textures.hpp>
 #include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {

@@ -107,10 +107,15 @@ TEST(Summary, CountsWhatFailuresAreAttributedTo) {
   }
   run.add({"lga", 20, "letter"});
   run.add({"gcbc_dart", 2});
+  FabricatedRun::Spec human{"human", 14};
+  human.attribution = "perception";
+  run.add(human);
   const Json summary = summary_of(run), attributed{{"abstraction", 5}, {"policy", 4 + 3}};
   EXPECT_EQ(row_of(summary, "heart", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "(mean)", "lga").at("attribution"), attributed);
   EXPECT_EQ(row_of(summary, "heart", "gcbc_dart").at("attribution"), (Json{{"abstraction", 0}, {"policy", 0}}));
+  EXPECT_EQ(row_of(summary, "heart", "human").at("attribution"),
+            (Json{{"abstraction", 0}, {"policy", 0}, {"perception", 6}}));
 }
 
 TEST(Summary, SharesTheTestInputsThatStoodInTraining) {
@@ -420,7 +425,7 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
   EXPECT_SAYS(broken("episodes.jsonl", [](auto text) { return text.substr(0, text.find('\n') + 1); }),
               "episodes.jsonl: line 1: expected 20 episodes of arm \"test\", got 1");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null", "\"attribution\":\"policy\"")),
-              "line 1: /attribution: expected abstraction, policy on a method's failure, or null");
+              "line 1: /attribution: expected abstraction, policy, perception on a method's failure, or null");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"attribution\":null,", "")),
               "line 1: /: expected a member \"attribution\"");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("\"index\":3", "\"index\":4")),

@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <limits>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>

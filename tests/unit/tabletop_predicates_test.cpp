@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 #include <tabletop/tasks/sweep.hpp>

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include <common/objects.hpp>
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/abstraction/selection_text.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 
 #include "testing.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <common/objects.hpp>
 #include <tabletop/judge.hpp>
-#include <tabletop/objects.hpp>
 #include <tabletop/oracle.hpp>
 
 #include "../tabletop_bench.hpp"

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <set>
 
+#include <common/textures.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/feature_space.hpp>
-#include <tabletop/textures.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr int size = Texture::size;
@@ -126,4 +126,4 @@ TEST(Textures, UnknownNamesAreRefused) {
 }
 
 }  // namespace
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

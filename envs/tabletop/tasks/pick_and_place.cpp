@@ -2,7 +2,7 @@
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 namespace lgabench::tabletop {
 namespace {

@@ -1,7 +1,7 @@
 // Rotate: turn the target in its place, by the scenario's angle.
 #include <cmath>
 
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 

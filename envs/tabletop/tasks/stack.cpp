@@ -1,7 +1,7 @@
 // Stack: put the target on the object that the command names.
 #include <algorithm>
 
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 #include <tabletop/oracle.hpp>
 #include <tabletop/task.hpp>
 #include <tabletop/zones.hpp>

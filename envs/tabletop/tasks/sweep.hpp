@@ -2,9 +2,10 @@
 #pragma once
 #include <vector>
 
+#include <common/outline.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
-#include <tabletop/outline.hpp>
+#include <tabletop/workspace.hpp>
 
 namespace lgabench::tabletop {
 

@@ -350,14 +350,11 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first shipped scenario of that environment that tests commands which were not demonstrated.
-std::string with_unseen_commands(const std::string& environment) {
-  for (const std::string& id : scenario_ids()) {
-    const Scenario scenario = load_scenario(id);
-    if (scenario.environment != environment) continue;
-    for (const ScenarioCommand& command : scenario.commands)
+// The first shipped scenario that tests commands which were not demonstrated.
+std::string with_unseen_commands() {
+  for (const std::string& id : scenario_ids())
+    for (const ScenarioCommand& command : load_scenario(id).commands)
       if (!command.seen) return id;
-  }
   throw InputError("scenarios: expected one with an unseen command");
 }
 
@@ -366,9 +363,10 @@ std::string with_unseen_commands(const std::string& environment) {
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
   std::vector<std::unique_ptr<Bench>> benches;
-  benches.push_back(std::make_unique<Bench>(installed_tasks().front().example, engine));
-  job.environment = benches.front()->scenario.environment;
-  benches.push_back(std::make_unique<Bench>(with_unseen_commands(job.environment), engine));
+  auto unseen = std::make_unique<Bench>(with_unseen_commands(), engine);
+  job.environment = unseen->scenario.environment;
+  benches.push_back(std::make_unique<Bench>(find_environment(job.environment).tasks().front().example, engine));
+  benches.push_back(std::move(unseen));
   phase("load");
   return MethodCheck(job, phase).run(benches);
 }

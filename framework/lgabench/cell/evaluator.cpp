@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include <lgabench/abstraction/textualization.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -22,12 +26,12 @@ Action random_object(const Environment& environment, const Scene& scene, const O
   return environment.expert_action_for(visible[stream.below(static_cast<std::uint32_t>(visible.size()))]);
 }
 
-Episode play(Environment& environment, const FeatureSpace& space, const TestScene& test, const Actor& actor) {
+Episode play(Environment& environment, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
   Episode episode{scene.arm, scene.index, scene.command, scene.hash(), failure::abstraction_empty, {}, "", {}, ""};
   if (test.abstraction_empty) return episode;
-  const Observation observation =
-      imperfect_textualization(environment.reset(scene), space, test.noise, perception_stream(scene));
+  const Observation shown = environment.reset(scene);
+  const Observation observation = test.perception ? test.perception(shown, scene) : shown;
   try {
     const Move move = actor(environment, scene, observation);
     episode.failure = environment.step(move.action).failure;  // refuses one that is not executable()
@@ -43,8 +47,17 @@ Episode play(Environment& environment, const FeatureSpace& space, const TestScen
 
 }  // namespace
 
-RandomStream perception_stream(const Scene& scene) {
-  return RandomStream(fmt::format("textualization/{}/{}/{}/{}", scene.scenario, scene.layout, scene.seed, scene.index));
+Perception perception_of(const Scenario& scenario, const Arm& arm) {
+  const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
+  const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
+  if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
+  return [&scenario, noise, perceive](const Observation& seen, const Scene& scene) {
+    const auto stream = [&scene](const char* of) {
+      return RandomStream(fmt::format("{}/{}/{}/{}/{}", of, scene.scenario, scene.layout, scene.seed, scene.index));
+    };
+    return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
+                                    stream("textualization"));
+  };
 }
 
 Json to_json(const Episode& e) {
@@ -80,25 +93,33 @@ Actor reference_actor(const std::string& id) {
   throw InputError(fmt::format("reference row \"{}\": expected constant_action, random_object or oracle", id));
 }
 
-std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
-                              const Actor& actor, const std::function<void(int)>& done) {
+std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
+                              const std::function<void(int)>& done) {
   std::vector<Episode> episodes;
   episodes.reserve(scenes.size());
   for (const TestScene& test : scenes) {
-    episodes.push_back(play(environment, space, test, actor));
+    episodes.push_back(play(environment, test, actor));
     done(static_cast<int>(episodes.size()));
   }
   return episodes;
 }
 
-void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
+void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                         const Actor& with_truth, std::vector<Episode>& episodes) {
+  const auto succeeds = [&environment](const TestScene& test, const Actor& acts) {
+    return play(environment, test, acts).failure == failure::none;
+  };
   for (std::size_t i = 0; i < episodes.size(); ++i) {
     Episode& episode = episodes[i];
     if (episode.failure == failure::none) continue;
-    const bool saved = episode.failure == failure::abstraction_empty ||
-                       play(environment, space, scenes.at(i), with_truth).failure == failure::none;
-    episode.attribution = saved ? "abstraction" : "policy";
+    TestScene as_it_is = scenes.at(i);
+    const bool errs = std::exchange(as_it_is.perception, nullptr) != nullptr;
+    if (episode.failure == failure::abstraction_empty)
+      episode.attribution = "abstraction";
+    else if (errs && succeeds(as_it_is, actor))
+      episode.attribution = "perception";
+    else
+      episode.attribution = succeeds(as_it_is, with_truth) ? "abstraction" : "policy";
   }
 }
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
+#include <lgabench/core/scenario.hpp>
 
 namespace lgabench {
 
@@ -18,7 +18,7 @@ struct Episode {
   std::uint64_t scene = 0;  // hash
   Failure failure = failure::none;
   std::optional<Action> action;    // recorded(); none where the actor gave none
-  std::string attribution;         // of a failure: "abstraction" or "policy"; "" where it is not known
+  std::string attribution;         // of a failure: "perception", "abstraction" or "policy"; "" where it is not known
   std::optional<bool> input_seen;  // Policy::seen_in_training() of the action
   std::string error;               // of a method_error: what was thrown, as the method words it
 };
@@ -26,16 +26,20 @@ struct Episode {
 /// A line of episodes.jsonl: without the error, whose words may hold an address.
 Json to_json(const Episode& episode);
 
+/// What a policy is given in place of what the environment shows.
+using Perception = std::function<Observation(const Observation& seen, const Scene& scene)>;
+
 /// A test scene, and how it is seen.
 struct TestScene {
   Scene scene;
-  TextualizationNoise noise = {};
-  bool abstraction_empty = false;  // nothing was selected for its command: failed without being played
+  Perception perception = nullptr;  // null: as it is
+  bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
 };
 
-/// What imperfect textualization of the scene draws from. The arm has no part in it: more noise adds errors to those
-/// that less of it makes.
-RandomStream perception_stream(const Scene& scene);
+/// The arm's: its noise, and what the environment adds (EnvironmentType::perceive()); null where neither errs. Draws
+/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. @pre the scenario
+/// outlives it.
+Perception perception_of(const Scenario& scenario, const Arm& arm);
 
 /// What an actor does, and what it says of the input that made it do so.
 struct Move {
@@ -55,17 +59,17 @@ Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions,
 /// chosen at random, the goal excepted; a random stream per scene). @throws InputError for another id.
 Actor reference_actor(const std::string& id);
 
-/// One episode a scene, in order; `done(n)` after each. `space`: what imperfect textualization draws wrong labels from.
-/// A MethodError fails its episode as method_error. @throws EngineError if the engine fails: then nothing can be said
-/// of the method.
-std::vector<Episode> evaluate(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
-                              const Actor& actor, const std::function<void(int)>& done);
+/// One episode a scene, in order; `done(n)` after each. A MethodError fails its episode as method_error. @throws
+/// EngineError if the engine fails: then nothing can be said of the method.
+std::vector<Episode> evaluate(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
+                              const std::function<void(int)>& done);
 
-/// Says of every failed episode whether the Selection or the policy failed (docs/protocol.md, section 5): "abstraction"
-/// where `with_truth`, the same policy told the true Selection, succeeds in the same scene, and where nothing was
-/// selected; else "policy". Arguments as of evaluate(), `episodes` what it returned.
+/// Says of every failed episode what failed (docs/protocol.md, section 5): "perception" where `actor`, the same policy,
+/// succeeds in the same scene seen as it is; "abstraction" where `with_truth`, the policy told the true Selection as
+/// well, does, and where nothing was selected; else "policy". Other arguments as of evaluate(), `episodes` what it
+/// returned.
 /// @throws EngineError if the engine fails.
-void attribute_failures(Environment& environment, const FeatureSpace& space, const std::vector<TestScene>& scenes,
+void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                         const Actor& with_truth, std::vector<Episode>& episodes);
 
 }  // namespace lgabench

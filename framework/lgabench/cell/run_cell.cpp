@@ -97,12 +97,14 @@ Row row_of(const Method* method, const Selected& selected, const Scenario& scena
 
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
   std::vector<TestScene> scenes;
-  for (const Arm& arm : scenario.tests)
+  for (const Arm& arm : scenario.tests) {
+    const Perception perception = perception_of(scenario, arm);
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
       const bool empty = row == Row::abstraction_empty || selected.nothing_for(scene.command);
-      scenes.push_back({std::move(scene), {arm.label_noise, arm.missed_segment}, empty});
+      scenes.push_back({std::move(scene), perception, empty});
     }
+  }
   return scenes;
 }
 
@@ -210,12 +212,12 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Actor actor = policy                  ? policy_actor(*policy, selected.instructions, id)
                       : row == Row::reference ? reference_actor(id)
                                               : Actor();
-  std::vector<Episode> episodes = evaluate(*environment, scenario.space, tests, actor, count);
+  std::vector<Episode> episodes = evaluate(*environment, tests, actor, count);
   auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
-  if (selects(selected)) attribute_failures(*environment, scenario.space, tests, with_truth, episodes);
+  if (selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
   if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.

@@ -1,6 +1,7 @@
 // lgabench check-scenario FILE.json: whether a scenario can be shown and solved, before a run depends on it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 
@@ -24,7 +25,7 @@ namespace {
 
 struct Arguments {
   std::string file, engine;
-  std::vector<std::string> layouts{"cells", "continuous"};
+  std::vector<std::string> layouts;
   fs::path out;
   int scenes = 50;
   std::vector<fs::path> plugin_path;
@@ -43,9 +44,9 @@ struct Played {
   std::map<std::string, int> failures;  // word -> how often
 };
 
-Played play(Environment& environment, const Scenario& scenario, const std::vector<TestScene>& scenes, const char* who) {
+Played play(Environment& environment, const std::vector<TestScene>& scenes, const char* who) {
   Played played;
-  for (const Episode& e : evaluate(environment, scenario.space, scenes, reference_actor(who), [](int) {}))
+  for (const Episode& e : evaluate(environment, scenes, reference_actor(who), [](int) {}))
     e.failure == failure::none ? ++played.successes : ++played.failures[e.failure];
   return played;
 }
@@ -65,8 +66,8 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     return report.problem(where, reason.size() > most ? reason.substr(0, most) + "..." : reason,
                           "the sets of target, avoid and distractors must leave something to show");
   }
-  const Played oracle = play(environment, scenario, scenes, "oracle");
-  const Played any = play(environment, scenario, scenes, "random_object");
+  const Played oracle = play(environment, scenes, "oracle");
+  const Played any = play(environment, scenes, "random_object");
   std::string fault;
   for (const auto& [failure, times] : oracle.failures)
     if (100 * (count - oracle.successes) > 2 * count)
@@ -104,7 +105,12 @@ int check_scenario(const Arguments& a) {
                                 scenario.commands.size(), scenario.tests.size()));
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
-  for (const std::string& layout : a.layouts)
+  std::vector<std::string> layouts = a.layouts;
+  if (layouts.empty()) {
+    layouts = layouts_of(scenario);
+    layouts.resize(std::min<std::size_t>(layouts.size(), 2));
+  }
+  for (const std::string& layout : layouts)
     for (const std::string& arm : arms) judge_arm(scenario, layout, arm, a.scenes, *environment, report);
   judge_answers(scenario, report);
   to_stdout("{}\n", scenario.id);
@@ -126,7 +132,7 @@ void add_check_scenario(CLI::App& app, int& exit) {
   verb->add_option("--scenes", a->scenes, "How many of each arm and layout")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->add_option("--layout", a->layouts, "cells, continuous or released; several with commas")
+  verb->add_option("--layout", a->layouts, "One of the task's, several with commas; its first two if not given")
       ->delimiter(',')
       ->check(one_of("layout", installed_layouts()))
       ->capture_default_str();

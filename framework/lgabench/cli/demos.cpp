@@ -18,7 +18,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, layout = "cells", engine, out, inspect, selection;
+  std::string scenario, layout, engine, out, inspect, selection;
   int n = 10, noisy = 0;
   double noise = .2;
   std::uint64_t seed = 0;
@@ -50,10 +50,11 @@ void write(const Arguments& a) {
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
+  const std::string layout = a.layout.empty() ? layouts_of(scenario).front() : a.layout;
   std::vector<Scene> scenes;
   const std::vector<Selection> selections =
       a.selection.empty() ? std::vector<Selection>() : selections_of(a.selection, scenario);
-  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, a.layout, selections, a.seed, i));
+  for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, selections, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
   const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
   write_file(a.out,
@@ -82,9 +83,8 @@ void add_demos(CLI::App& app, int&) {
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--selection", a->selection,
                    "Draw targets from what a method selected, a cell's selection.json, instead");
-  verb->add_option("--layout", a->layout, "How objects are placed")
-      ->check(one_of("layout", installed_layouts()))
-      ->capture_default_str();
+  verb->add_option("--layout", a->layout, "How objects are placed; the scenario's first layout if not given")
+      ->check(one_of("layout", installed_layouts()));
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
   verb->add_option("--noisy", a->noisy, "DART: noisy rollouts for each demonstration")

@@ -10,7 +10,7 @@
 namespace lgabench::cli {
 namespace {
 
-constexpr int zoom = 2, gutter = 8;
+constexpr int zoom = 2, gutter = 8, widest_picture = 256;
 
 struct Tile {
   std::string caption;
@@ -39,18 +39,19 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
 
 Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const std::string layout = find_task(environment, scenario.task).layouts.front();
+  const std::string layout = layouts_of(scenario).front();
   const Scene scene = environment.sample(scenario, {layout, "test", arm, 0}, 0);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
   const Observation seen = environment.draw(scene);
   const auto mask = goal_mask(seen, command.truth);
-  Tile tile{
-      fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * seen.size.columns, seen.size.rows, {}};
-  for (int row = 0; row < seen.size.rows; ++row) {
-    for (int column = 0; column < seen.size.columns; ++column)
-      tile.pixels.push_back(pixel_colour(seen, pixel(seen, column, row)));
-    for (int column = 0; column < seen.size.columns; ++column)
-      tile.pixels.push_back(mask_colour(mask[pixel(seen, column, row)] != 0));
+  const int step = std::max(1, seen.size.columns / widest_picture);  // of a large picture every step-th pixel
+  const int rows = seen.size.rows / step, columns = seen.size.columns / step;
+  Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * columns, rows, {}};
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column)
+      tile.pixels.push_back(pixel_colour(seen, pixel(seen, step * column, step * row)));
+    for (int column = 0; column < columns; ++column)
+      tile.pixels.push_back(mask_colour(mask[pixel(seen, step * column, step * row)] != 0));
   }
   return tile;
 }
@@ -102,14 +103,17 @@ Sheet gallery(const std::string& what) {
       tiles.push_back(close_up("pallet", texture, texture));
     return sheet(tiles, 7);
   }
-  if (what == "scenes") {
+  const std::vector<std::string> environments = environment_ids();
+  const std::string environment = what == "scenes" ? "tabletop" : what;
+  if (std::find(environments.begin(), environments.end(), environment) != environments.end()) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
+      if (scenario.environment != environment) continue;
       for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
     }
     return sheet(tiles, 2);
   }
-  throw InputError(fmt::format("--gallery {}: expected objects, textures or scenes", what));
+  throw InputError(fmt::format("--gallery {}: expected objects, textures, scenes or an environment", what));
 }
 
 }  // namespace lgabench::cli

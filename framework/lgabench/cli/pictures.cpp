@@ -20,6 +20,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/pictures.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -34,9 +35,11 @@ std::string base64(const std::string& bytes) {
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {
-  Picture picture(size.columns, size.rows);
-  picture.paste(0, 0, size.columns, size.rows, 1,
-                [&](int column, int row) { return colour_at(static_cast<std::size_t>(row * size.columns + column)); });
+  const int step = report::page_step(size), columns = size.columns / step, rows = size.rows / step;
+  Picture picture(columns, rows);
+  picture.paste(0, 0, columns, rows, 1, [&](int column, int row) {
+    return colour_at(static_cast<std::size_t>(step * row * size.columns + step * column));
+  });
   return base64(picture.png());
 }
 
@@ -64,10 +67,11 @@ std::string targets(const Scene& scene, const Observation& seen) {
   std::set<std::uint8_t> ids;
   for (const SceneObject& object : scene.objects)
     if (object.role == role::target) ids.insert(object.instance_id);
-  const PictureSize size = seen.size;
+  const int step = report::page_step(seen.size);
+  const PictureSize size{seen.size.rows / step, seen.size.columns / step};
   return outline(size, [&](int column, int row) {
     if (column < 0 || row < 0 || column >= size.columns || row >= size.rows) return false;
-    return ids.count(seen.ids[static_cast<std::size_t>(row * size.columns + column)]) != 0;
+    return ids.count(seen.ids[static_cast<std::size_t>(step * row * seen.size.columns + step * column)]) != 0;
   });
 }
 
@@ -89,9 +93,8 @@ class Pictures {
     if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
 
     const Observation seen = find_environment(played.scenario.environment).draw(scene);
-    const Arm& test = played.scenario.arm(request.arm);
-    const Observation perceived = imperfect_textualization(
-        seen, played.scenario.space, {test.label_noise, test.missed_segment}, perception_stream(scene));
+    const Perception perception = perception_of(played.scenario, played.scenario.arm(request.arm));
+    const Observation perceived = perception ? perception(seen, scene) : seen;
     Json masks = Json::array();
     for (const Json& one : request.selections) {
       const JsonReader selection(one, "selection");

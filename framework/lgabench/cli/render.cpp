@@ -19,7 +19,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string scenario, gallery, cells, layout = "cells", split = "test", truth = "released", arm, out;
+  std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -62,10 +62,11 @@ void render_gallery(const Arguments& arguments) {
 
 void render(const Arguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
+  const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
   const Scene scene = environment.sample(
-      scenario, {arguments.layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+      scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
@@ -90,9 +91,13 @@ void render(const Arguments& arguments) {
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
+  std::vector<std::string> galleries{"objects", "textures", "scenes"};
+  for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
-  verb->add_option("--gallery", arguments->gallery, "Every object, texture or scenario's scene on one sheet instead")
-      ->check(one_of("gallery", {"objects", "textures", "scenes"}))
+  verb->add_option(
+          "--gallery", arguments->gallery,
+          "Every object, texture or scenario's scene on one sheet instead; an environment: scenes of its scenarios")
+      ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
                    "With --gallery: a file that says as JSON where each picture lies; nothing is printed")
@@ -100,9 +105,8 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
-  verb->add_option("--layout", arguments->layout, "How objects are placed")
-      ->check(one_of("layout", installed_layouts()))
-      ->capture_default_str();
+  verb->add_option("--layout", arguments->layout, "How objects are placed; the scenario's first layout if not given")
+      ->check(one_of("layout", installed_layouts()));
   verb->add_option("--split", arguments->split, "Whose scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
       ->capture_default_str();
@@ -117,7 +121,7 @@ void add_render(CLI::App& app, int&) {
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   const std::string layouts = fmt::format("{}", fmt::join(installed_layouts(), "|"));
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes"},
+          {{"--gallery", "objects|textures|scenes|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", layouts.c_str()},

@@ -92,6 +92,10 @@ std::vector<std::string> failure_words() {
   return words;
 }
 
+const std::vector<std::string>& layouts_of(const Scenario& scenario) {
+  return find_task(find_environment(scenario.environment), scenario.task).layouts;
+}
+
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id) {
   std::vector<std::string> known;
   for (const TaskInfo& task : environment.tasks()) {

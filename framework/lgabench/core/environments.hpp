@@ -1,6 +1,7 @@
 // The environments that are installed: what the framework asks of one beside playing scenes (environment.hpp).
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/physics_world.hpp>
+#include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 
 namespace lgabench {
@@ -34,6 +36,9 @@ struct SceneRequest {
   /// Of test scenes that one training seed has to itself: part of their random streams. None: shared by all seeds.
   std::optional<std::uint64_t> training_seed = {};
 };
+
+/// An observation with the errors that a perception makes, drawn from the stream.
+using Perceive = std::function<Observation(Observation, RandomStream)>;
 
 /// A kind of environment: one object, constant, for as long as the program runs. Any thread, but draw().
 class EnvironmentType {
@@ -66,6 +71,9 @@ class EnvironmentType {
   /// Scene number `index`. @throws InputError where layout, split or arm is unknown, or the distribution holds nothing
   /// that the layout can show.
   virtual Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const = 0;
+  /// How scenes of that kind are perceived, beside the noise that every environment's arms may ask for (scenario.hpp):
+  /// null where nothing errs, as it is unless an environment says otherwise.
+  virtual Perceive perception(const SceneContent& /*scenes*/) const { return nullptr; }
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene) const = 0;
   /// An environment on that engine, for scenes of that space. @throws EngineError if the engine fails.
@@ -88,6 +96,8 @@ std::vector<std::string> installed_layouts();
 /// Words for a failure, in a report's order: of all environments, then the framework's.
 std::vector<std::string> failure_words();
 
+/// The layouts of the scenario's task; the first is meant where none is named.
+const std::vector<std::string>& layouts_of(const Scenario& scenario);
 /// The environment's task of that id. @throws InputError that lists the known ones.
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id);
 

@@ -106,6 +106,7 @@ Json data_hashes(const Scenario& scenario, const std::string& answers) {
   Json hashes{{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
               {"answers", folder_hash(data / "answers")},
               {"embeddings", folder_hash(data / "embeddings")}};
+  if (const fs::path own = data / scenario.environment; fs::is_directory(own)) hashes["environment"] = folder_hash(own);
   if (is_live(answers)) hashes["prompt"] = PromptTemplate().version();
   return hashes;
 }

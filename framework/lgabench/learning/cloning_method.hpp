@@ -22,9 +22,10 @@
   LGABENCH_TRAINING_OPTIONS                                                                                       \
   R"(,"loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)" \
   R"("source": "norm: released code; squared: paper"},)"                                                          \
-  R"("network": {"default": "text", "values": ["text", "released", "plain"],)"                                    \
-  R"("help": "batch normalisation before each ReLU, after it, or none",)"                                         \
-  R"("source": "text: paper, appendix; released: released code"})"
+  R"("network": {"default": "text", "values": ["text", "released", "plain", "spot"],)"                            \
+  R"("help": "batch normalisation before each ReLU, after it, or none; spot: none, and a linear layer of 1000, )" \
+  R"(with an action's numbers scaled to their bounds",)"                                                          \
+  R"("source": "text: paper, appendix; released: released code; spot: the notebook released for section 6"})"
 
 /// One more, of methods that see the goal mask alone unless it is asked for: options as in Services say whether the
 /// picture has a tower beside the mask's.

@@ -10,16 +10,20 @@ Head::Head(const NetworkShape& shape, Parameters& parameters, const Kernels& ker
   const bool deep = architecture_ == Architecture::released && shape.text;
   inputs_.resize(shape.channels.size() + (shape.text ? 1 : 0));
   const auto is_text = [&](std::size_t i) { return i == shape.channels.size(); };
+  const auto is_wide = [&](std::size_t i) { return shape.wide && !is_text(i); };
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (deep == is_text(i)) continue;  // the towers have one, or the text has
+    if (deep == is_text(i) && !is_wide(i)) continue;  // the towers have one, or the text has
     Input& input = inputs_[i];
-    input.own.emplace(is_text(i) ? text_linear : tower_linear, parameters, kernels);
-    input.own_bias = parameters.take(padded_hidden);
-    name({&*input.own}, hidden_features, input.own_bias);
+    input.own.emplace(is_wide(i) ? wide_linear : is_text(i) ? text_linear : tower_linear, parameters, kernels);
+    input.own_bias = parameters.take(input.own->outputs());
+    name({&*input.own}, is_wide(i) ? wide_features : hidden_features, input.own_bias);
   }
   std::vector<const Linear*> shares;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const LayerKind kind = deep ? (is_text(i) ? text_linear : features_linear) : is_text(i) ? text_head : tower_head;
+    const LayerKind kind = deep         ? (is_text(i) ? text_linear : features_linear)
+                           : is_text(i) ? text_head
+                           : is_wide(i) ? wide_head
+                                        : tower_head;
     shares.push_back(&inputs_[i].share.emplace(kind, parameters, kernels));
   }
   joined_bias_ = parameters.take(deep ? padded_hidden : padded_action);
@@ -53,7 +57,7 @@ void Head::name(const std::vector<const Linear*>& side_by_side, int outs, std::s
 void Head::make_room(int rows) {
   for (Input& input : inputs_)
     if (input.own)
-      for (Numbers* array : {&input.made, &input.gradients}) *array = Numbers(size(rows * padded_hidden));
+      for (Numbers* array : {&input.made, &input.gradients}) *array = Numbers(size(rows * input.own->outputs()));
   for (Numbers* array : {&joined_, &part_, &joined_gradients_, &outputs_}) *array = Numbers(size(rows * padded_hidden));
 }
 
@@ -94,7 +98,7 @@ void Head::backward(const std::vector<const float*>& inputs, const float* gradie
       continue;
     }
     input.share->backward(input.made, gradient, input.gradients, rows_);
-    kernels_.sum_rows(input.gradients, parameters_.gradient(input.own_bias), rows_, padded_hidden);
+    kernels_.sum_rows(input.gradients, parameters_.gradient(input.own_bias), rows_, input.own->outputs());
     input.own->backward(inputs[i], input.gradients, input_gradients[i], rows_);
   }
 }

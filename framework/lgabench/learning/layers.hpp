@@ -18,9 +18,9 @@ struct Layer {
   constexpr int outputs() const { return out_rows() * out_columns() * out_channels; }  ///< of one picture
 };
 
-/// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, the numbers of an action
-/// to 16.
-constexpr int hidden_features = 100, padded_hidden = 112, padded_action = 16;
+/// Outputs of a linear layer are padded with zeros to whole vectors: 100 features to 112, 1000 to 1008, the numbers of
+/// an action to 16.
+constexpr int hidden_features = 100, padded_hidden = 112, wide_features = 1000, padded_wide = 1008, padded_action = 16;
 
 /// Every layer that a network may have, in the order of `layers`.
 enum LayerKind {
@@ -32,7 +32,9 @@ enum LayerKind {
   tower_head,
   text_head,
   tower_linear,
-  features_linear
+  features_linear,
+  wide_linear,
+  wide_head
 };
 
 constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
@@ -43,7 +45,9 @@ constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {1, 0, 160, 1, 1, padded_action},
                             {1, 0, padded_hidden, 1, 1, padded_action},
                             {1, 0, 160, 1, 1, padded_hidden},
-                            {1, 0, padded_hidden, 1, 1, padded_hidden}};
+                            {1, 0, padded_hidden, 1, 1, padded_hidden},
+                            {1, 0, 160, 1, 1, padded_wide},
+                            {1, 0, padded_wide, 1, 1, padded_action}};
 constexpr int most_channels = 64;  // of a convolution's output
 
 /// Weights as Kernels::input_gradient() takes them: kernel x out_channels x (kernel x channels).

@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace lgabench {
+namespace {
+
+int without_padding(int channels) {
+  return channels == padded_hidden ? hidden_features : channels == padded_wide ? wide_features : channels;
+}
+
+}  // namespace
 
 Linear::Linear(LayerKind kind, Parameters& parameters, const Kernels& kernels)
     : layer_(layers[kind]),
@@ -20,7 +27,7 @@ std::vector<std::size_t> Linear::places(int out) const {
     for (int channel = 0; channel < last.out_channels; ++channel)
       for (int position = 0; position < positions; ++position) add(position * last.out_channels + channel);
   else
-    for (int in = 0; in < (layer_.channels == padded_hidden ? hidden_features : layer_.channels); ++in) add(in);
+    for (int in = 0; in < without_padding(layer_.channels); ++in) add(in);
   return places;
 }
 

@@ -20,7 +20,8 @@ struct NetworkShape {
   std::vector<int> channels;  // of each tower's picture: 1 or 3
   bool text = false;
   Architecture architecture = Architecture::text;
-  int actions = 12;  // numbers of an action, at most 16
+  int actions = 12;   // numbers of an action, at most 16
+  bool wide = false;  // of plain ones: each tower's features pass a linear layer to 1000 first, without an activation
 
   /// What its samples hold.
   SampleShape samples() const;

@@ -20,27 +20,39 @@ double deviation(const float* values, std::size_t n) {
   return std::sqrt(squares / static_cast<double>(n));
 }
 
-void add_noise(float* values, std::size_t n, double scale, RandomStream& random) {
-  const double sigma = scale * deviation(values, n);
-  for (std::size_t i = 0; i < n; ++i) values[i] += static_cast<float>(sigma * random.gaussian());
+// Sigma of value number i.
+template <typename Sigma>
+void add_noise(float* values, std::size_t n, const Sigma& sigma, RandomStream& random) {
+  for (std::size_t i = 0; i < n; ++i) values[i] += static_cast<float>(sigma(i) * random.gaussian());
 }
 
 }  // namespace
 
-Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::uint64_t seed) {
+Samples with_noisy_copies(const Samples& clean, int copies, double scale, std::uint64_t seed, CopyNoise of) {
   Samples all(clean.shape, clean.rows * (1 + copies));
   for (int row = 0; row < clean.rows; ++row)
     for (int copy = 0; copy <= copies; ++copy) {  // the first is the original
       RandomStream random(fmt::format("dart/posthoc/{}/{}/{}", seed, row, copy));
-      const auto put = [&](const std::vector<float>& from, std::vector<float>& to, bool noisy) {
+      // `range` of value number i, for CopyNoise::ranges.
+      const auto put = [&](const std::vector<float>& from, std::vector<float>& to, const auto& range) {
         const std::size_t n = from.size() / static_cast<std::size_t>(clean.rows);
         float* const out = to.data() + static_cast<std::size_t>(row * (1 + copies) + copy) * n;
         std::copy_n(from.data() + static_cast<std::size_t>(row) * n, n, out);
-        if (noisy && copy > 0) add_noise(out, n, scale, random);
+        if (copy == 0) return;
+        const double sigma = of == CopyNoise::deviations ? scale * deviation(out, n) : 0;
+        add_noise(
+            out, n, [&](std::size_t i) { return of == CopyNoise::deviations ? sigma : scale * range(i); }, random);
       };
-      put(clean.labels, all.labels, true);
-      for (std::size_t i = 0; i < clean.pictures.size(); ++i) put(clean.pictures[i], all.pictures[i], true);
-      if (clean.shape.text) put(clean.text, all.text, false);
+      put(clean.labels, all.labels, [&](std::size_t i) {
+        const ActionNumber& number = clean.shape.actions.numbers[i];
+        return number.high - number.low;
+      });
+      for (std::size_t i = 0; i < clean.pictures.size(); ++i)
+        put(clean.pictures[i], all.pictures[i], [](std::size_t) { return 1.; });
+      if (clean.shape.text) {
+        const auto n = static_cast<std::ptrdiff_t>(text_size);
+        std::copy_n(clean.text.begin() + row * n, n, all.text.begin() + (row * (1 + copies) + copy) * n);
+      }
     }
   return all;
 }

@@ -6,6 +6,7 @@
 #include <lgabench/learning/centroid_policy.hpp>
 #include <lgabench/learning/heat_map.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/scaled.hpp>
 
 namespace lgabench {
 namespace {
@@ -13,18 +14,22 @@ namespace {
 using Picture = PolicyInputs::Picture;
 
 Architecture architecture_of(const std::string& network) {
-  if (network == "plain") return Architecture::plain;
+  if (network == "plain" || network == "spot") return Architecture::plain;
   return network == "released" ? Architecture::released : Architecture::text;
 }
 
 std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& options, std::uint64_t seed) {
-  NetworkShape shape{
-      {}, rows.text, architecture_of(options.at("network").string()), static_cast<int>(rows.actions.size())};
+  const std::string name = options.at("network").string();
+  const bool spot = name == "spot";
+  NetworkShape shape{{}, rows.text, architecture_of(name), static_cast<int>(rows.actions.size()), spot};
   for (const SampleShape::Picture& picture : rows.pictures) {
     if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
     shape.channels.push_back(picture.channels);
   }
-  return std::make_unique<Network>(shape, seed, options.at("loss").string() == "squared" ? Loss::squared : Loss::norm);
+  auto network =
+      std::make_unique<Network>(shape, seed, options.at("loss").string() == "squared" ? Loss::squared : Loss::norm);
+  if (spot) return std::make_unique<ScaledLearner>(std::move(network), rows.actions);
+  return network;
 }
 
 std::unique_ptr<Learner> centroid(const SampleShape& rows, const JsonReader&, std::uint64_t) {

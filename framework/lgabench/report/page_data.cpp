@@ -21,7 +21,8 @@ Json places_of(const std::string& id, const Action& action) {
   const EnvironmentType& environment = find_environment(id);
   const ActionSpace& space = environment.action_space();
   if (action.size() != space.size()) return all;
-  const auto tenths = [](double value) { return std::round(value * 10) / 10; };
+  const double step = page_step(environment.picture_size());
+  const auto tenths = [step](double value) { return std::round(value / step * 10) / 10; };
   for (const PicturePlace& place : space.places) {
     const Vec2 at = in_picture(space, place, action, environment.picture_size());
     all.push_back({tenths(at.x), tenths(at.y)});
@@ -81,7 +82,7 @@ Json page_data(const Material& material) {
         const PlayedEpisode& e = all[i];
         const auto word = std::find(words.begin(), words.end(), e.failure) - words.begin();
         outcomes += e.success ? '.' : static_cast<char>('a' + word);
-        blamed += e.attribution.empty() ? '.' : e.attribution.front();
+        blamed += e.attribution.empty() ? '.' : e.attribution == "perception" ? 's' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)

@@ -1,5 +1,6 @@
 // Pictures of test scenes, drawn by lgabench-worker: the report links no renderer and no engine.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ namespace lgabench::report {
 constexpr std::size_t most_pictures = 150;      // in one page: about 1 MB
 constexpr std::size_t most_ends = 300;          // episodes whose end is shown: about 1 MB
 constexpr std::size_t most_disagreements = 30;  // of engines that are shown
+
+/// Of a picture a page shows every so manyth pixel, of its rows and of its columns.
+constexpr int page_step(PictureSize picture) { return std::max(1, picture.columns / 256); }
 
 struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action

@@ -79,7 +79,7 @@ CellResult read_cell(const fs::path& directory);
 
 /// What a failure may be attributed to, in a fixed order: a failed episode in which the same policy succeeds with the
 /// true mask is the abstraction's, any other the policy's.
-constexpr std::array<const char*, 2> attributions{"abstraction", "policy"};
+constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
 /// @throws InputError naming file and line or place for a file that is missing, malformed, or not what status.json's

@@ -209,24 +209,34 @@ Section failures(const Material& material) {
 
 Section attribution(const Material& material) {
   Section section{"attribution", "What failures are attributed to"};
+  const auto perceived = [](const Row& row) { return row.attributed_to("perception") > 0; };
+  const bool any_perceived =
+      std::any_of(material.summary.tables.begin(), material.summary.tables.end(),
+                  [&](const Table& table) { return std::any_of(table.rows.begin(), table.rows.end(), perceived); });
+  const std::vector<const char*> causes(attributions.begin(), attributions.end() - (any_perceived ? 0 : 1));
   Endings endings("attribution", "share of failures",
                   "Failures attributed to abstraction or policy, over all scenarios",
                   "Each scenario's failures, attributed to abstraction or policy");
-  for (const char* to : attributions) endings.column(to, to);
+  for (const char* to : causes) endings.column(to, to);
   for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
       if (row.attributed() == 0) continue;
       std::vector<BarPart> parts;
       std::vector<Cell> numbers;
-      for (const char* to : attributions) {
-        parts.push_back({to, to, row.attribution.at(to)});
-        numbers.push_back(count_cell(row, fmt::format("attribution/{}", to), row.attribution.at(to)));
+      for (const char* to : causes) {
+        const int n = row.attributed_to(to);
+        parts.push_back({to, to, n});
+        numbers.push_back(row.attribution.count(to) == 0 ? Cell(Span::number("0"))
+                                                         : count_cell(row, fmt::format("attribution/{}", to), n));
       }
       endings.add(material, table, row, bar(parts, row.attributed()), std::move(numbers));
     }
   if (endings.mean.rows.empty()) return section;
-  section.add(reading, Paragraph{{"The abstraction, where the same policy succeeds in the same scene with the true "
-                                  "mask; else the policy. Episodes over all scenarios, of methods that select."}});
+  const char* seen = "Perception, where the same policy succeeds in the same scene seen without error; else the";
+  section.add(reading, Paragraph{{fmt::format("{} abstraction, where the same policy succeeds in the same scene with "
+                                              "the true mask; else the policy. Episodes over all scenarios, of methods "
+                                              "that select.",
+                                              any_perceived ? seen : "The")}});
   endings.put_into(section);
   return section;
 }

@@ -46,7 +46,15 @@ struct Row {
   std::optional<double> seen_share() const {
     return inputs_told > 0 ? std::optional(static_cast<double>(inputs_seen) / inputs_told) : std::nullopt;
   }
-  int attributed() const { return attribution.at("abstraction") + attribution.at("policy"); }
+  int attributed_to(const std::string& what) const {
+    const auto found = attribution.find(what);
+    return found == attribution.end() ? 0 : found->second;
+  }
+  int attributed() const {
+    int all = 0;
+    for (const auto& [what, n] : attribution) all += n;
+    return all;
+  }
 };
 
 /// Rows of one (layout, engine), in the order of tables: arms as the scenarios list them; scenarios, the mean last;

@@ -81,8 +81,9 @@ std::string to_csv(const Summary& summary) {
   for (const Json& row : all.at("rows")) {
     std::vector<std::string> values;
     for (const auto& [name, place] : columns) {
-      const bool failure = place.parent_pointer().to_string() == "/failures";
-      values.push_back(row.contains(place) ? csv_text(row.at(place)) : failure ? "0" : "");
+      const std::string of = place.parent_pointer().to_string();
+      const bool counts = of == "/failures" || of == "/attribution";
+      values.push_back(row.contains(place) ? csv_text(row.at(place)) : counts ? "0" : "");
     }
     csv += csv_line(values);
   }

@@ -13,7 +13,7 @@ function episodesOf(row) {
           all.push({
             cell, arm: played.arm, index, scene, command: cell.commands[command],
             failure: outcome === "." ? "" : words(data.failures[outcome.charCodeAt(0) - 97]),
-            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : "",
+            attribution: to === "a" ? "abstraction" : to === "p" ? "policy" : to === "s" ? "perception" : "",
             action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
             oracle: data.oracle[scene], targets: data.targets[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
@@ -35,12 +35,12 @@ function picture(bytes, alt, over = "") {
     `<image href="data:image/png;base64,${bytes}" width="${width}" height="${height}"/>${over}</svg>`;
 }
 
-// From pose0 to pose1, on black, so that it shows on every texture.
+// From the action's first place to its last, if it has two, on black, so that it shows on every texture.
 function arrow(action, colour, dashes = "none") {
   if (!action) return "";
-  const [[x0, y0], [x1, y1]] = action, angle = Math.atan2(y1 - y0, x1 - x0);
+  const [x0, y0] = action[0], [x1, y1] = action[action.length - 1], angle = Math.atan2(y1 - y0, x1 - x0);
   const wing = (turn) => `${x1 - 9 * Math.cos(angle + turn)} ${y1 - 9 * Math.sin(angle + turn)}`;
-  const way = `M${x0} ${y0}L${x1} ${y1}`, head = `M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
+  const way = `M${x0} ${y0}L${x1} ${y1}`, head = action.length < 2 ? "" : `M${wing(.5)}L${x1} ${y1}L${wing(-.5)}`;
   return `<g fill="none" stroke-linecap="round"><path d="${way}${head}" stroke="#000" stroke-width="4"/>` +
     `<path d="${way}" stroke="${colour}" stroke-width="1.8" stroke-dasharray="${dashes}"/>` +
     `<path d="${head}" stroke="${colour}" stroke-width="1.8"/>` +
@@ -57,7 +57,7 @@ const chips = (e) => !e.phi.length ? "" : `<div class="chips">` + e.phi.map(([wh
 
 const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`;
 const where = (e) => `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
-const wayOf = (name, action) => action ? `, ${name} from ${action[0].join(",")} to ${action[1].join(",")}` : `, no ${name}`;
+const wayOf = (name, action) => action ? `, ${name} from ${action.map((place) => place.join(",")).join(" to ")}` : `, no ${name}`;
 const told = (e) => `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
 
 const before = (e) => picture(e.picture, `before: ${where(e)}${wayOf("action", e.action)}${wayOf("oracle", e.oracle)}`,

@@ -1,14 +1,14 @@
-// The object types of the tabletop: procedural shapes, one convex decomposition for physics, one mesh for pictures.
+// The object types of all environments: procedural shapes, one convex decomposition for physics, one mesh for pictures.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include <common/outline.hpp>
 #include <lgabench/core/physics_world.hpp>
-#include <tabletop/outline.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 /// Triangles for the renderer, counter-clockwise seen from outside; flat shading takes each triangle's own normal.
 /// Every convex piece is closed in itself; pieces may overlap, so some faces lie inside the object.
@@ -16,6 +16,9 @@ struct Mesh {
   std::vector<Vec3> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
+
+/// Adds a convex piece between two horizontal polygons with parallel edges: bottom and top, then one side an edge.
+void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high);
 
 /// Body frame: origin at the type's centre in xy, z = 0 on its underside. In the picture, local -x is up, +y is right;
 /// the long axis is along y at yaw 0.
@@ -30,11 +33,11 @@ struct ObjectModel {
   Vec2 grasp_m;         // where suction takes hold: on material, at least .01 from an edge where the type allows
 };
 
-/// What things are brought to: fixed to the table, and never anything else in a scene.
-constexpr const char* goal_type = "pallet";
-
 /// The model of an object type; lives as long as the program. @throws InputError for an unknown type.
 const ObjectModel& object_model(const std::string& type);
+
+/// Likewise, where things stand as they would in life: bottles, cans and boxes upright, all others as object_model().
+const ObjectModel& standing_model(const std::string& type);
 
 /// All object types that can be made, in the order of the household space, which begins with the tabletop's.
 const std::vector<std::string>& object_types();
@@ -42,4 +45,4 @@ const std::vector<std::string>& object_types();
 /// Outlines moved to a pose on the table.
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -3,9 +3,9 @@
 #include <functional>
 #include <string>
 
-#include <tabletop/textures.hpp>
+#include <common/textures.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 /// Colour at (u, v) in [0, 1) x [0, 1), u to the right, v down; continues seamlessly into the neighbouring tiles.
 using Painter = std::function<Rgb(double u, double v)>;
@@ -24,4 +24,4 @@ Pattern paisley(Rgb colour);  // white-rimmed teardrops on the colour
 /// brick, tiles, ... rainbow; without a painter for any other name.
 Pattern material(const std::string& name);
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -1,4 +1,4 @@
-#include <tabletop/textures.hpp>
+#include <common/textures.hpp>
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include <mutex>
 #include <optional>
 
+#include <common/patterns.hpp>
 #include <lgabench/core/error.hpp>
-#include <tabletop/patterns.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 // docs/protocol.md, section 1.
@@ -90,8 +90,8 @@ const Texture& texture(const std::string& name) {
   const auto known = made.find(name);
   if (known != made.end()) return known->second;
   const std::optional<Pattern> found = pattern(name);
-  if (!found) throw InputError(fmt::format("texture \"{}\": expected a texture of the tabletop", name));
+  if (!found) throw InputError(fmt::format("texture \"{}\": expected the name of a texture", name));
   return made.emplace(name, painted(name, *found)).first->second;
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

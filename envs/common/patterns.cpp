@@ -1,4 +1,4 @@
-#include <tabletop/patterns.hpp>
+#include <common/patterns.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <lgabench/core/geometry.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr Rgb white{255, 255, 255}, black{20, 20, 20};
@@ -265,4 +265,4 @@ Pattern material(const std::string& name) {
   return found == materials.end() ? Pattern{} : found->second;
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -1,9 +1,9 @@
-#include <tabletop/shapes.hpp>
+#include <common/shapes.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr double thick = 0.036;  // of letters, and of other flat shapes
@@ -186,4 +186,4 @@ const std::vector<Shape>& shapes() {
   return all;
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -2,9 +2,9 @@
 // stands tall lies on its side, where a view from above knows it best.
 #include <algorithm>
 
-#include <tabletop/shapes.hpp>
+#include <common/shapes.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 // Rounded by `round` above, by less below.
@@ -285,4 +285,4 @@ const std::vector<Shape>& household_shapes() {
   return all;
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

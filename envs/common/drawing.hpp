@@ -2,9 +2,9 @@
 #pragma once
 #include <vector>
 
-#include <tabletop/outline.hpp>
+#include <common/outline.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 /// Drawings have u to the right and v up, as the picture shows them at yaw 0; heights z from the table; all in metres.
 struct Drawing {
@@ -49,4 +49,4 @@ struct Level {
 /// Adds the solid through these levels, lowest first, and its outline. @pre The smallest inset is 0.
 void add_solid(Drawing& drawing, const Polygon& convex, const std::vector<Level>& levels);
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include <tabletop/drawing.hpp>
+#include <common/drawing.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 struct Shape {
   std::string type;
@@ -18,4 +18,7 @@ const std::vector<Shape>& shapes();
 /// What the household space has beyond the tabletop's, in its order.
 const std::vector<Shape>& household_shapes();
 
-}  // namespace lgabench::tabletop
+/// Those of the household space that standing_model() shows upright.
+const std::vector<Shape>& standing_shapes();
+
+}  // namespace lgabench::common

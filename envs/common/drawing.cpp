@@ -1,9 +1,9 @@
-#include <tabletop/drawing.hpp>
+#include <common/drawing.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 Vec2 polar(Vec2 centre, double radius, double degrees) {
   return centre + Vec2{radius * std::cos(degrees * pi / 180), radius * std::sin(degrees * pi / 180)};
 }
@@ -64,4 +64,4 @@ void add_solid(Drawing& drawing, const Polygon& convex, const std::vector<Level>
         {inset(convex, levels[i].inset), inset(convex, levels[i + 1].inset), levels[i].z, levels[i + 1].z});
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

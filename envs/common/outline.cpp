@@ -1,9 +1,9 @@
-#include <tabletop/outline.hpp>
+#include <common/outline.hpp>
 
 #include <algorithm>
 #include <limits>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
@@ -101,4 +101,4 @@ double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
   return best;
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -36,4 +36,4 @@ struct Texture {
 /// @throws InputError for any other name.
 const Texture& texture(const std::string& name);
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

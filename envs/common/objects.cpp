@@ -1,13 +1,13 @@
-#include <tabletop/objects.hpp>
+#include <common/objects.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <map>
 
+#include <common/shapes.hpp>
 #include <lgabench/core/error.hpp>
-#include <tabletop/shapes.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 namespace {
 
 constexpr double density_kg_m3 = 400;                           // light wood
@@ -31,22 +31,6 @@ Box bounding_box(const std::vector<Polygon>& polygons) {
       box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y)};
     }
   return box;
-}
-
-// A convex piece: bottom and top, then one side an edge.
-void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size()), n = static_cast<std::uint32_t>(bottom.size());
-  for (const Vec2 p : bottom) mesh.vertices_m.push_back({p.x, p.y, z_low});
-  for (const Vec2 p : top) mesh.vertices_m.push_back({p.x, p.y, z_high});
-  for (std::uint32_t i = 1; i + 1 < n; ++i) {
-    mesh.triangles.push_back({first, first + i + 1, first + i});
-    mesh.triangles.push_back({first + n, first + n + i, first + n + i + 1});
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t j = (i + 1) % n;
-    mesh.triangles.push_back({first + i, first + j, first + n + j});
-    mesh.triangles.push_back({first + i, first + n + j, first + n + i});
-  }
 }
 
 ObjectModel make(const Shape& shape) {
@@ -84,6 +68,21 @@ ObjectModel make(const Shape& shape) {
 
 }  // namespace
 
+void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices_m.size()), n = static_cast<std::uint32_t>(bottom.size());
+  for (const Vec2 p : bottom) mesh.vertices_m.push_back({p.x, p.y, z_low});
+  for (const Vec2 p : top) mesh.vertices_m.push_back({p.x, p.y, z_high});
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    mesh.triangles.push_back({first, first + i + 1, first + i});
+    mesh.triangles.push_back({first + n, first + n + i, first + n + i + 1});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t j = (i + 1) % n;
+    mesh.triangles.push_back({first + i, first + j, first + n + j});
+    mesh.triangles.push_back({first + i, first + n + j, first + n + i});
+  }
+}
+
 const ObjectModel& object_model(const std::string& type) {
   static const std::map<std::string, ObjectModel> models = [] {
     std::map<std::string, ObjectModel> all;
@@ -95,6 +94,16 @@ const ObjectModel& object_model(const std::string& type) {
   if (found == models.end())
     throw InputError(fmt::format("object type \"{}\": expected one of: {}", type, fmt::join(object_types(), ", ")));
   return found->second;
+}
+
+const ObjectModel& standing_model(const std::string& type) {
+  static const std::map<std::string, ObjectModel> models = [] {
+    std::map<std::string, ObjectModel> all;
+    for (const Shape& shape : standing_shapes()) all.emplace(shape.type, make(shape));
+    return all;
+  }();
+  const auto found = models.find(type);
+  return found == models.end() ? object_model(type) : found->second;
 }
 
 const std::vector<std::string>& object_types() {
@@ -111,4 +120,4 @@ std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, d
   return placed(model.outline, position_m, yaw_rad);
 }
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -4,7 +4,7 @@
 
 #include <lgabench/core/geometry.hpp>
 
-namespace lgabench::tabletop {
+namespace lgabench::common {
 
 using Polygon = std::vector<Vec2>;  // counter-clockwise, metres, not closed
 
@@ -26,4 +26,4 @@ std::vector<Polygon> placed(const std::vector<Polygon>& polygons, Vec2 position_
 /// The smallest distance in metres between two unions of convex polygons; 0 where they overlap.
 double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
 
-}  // namespace lgabench::tabletop
+}  // namespace lgabench::common

@@ -1,0 +1,32 @@
+#include <mobile/judge.hpp>
+
+namespace lgabench::mobile {
+namespace {
+
+constexpr double fallen_m = .70;     // the height of a centre below which it has left the table
+constexpr double moved_m = .05;      // of a centre: more is not where it was
+constexpr double above_rim_m = .12;  // a tall thing's centre, where it leans in the vessel
+
+Vec3 centre_of(const SceneObject& object, const Pose& pose) {
+  return pose.position_m + rotated(Vec3{0, 0, standing_model(object.object_type).height_m / 2}, pose.rotation);
+}
+
+bool rests_in(const Vessel& vessel, Vec3 centre) {
+  return vessel.outer().contains({centre.x, centre.y}) && centre.z > vessel.floor_m &&
+         centre.z < vessel.rim_m + above_rim_m;
+}
+
+}  // namespace
+
+Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
+              std::size_t taken) {
+  if (!rests_in(task.goal, centre_of(scene.objects[taken], now[taken]))) return failure::dropped_elsewhere;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (i == taken) continue;
+    const Vec3 is = centre_of(scene.objects[i], now[i]), way = is - centre_of(scene.objects[i], before[i]);
+    if (is.z < fallen_m || std::sqrt(dot(way, way)) > moved_m) return failure::moved_another;
+  }
+  return failure::none;
+}
+
+}  // namespace lgabench::mobile

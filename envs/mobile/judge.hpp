@@ -1,0 +1,15 @@
+// Success and failure of a plan that was carried out (docs/protocol.md, section 7).
+#pragma once
+#include <vector>
+
+#include <lgabench/core/scene.hpp>
+#include <mobile/mobile.hpp>
+
+namespace lgabench::mobile {
+
+/// Poses in the order of `scene.objects`, at rest: as they were at the scene's beginning, and now. `taken`: the object
+/// that was carried, a target. Pure. @returns failure::none, dropped_elsewhere or moved_another.
+Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
+              std::size_t taken);
+
+}  // namespace lgabench::mobile

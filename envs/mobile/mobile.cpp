@@ -1,0 +1,238 @@
+#include <mobile/mobile.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/suggest.hpp>
+#include <mobile/content.hpp>
+#include <mobile/drive.hpp>
+#include <mobile/judge.hpp>
+#include <mobile/perception.hpp>
+#include <mobile/plan.hpp>
+#include <mobile/renderer.hpp>
+#include <mobile/sampler.hpp>
+#include <mobile/tables.hpp>
+
+namespace lgabench::mobile {
+namespace {
+
+const std::array<Task, 2>& tasks() {
+  static const std::array<Task, 2> all{Task{"bring", tray, {-.3, .95}, pi / 2},
+                                       Task{"throw_away", bin, {-.45, -.8}, -pi / 2}};
+  return all;
+}
+
+class Mobile final : public Environment {
+ public:
+  explicit Mobile(std::unique_ptr<PhysicsWorld> world) : world_(std::move(world)), renderer_(front_camera()) {
+    std::vector<BodyModel> models;
+    for (const Furniture& thing : furniture()) models.push_back(thing.body);
+    for (const auto& [type, textures] : natural_textures()) {
+      models_[type] = static_cast<int>(models.size());
+      models.push_back(standing_model(type).body);
+    }
+    world_->load(models, first_ + most_objects);
+  }
+
+  const ActionSpace& action_space() const override { return plans(); }
+
+  Observation reset(const Scene& scene) override {
+    std::vector<VisibleObject> objects = visible_objects(scene);
+    std::vector<BodyPlacement> placements;
+    for (int i = 0; i < first_; ++i) placements.push_back({i, {}});
+    for (const VisibleObject& object : objects) {
+      const auto model = models_.find(object.object_type);
+      if (model == models_.end())
+        throw InputError(fmt::format("scene {} {}: object type \"{}\" is not one that this environment shows",
+                                     scene.scenario, scene.index, object.object_type));
+      placements.push_back({model->second, object.pose});
+    }
+    task_ = &find_task(scene.task);
+    world_->reset(placements);
+    scene_ = scene;
+    objects_ = std::move(objects);
+    before_ = poses();
+    return observe();
+  }
+
+  StepResult step(const Action& action) override {
+    const Plan plan = executable(plans(), action);
+    StepResult result;
+    result.terminated = true;
+    result.failure = carry_out(plan, result);
+    result.is_success = result.failure == failure::none;
+    result.observation = observe();
+    return result;
+  }
+
+  Observation observe() override {
+    look();
+    return renderer_.render(objects_);
+  }
+
+  Action expert_action() const override {
+    const SceneObject* target = scene_.find(role::target);
+    if (!target) throw InputError("scene: expected an object to be a target");
+    return expert_action_for(target->instance_id);
+  }
+
+  // Its visible pixel that is nearest to where its grasp point is seen.
+  Action expert_action_for(std::uint8_t instance_id) const override {
+    const auto found = std::find_if(objects_.begin(), objects_.end(),
+                                    [&](const VisibleObject& o) { return o.instance_id == instance_id; });
+    if (found == objects_.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
+    const std::size_t index = static_cast<std::size_t>(found - objects_.begin());
+    const ObjectModel& model = standing_model(found->object_type);
+    const Pose now = world_->pose(first_ + static_cast<int>(index));
+    const Vec3 grasp = now.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, now.rotation);
+    const Camera& camera = front_camera();
+    const Vec2 at = camera.depth(grasp) > 0 ? camera.at(grasp) : Vec2{};
+    look();
+    const std::vector<std::uint8_t> ids = renderer_.ids(objects_);
+    double least = std::numeric_limits<double>::infinity();
+    Vec2 nearest = at;
+    for (int row = 0; row < camera.size.rows; ++row)
+      for (int column = 0; column < camera.size.columns; ++column) {
+        if (ids[static_cast<std::size_t>(row * camera.size.columns + column)] != instance_id) continue;
+        const Vec2 pixel{row + 0., column + 0.};
+        const double away = norm(pixel - at);
+        if (away >= least) continue;
+        least = away;
+        nearest = pixel;
+      }
+    Plan plan;
+    plan.u = std::clamp((nearest.y + .5) / camera.size.columns, 0., 1.);
+    plan.v = std::clamp((nearest.x + .5) / camera.size.rows, 0., 1.);
+    plan.waypoint_m = task_->waypoint_m;
+    plan.cosine = std::cos(task_->heading_rad);
+    plan.sine = std::sin(task_->heading_rad);
+    plan.drop_m = task_->goal.centre;
+    return plan;
+  }
+
+ private:
+  static constexpr int first_ = 4;  // of the objects among the bodies: after the furniture
+
+  std::vector<Pose> poses() const {
+    std::vector<Pose> all;
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i) all.push_back(world_->pose(first_ + static_cast<int>(i)));
+    return all;
+  }
+
+  void look() const {
+    const std::vector<Pose> now = poses();
+    for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
+  }
+
+  // What the ray through the plan's place in the picture meets first.
+  Surface aimed_at(const Plan& plan) const {
+    const PictureSize size = front_camera().size;
+    look();
+    renderer_.ids(objects_);
+    return renderer_.surface(std::min(static_cast<int>(plan.v * size.rows), size.rows - 1),
+                             std::min(static_cast<int>(plan.u * size.columns), size.columns - 1));
+  }
+
+  // A plan that cannot succeed ends where that shows: nothing moves.
+  Failure carry_out(const Plan& plan, StepResult& result) {
+    const Surface surface = aimed_at(plan);
+    if (surface.kind == Surface::Kind::furniture) return failure::wrong_object;
+    if (surface.kind != Surface::Kind::object) return failure::missed_object;
+    const auto& objects = scene_.objects;
+    const auto taken = static_cast<std::size_t>(
+        std::find_if(objects.begin(), objects.end(),
+                     [&](const SceneObject& o) { return o.instance_id == surface.instance_id; }) -
+        objects.begin());
+    if (objects[taken].role != role::target) return failure::wrong_object;
+    if (blocked(plan.waypoint_m)) return failure::blocked_way;
+    if (!within_reach(plan)) return failure::out_of_reach;
+
+    std::vector<bool> fixed(first_, true);
+    fixed.resize(first_ + objects.size(), false);
+    result.recoverable = false;  // it has left the table
+    result.truncated = !carry({*world_, fixed}, first_ + static_cast<int>(taken), surface.point_m, plan, task_->goal);
+    if (result.truncated) return failure::truncated;
+    return judge(scene_, *task_, before_, poses(), taken);
+  }
+
+  std::unique_ptr<PhysicsWorld> world_;
+  mutable Renderer renderer_;
+  std::map<std::string, int> models_;  // by type
+  const Task* task_ = nullptr;         // the scene's
+  Scene scene_;
+  mutable std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
+  std::vector<Pose> before_;
+};
+
+class MobileType final : public EnvironmentType {
+ public:
+  MobileType()
+      : tasks_{{"bring", {layout}, std::nullopt, {}, "bring_fruit"},
+               {"throw_away", {layout}, std::nullopt, {}, "throw_away_drink"}},
+        failures_{failure::missed_object, failure::wrong_object,      failure::blocked_way,
+                  failure::out_of_reach,  failure::dropped_elsewhere, failure::moved_another} {
+    for (TaskInfo& task : tasks_) task.failures = {failures_.begin() + 2, failures_.end()};
+  }
+
+  const std::string& id() const override { return id_; }
+  const std::vector<TaskInfo>& tasks() const override { return tasks_; }
+  const std::vector<std::string>& failures() const override { return failures_; }
+  const ActionSpace& action_space() const override { return plans(); }
+  PictureSize picture_size() const override { return front_camera().size; }
+  Vec2 in_picture(Vec3 point_m) const override {
+    if (front_camera().depth(point_m) <= 0) return {-1e6, -1e6};  // behind the camera
+    const Vec2 at = front_camera().at(point_m);
+    return {at.y + .5, at.x + .5};
+  }
+  std::vector<std::string> scenario_members(const TaskInfo&) const override { return mobile::scenario_members(); }
+  std::vector<std::string> scene_members(const TaskInfo&) const override { return mobile::scene_members(); }
+  std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
+                                                   const JsonReader* scenes, bool training) const override {
+    return std::make_shared<Content>(mobile::read_content(scenario, file, scenes, training));
+  }
+  Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
+    return sample_scene(scenario, request, index);
+  }
+  Perceive perception(const SceneContent& scenes) const override {
+    const std::optional<double> error = dynamic_cast<const Content&>(scenes).caption_error;
+    if (!error) return nullptr;
+    return
+        [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, std::move(stream)); };
+  }
+  Observation draw(const Scene& scene) const override {
+    static Renderer& renderer = *new Renderer(front_camera());
+    return renderer.render(visible_objects(scene));
+  }
+  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace&) const override {
+    return make_environment(std::move(engine));
+  }
+
+ private:
+  std::string id_ = "mobile";
+  std::vector<TaskInfo> tasks_;
+  std::vector<std::string> failures_;
+};
+
+}  // namespace
+
+const Task& find_task(const std::string& id) {
+  for (const Task& task : tasks())
+    if (task.id == id) return task;
+  throw InputError(none_named("task", id, {tasks()[0].id, tasks()[1].id}));
+}
+
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world) {
+  return std::make_unique<Mobile>(std::move(world));
+}
+
+}  // namespace lgabench::mobile
+
+const lgabench::EnvironmentType* lgabench_environment() {
+  static const lgabench::mobile::MobileType type;
+  return &type;
+}

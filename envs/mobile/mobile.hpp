@@ -1,0 +1,34 @@
+// The mobile environment over any engine: one plan an episode, from a table to a person's tray or to a bin.
+#pragma once
+#include <memory>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/environments.hpp>
+#include <mobile/place.hpp>
+
+namespace lgabench::mobile {
+
+/// On the table, at most; an engine is told four more, the furniture.
+constexpr int most_objects = 6;
+
+namespace failure {
+using namespace lgabench::failure;
+inline constexpr const char *missed_object = "missed_object", *wrong_object = "wrong_object";
+inline constexpr const char *blocked_way = "blocked_way", *out_of_reach = "out_of_reach";
+inline constexpr const char *dropped_elsewhere = "dropped_elsewhere", *moved_another = "moved_another";
+}  // namespace failure
+
+/// Where the things of a task go, and how the oracle stands there.
+struct Task {
+  std::string id;
+  Vessel goal;
+  Vec2 waypoint_m;
+  double heading_rad;
+};
+/// @throws InputError that lists the known ones.
+const Task &find_task(const std::string &id);
+
+/// Takes the engine, loads the furniture and every object type that scenes can show into it once, and plays on it.
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world);
+
+}  // namespace lgabench::mobile

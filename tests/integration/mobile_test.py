@@ -1,0 +1,49 @@
+"""The second environment through the same programs, methods and files.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 mobile_test.py Mobile
+"""
+import json
+import unittest
+
+from case import BUILD, Case
+
+SMALL = ("--seeds", "0", "--demos", "1", "--episodes", "6", "--set", "*.epochs=2")
+
+
+class Mobile(Case):
+    def test_one_demonstration_is_enough_where_places_are_kept(self):
+        methods = "lga+policy=centroid,lga+policy=heat_map,lga,gcbc_dart,gcbc_seg"
+        self.call("run", "mobile", "--preset", "smoke", *SMALL, "--methods", methods, "--out", "run")
+        self.assert_matches_schemas("run")
+        rows = {(row["method"], row["arm"]): row for row in json.loads((self.dir / "run/summary.json").read_text())["rows"]
+                if row["scenario"] == "(mean)"}
+        for arm in "same_place", "moved":
+            for policy in "centroid", "heat_map":
+                self.assertGreaterEqual(rows[f"lga+policy={policy}", arm]["success"], .9, arm)
+            self.assertEqual(rows["oracle", arm]["success"], 1)
+        self.assertLess(rows["constant_action", "same_place"]["success"], .2)
+        for row in rows.values():  # nothing is wrong with what is selected
+            self.assertEqual(row["attribution"]["abstraction"], 0)
+        self.assertIn("moved", (self.dir / "run/report.html").read_text())
+        self.call("verify", "run", "--sample", "2")
+
+    def test_every_arm_can_be_drawn(self):
+        for scenario in "bring_fruit", "throw_away_drink":
+            for arm in "train", "same_place", "moved", "crowd", "perceived", "perceived_hard":
+                split = "train" if arm == "train" else "test"
+                self.call("render", scenario, "--arm", arm, "--split", split, "--out", f"{arm}.png")
+                self.assertTrue((self.dir / f"{arm}.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_another_environments_members_are_refused_with_their_place(self):
+        shipped = json.loads((BUILD / "share/lgabench/scenarios/bring_fruit.json").read_text())
+        scenario = {**shipped, "id": "mine"}
+        for member, value in ("hard", True), ("barrier_distances_m", [.2]):
+            scenario["tests"] = [{"arm": "moved", member: value}]
+            (self.dir / "mine.json").write_text(json.dumps(scenario))
+            said = self.call("check-scenario", "mine.json", expect=2).stderr
+            self.assertIn("mine.json: /tests/0", said)
+            self.assertIn(member, said)
+
+
+if __name__ == "__main__":
+    unittest.main()

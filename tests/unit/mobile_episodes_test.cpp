@@ -1,0 +1,136 @@
+// Episodes of the mobile environment: what a plan leads to.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <mobile/drive.hpp>
+#include <mobile/judge.hpp>
+#include <mobile/mobile.hpp>
+#include <mobile/plan.hpp>
+#include <mobile/renderer.hpp>
+#include <mobile/sampler.hpp>
+
+#include "../engine_under_test.hpp"
+
+namespace lgabench::mobile {
+namespace {
+
+const char* const ids[] = {"bring_fruit", "throw_away_drink"};
+
+const Scenario& scenario(const std::string& id) {
+  static const Scenario bring = load_scenario("bring_fruit"), throw_away = load_scenario("throw_away_drink");
+  return id == bring.id ? bring : throw_away;
+}
+
+Scene test_scene(const std::string& id, const std::string& arm, int index, std::uint64_t training_seed = 0) {
+  return sample_scene(scenario(id), {layout, "test", arm, 0, {}, training_seed}, index);
+}
+
+Environment& environment() {
+  static const auto made = make_environment(make_engine());
+  return *made;
+}
+
+// A scene with a distractor, its oracle's plan, and what a changed plan fails with.
+Failure failure_of(const std::string& id, const std::function<void(Plan&)>& change) {
+  for (int i = 0;; ++i) {
+    const Scene scene = test_scene(id, "moved", i);
+    if (!scene.find(role::distractor)) continue;
+    environment().reset(scene);
+    Plan plan = environment().expert_action();
+    change(plan);
+    return environment().step(plan).failure;
+  }
+}
+
+TEST(MobileEpisode, FailsAsThePlanDoes) {
+  for (const char* id : ids) {
+    EXPECT_EQ(failure_of(id, [](Plan&) {}), failure::none);
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.u = 0, p.v = 1; }), failure::missed_object) << "the floor";
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.waypoint_m = {2, 0}; }), failure::blocked_way) << "through the table";
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.cosine = -p.cosine, p.sine = -p.sine; }), failure::out_of_reach);
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.waypoint_m = {}; }), failure::out_of_reach);
+    EXPECT_EQ(failure_of(id,
+                         [](Plan& p) {
+                           p.drop_m = p.waypoint_m + .3 * Vec2{p.cosine, p.sine};
+                         }),
+              failure::dropped_elsewhere);
+  }
+  const Scene scene = test_scene("bring_fruit", "moved", 1);
+  environment().reset(scene);
+  const Action wrong = environment().expert_action_for(scene.find(role::distractor)->instance_id);
+  const StepResult result = environment().step(wrong);
+  EXPECT_EQ(result.failure, failure::wrong_object);
+  EXPECT_TRUE(result.recoverable);
+  EXPECT_TRUE(environment().step(environment().expert_action()).is_success) << "nothing has moved";
+}
+
+TEST(MobileEpisode, RefusesAPlanThatIsNone) {
+  environment().reset(test_scene("bring_fruit", "moved", 0));
+  Plan plan = environment().expert_action();
+  plan.cosine = plan.sine = 0;
+  EXPECT_THROW(environment().step(plan), MethodError);
+  plan = environment().expert_action();
+  plan.u = std::nan("");
+  EXPECT_THROW(environment().step(plan), MethodError);
+  EXPECT_THROW(environment().step(Action(12)), MethodError);
+}
+
+TEST(MobileEpisode, DependsOnItsSceneAlone) {
+  const auto play = [](int i) {
+    environment().reset(test_scene(ids[i % 2], "crowd", i));
+    return environment().step(environment().expert_action());
+  };
+  std::vector<StepResult> first;
+  for (int i = 0; i < 6; ++i) first.push_back(play(i));
+  for (int i = 5; i >= 0; --i) {
+    const StepResult again = play(i);
+    EXPECT_EQ(again.failure, first[static_cast<std::size_t>(i)].failure);
+    EXPECT_EQ(again.observation.rgb, first[static_cast<std::size_t>(i)].observation.rgb);
+  }
+}
+
+TEST(MobileEpisode, TheFirstDemonstrationRepeatedSeldomSucceedsInSamePlace) {
+  for (const char* id : ids) {
+    int successes = 0, played = 0;
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      environment().reset(sample_scene(scenario(id), {layout, "train", "train", seed}, 0));
+      const Action shown = environment().expert_action();
+      for (int i = 0; i < 20; ++i, ++played) {
+        environment().reset(test_scene(id, "same_place", i, seed));
+        successes += environment().step(shown).is_success;
+      }
+    }
+    EXPECT_LT(successes, .1 * played) << id;
+  }
+}
+
+TEST(MobilePlace, BlocksTheWayThroughThings) {
+  EXPECT_FALSE(blocked({0, 0}));
+  EXPECT_FALSE(blocked(find_task("bring").waypoint_m));
+  EXPECT_FALSE(blocked(find_task("throw_away").waypoint_m));
+  EXPECT_TRUE(blocked({.31, 0})) << "the table's edge, less the robot's radius";
+  EXPECT_FALSE(blocked({.29, 0}));
+  EXPECT_TRUE(blocked({2, .8})) << "behind the table";
+  EXPECT_TRUE(blocked(person));
+  EXPECT_TRUE(blocked(bin.centre));
+  EXPECT_FALSE(blocked({-2, -2}));
+}
+
+TEST(MobilePlace, ReachesAMeterAheadAndSixtyDegreesAside) {
+  Plan plan;
+  const auto reaches = [&](double away, double degrees) {
+    plan.drop_m = plan.waypoint_m + rotated(Vec2{away, 0}, degrees * pi / 180);
+    return within_reach(plan);
+  };
+  EXPECT_TRUE(reaches(.99, 0));
+  EXPECT_FALSE(reaches(1.01, 0));
+  EXPECT_TRUE(reaches(.5, 59));
+  EXPECT_TRUE(reaches(.5, -59));
+  EXPECT_FALSE(reaches(.5, 61));
+  EXPECT_FALSE(reaches(.5, 180));
+}
+
+}  // namespace
+}  // namespace lgabench::mobile
