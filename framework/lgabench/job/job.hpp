@@ -56,6 +56,7 @@ struct CheckJob {
   int perturb = 0;                   // as perturb_heap()
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
+  std::string environment{};  // to play in; "": check_method() and check_engine() say which
 };
 Json to_json(const CheckJob& job);
 /// Likewise.
