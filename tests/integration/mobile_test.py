@@ -27,6 +27,22 @@ class Mobile(Case):
         self.assertIn("moved", (self.dir / "run/report.html").read_text())
         self.call("verify", "run", "--sample", "2")
 
+    def test_every_shipped_plugin_plays_here_as_on_the_tabletop(self):
+        listed = json.loads(self.call("list", "--json").stdout)
+        methods, engines = ([plugin["id"] for plugin in listed[kind]] for kind in ("methods", "engines"))
+        self.assertGreater(len(methods), 7)
+        for suite, scenario in ("mobile", "bring_fruit"), ("q1", "heart"):
+            tiny = ("run", suite, "--scenarios", scenario, "--demos", "1", "--seeds", "0", "--episodes", "1",
+                    "--set", "*.epochs=1", "--no-reference")
+            self.call(*tiny, "--methods", ",".join(methods), "--engines", "kinematic", "--out", suite)
+            self.call(*tiny, "--methods", "lga", "--engines", ",".join(engines), "--out", f"{suite}-engines")
+            for run, count in (suite, len(methods)), (f"{suite}-engines", len(engines)):
+                self.assert_matches_schemas(run)
+                played = [[json.loads(line)["failure"] for line in file.read_text().splitlines()]
+                          for file in (self.dir / run / "cells").glob("*/episodes.jsonl")]
+                self.assertEqual(len(played), count)
+                self.assertNotIn("method_error", sum(played, []))
+
     def test_every_arm_can_be_drawn(self):
         for scenario in "bring_fruit", "throw_away_drink":
             for arm in "train", "same_place", "moved", "crowd", "perceived", "perceived_hard":
