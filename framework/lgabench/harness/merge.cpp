@@ -162,8 +162,15 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
       to_stderr("{}: {}; left out\n", part.cell(key).string(), state.why);
     }
   }
-  ++(!finished.empty() ? outcome.finished : !failed.empty() ? outcome.failed : outcome.missing);
-  return !finished.empty() ? finished : failed;
+  if (!finished.empty()) {
+    ++outcome.finished;
+    return finished;
+  }
+  if (failed.empty())
+    ++outcome.missing;
+  else
+    ++outcome.failed;
+  return failed;
 }
 
 bool asks_live(const Part& part) {

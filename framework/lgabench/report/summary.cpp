@@ -360,7 +360,7 @@ std::vector<int> Table::demonstrations() const {
 }
 
 std::string Table::demonstrations_text(int n) const {
-  if (demonstrated_commands == 1) return fmt::format("{} demonstrations", n);
+  if (demonstrated_commands == 1) return fmt::format("{} demonstration{}", n, n == 1 ? "" : "s");
   if (demonstrated_commands == 0) return fmt::format("demonstrations: {} per command", n);
   return fmt::format("demonstrations: {} per command, {} in all", n, n * demonstrated_commands);
 }
