@@ -50,6 +50,15 @@ class Mobile(Case):
                 self.call("render", scenario, "--arm", arm, "--split", split, "--out", f"{arm}.png")
                 self.assertTrue((self.dir / f"{arm}.png").read_bytes().startswith(b"\x89PNG"))
 
+    def test_environments_are_listed_and_a_name_of_two_things_shows_both(self):
+        self.assertIn("\nenvironments\n  mobile    tasks: bring, throw_away\n  tabletop  tasks: pick_and_place, ", self.call("list").stdout)
+        said = self.call("info", "mobile").stdout
+        self.assertIn("mobile, a suite in mobile\n", said)
+        self.assertIn("\nmobile, an environment\n  task        bring\n", said)
+        self.assertRegex(said, r"\n    waypoint\.cos  -1 to 1\n")
+        self.assertEqual([thing["kind"] for thing in json.loads(self.call("info", "mobile", "--json").stdout)], ["suite", "environment"])
+        self.assertEqual(json.loads(self.call("info", "tabletop", "--json").stdout)["kind"], "environment")
+
     def test_another_environments_members_are_refused_with_their_place(self):
         shipped = json.loads((BUILD / "share/lgabench/scenarios/bring_fruit.json").read_text())
         scenario = {**shipped, "id": "mine"}
