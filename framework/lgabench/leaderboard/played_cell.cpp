@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/rounding.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -63,8 +64,8 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
     cell.lm_tokens += cost.at("lm_tokens").get<double>();
     cell.human_seconds += cost.at("human_seconds").get<double>();
   }
-  cell.learn_s = result.timing.at("learn_s");
-  cell.total_s = result.timing.at("total_s");
+  cell.learn_s = rounded(result.timing.at("learn_s"), 3);
+  cell.total_s = rounded(result.timing.at("total_s"), 3);
   const fs::path training = directory / "training.jsonl";
   const std::vector<Json> epochs = parse_json_lines(read_file(training, Links::refused), training.string());
   if (!epochs.empty()) cell.steps = JsonReader(epochs.back(), training.string()).at("steps").integer(0, INT64_MAX);
