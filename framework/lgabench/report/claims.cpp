@@ -164,7 +164,7 @@ void test_equivalence(Claim& claim, const PaperClaim& paper, const Field& field)
                    (paper.demonstrations ? fmt::format(" at {} demonstrations", *paper.demonstrations) : std::string());
 }
 
-// Of each participant, the seconds that each command took; one command has one answer, however many cells it is in.
+// Seconds that each command took each participant; one command has one answer, however many cells it is in.
 using Seconds = std::map<std::string, std::map<std::pair<std::string, std::string>, double>>;
 Seconds seconds_of(const Field& field, const std::string& method) {
   Seconds seconds;
