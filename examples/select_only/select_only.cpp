@@ -4,11 +4,11 @@
 
 using namespace lgabench;
 
-// A feature matters if the command holds its first word; where that is true of none, all matter.
+// A feature matters if a word of the command begins with its first; where that is true of none, all matter.
 std::vector<std::string> named(const Command& command, const std::vector<std::string>& features) {
   std::vector<std::string> found;
   for (const std::string& feature : features)
-    if (command.utterance.find(feature.substr(0, feature.find(' '))) != std::string::npos) found.push_back(feature);
+    if (command.utterance.find(' ' + feature.substr(0, feature.find(' '))) != feature.npos) found.push_back(feature);
   return found.empty() ? features : found;
 }
 
