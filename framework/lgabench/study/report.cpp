@@ -7,6 +7,7 @@
 #include <map>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -85,22 +86,40 @@ Chart seconds_chart(const StudyResults& results) {
   return chart;
 }
 
+// A table of two rows: of each condition the `values` below the heads.
+template <class Values>
+Grid by_condition(const std::string& name_of_table, const std::string& caption, const std::vector<std::string>& heads,
+                  const Values& values) {
+  Grid grid;
+  grid.name = name_of_table;
+  grid.caption = caption;
+  grid.heads = {"condition"};
+  grid.heads.insert(grid.heads.end(), heads.begin(), heads.end());
+  grid.align = "l" + std::string(heads.size(), 'r');
+  for (const Condition condition : both) {
+    std::vector<Cell> cells{name(condition)};
+    for (const std::string& value : values(condition)) cells.emplace_back(value);
+    grid.rows.push_back({{}, std::move(cells)});
+  }
+  return grid;
+}
+
 Section seconds_section(const StudyResults& results) {
   Section section{"seconds", "Seconds a command"};
-  Grid grid;
-  grid.name = "seconds";
-  grid.caption = "Seconds a command: over people, each with the mean of their trials";
-  grid.heads = {"condition", "people", "mean", "sd", "se", "mean active", "the paper"};
-  grid.align = "lrrrrrr";
   const auto paper = published();
-  for (const Condition condition : both) {
-    const Spread &raw = results.seconds[index(condition)], &active = results.active_s[index(condition)];
-    const auto& [mean, error] = paper.at(name(condition));
-    grid.rows.push_back({{},
-                         {name(condition), std::to_string(results.used()), seconds(raw.mean), seconds(raw.sd),
-                          seconds(raw.se), seconds(active.mean), fmt::format("{} ± {}", mean, error)}});
-  }
-  section.add(everywhere, std::move(grid));
+  section.add(everywhere,
+              by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
+                           {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
+                             const Spread &raw = results.seconds[index(condition)],
+                                          &active = results.active_s[index(condition)];
+                             const auto& [mean, error] = paper.at(name(condition));
+                             return std::vector{std::to_string(results.used()),
+                                                seconds(raw.mean),
+                                                seconds(raw.sd),
+                                                seconds(raw.se),
+                                                seconds(active.mean),
+                                                fmt::format("{} ± {}", mean, error)};
+                           }));
   List tests;
   if (results.primary)
     tests.items.push_back(
@@ -163,18 +182,14 @@ Section commands_section(const StudyResults& results) {
 
 Section phi_section(const StudyResults& results) {
   Section section{"phi", "φ̂ against the released truth"};
-  Grid grid;
-  grid.name = "phi";
-  grid.caption = "φ̂ against the released truth, mean over trials";
-  grid.heads = {"condition", "types: precision", "recall", "textures: precision", "recall"};
-  grid.align = "lrrrr";
-  for (const Condition condition : both) {
-    const PhiQuality& q = results.phi[index(condition)];
-    grid.rows.push_back({{},
-                         {name(condition), share(q.object_types.precision), share(q.object_types.recall),
-                          share(q.textures.precision), share(q.textures.recall)}});
-  }
-  section.add(everywhere, std::move(grid));
+  section.add(everywhere, by_condition("phi", "φ̂ against the released truth, mean over trials",
+                                       {"types: precision", "types: recall", "textures: precision", "textures: recall"},
+                                       [&](Condition condition) {
+                                         const PhiQuality& q = results.phi[index(condition)];
+                                         return std::vector{share(q.object_types.precision),
+                                                            share(q.object_types.recall), share(q.textures.precision),
+                                                            share(q.textures.recall)};
+                                       }));
   return section;
 }
 
@@ -224,6 +239,17 @@ Section questionnaire_section(const StudyResults& results) {
   return section;
 }
 
+// The primary test in a sentence; of a rehearsal it says first that it is none.
+std::string headline(const StudyResults& results) {
+  const std::string begin =
+      results.record->kind == Kind::rehearsal ? fmt::format("{}, so no result: ", simulated_words) : "";
+  if (!results.primary) return begin + "fewer than two people can be compared.";
+  return fmt::format(
+      "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
+      begin, results.used(), seconds(results.seconds[0].mean), name(Condition::human), seconds(results.seconds[1].mean),
+      name(Condition::lga_hill), change_words(*results.primary, " s"), p_words(results.primary->p));
+}
+
 Json change_json(const std::optional<Change>& c) {
   if (!c) return nullptr;
   return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
@@ -244,6 +270,7 @@ Document document_of(const StudyResults& results) {
   Document document;
   document.suite = record.protocol->id;
   document.title = fmt::format("Study: {}", record.protocol->title);
+  document.headline = {headline(results)};
   const auto note = [&document](const std::string& text) { document.notes.push_back({Note::note, text}); };
   if (record.kind == Kind::rehearsal) note(fmt::format("{}: no number here is a result.", simulated_words));
   if (!record.shown_as_now)
@@ -320,17 +347,9 @@ Document write_report(const fs::path& directory) {
   const Record record = read_study(directory);
   const StudyResults results = results_of(record);
   Document document = document_of(results);
-  for (const Chart* chart : document.charts()) {
-    write_file(directory / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
-    write_file(directory / "figures" / (chart->file + ".pdf"), pdf(*chart));
-  }
-  for (const Grid* grid : document.grids()) {
-    write_file(directory / "tables" / (grid->name + ".tex"), latex(*grid));
-    write_file(directory / "tables" / (grid->name + ".csv"), csv(*grid));
-  }
   write_file(directory / "trials.csv", trials_csv(results));
   write_file(directory / "results.json", to_json(results).dump(1) + "\n");
-  write_file(directory / "report.md", markdown(document));
+  write_document(directory, document);
   return document;
 }
 
