@@ -205,6 +205,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
   print_other_bytes(verdicts);
   if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
+  if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
 }
 
 int verify(const Arguments& a) {
