@@ -70,6 +70,7 @@ TEST(ShownInput, IsThePaperNetworksAtItsSize) {
   EXPECT_EQ(shown.pictures[0].size, input_size);
   EXPECT_EQ(shown.pictures[0].values,
             shrunken(goal_mask(seen.observation, seen.selection), seen.observation.size, input_size));
+  EXPECT_EQ(shown.pictures[0].note, "");
   EXPECT_EQ(shown.pictures[1].name, "picture");
   EXPECT_EQ(shown.pictures[1].channels, 3);
   EXPECT_NEAR(shown.pictures[1].values.at(0), .2, 1e-6);
@@ -93,7 +94,8 @@ TEST(ShownInput, OfOtherPoliciesIsWhatTheyRead) {
   const ShownInput heat_map = seen.shown({{"policy", "heat_map"}, {"text", "selection"}});
   ASSERT_EQ(heat_map.pictures.size(), 2u);
   EXPECT_EQ(heat_map.pictures[0].values, native);
-  EXPECT_SAYS(heat_map.pictures[0].name, "red: to be avoided, of which it takes the share of 32 × 64 cells");
+  EXPECT_EQ(heat_map.pictures[0].name, "goal mask");
+  EXPECT_EQ(heat_map.pictures[0].note, "; red: to be avoided; the policy takes its share of 32 × 64 cells");
   EXPECT_EQ(heat_map.pictures[1].size, (PictureSize{32, 64}));
   EXPECT_EQ(heat_map.texts, std::vector<std::string>{"φ̂ in words"});
 

@@ -70,7 +70,7 @@ decltype(&lgabench_shown_input) shown_input_of_the_learners() {
   return function;
 }
 
-// {"pictures": [[name, rows, columns, PNG], ...], "texts", "unread"}, or null for what is no policy's input.
+// {"pictures": [[caption, PNG], ...], "texts", "unread"}, or null for what is no policy's input.
 Json input_of(const Json& input, const Observation& perceived, const Scenario& scenario) {
   try {
     const JsonReader reader(input, "input");
@@ -82,7 +82,7 @@ Json input_of(const Json& input, const Observation& perceived, const Scenario& s
                                   shown);
     Json pictures = Json::array();
     for (const ShownPicture& one : shown.pictures)
-      pictures.push_back({one.name, one.size.rows, one.size.columns, png(one)});
+      pictures.push_back({fmt::format("{}, {} × {}{}", one.name, one.size.rows, one.size.columns, one.note), png(one)});
     return {{"pictures", pictures}, {"texts", shown.texts}, {"unread", shown.unread}};
   } catch (const InputError&) {
     return nullptr;

@@ -33,18 +33,21 @@ PolicyInputs inputs_from(const JsonReader& input) {
 
 std::string name_of(Picture picture, const PolicyInputs& inputs) {
   if (picture == Picture::rgb) return "picture";
-  if (picture == Picture::mask) return inputs.signed_mask ? "goal mask, red: to be avoided" : "goal mask";
+  if (picture == Picture::mask) return "goal mask";
   return inputs.left_out.empty() ? "all objects" : fmt::format("all objects but the {}", inputs.left_out);
 }
 
 const char* name_of(Text text) { return text == Text::selection ? "φ̂ in words" : "the command's words"; }
 
-std::string how_read(Picture picture, const std::string& policy) {
-  if (policy == "centroid") return ", of which it takes the middle of the target";
-  if (policy != "heat_map") return "";
-  if (picture == Picture::rgb) return ", of which it takes what differs from the usual one";
-  return fmt::format(", of which it takes the share of {} × {} cells", HeatMap::rgb_size.rows,
-                     HeatMap::rgb_size.columns);
+std::string note_of(Picture picture, const std::string& policy, const std::vector<float>& values) {
+  std::string note;
+  if (std::any_of(values.begin(), values.end(), [](float value) { return value < 0; })) note = "; red: to be avoided";
+  if (policy == "centroid") note += "; the policy takes the middle of what is white";
+  if (policy == "heat_map" && picture == Picture::rgb) note += "; the policy takes what differs from the usual one";
+  if (policy == "heat_map" && picture != Picture::rgb)
+    note +=
+        fmt::format("; the policy takes its share of {} × {} cells", HeatMap::rgb_size.rows, HeatMap::rgb_size.columns);
+  return note;
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ ShownInput shown_input(const JsonReader& input, const Observation& observation, 
   Samples row(featurizer.shape(), 1);
   featurizer.write(observation, {"", selection}, Phase::test, row, 0);
   for (std::size_t i = 0; i < read.pictures.size(); ++i)
-    shown.pictures.push_back({name_of(read.pictures[i], read) + how_read(read.pictures[i], policy),
+    shown.pictures.push_back({name_of(read.pictures[i], read), note_of(read.pictures[i], policy, row.pictures[i]),
                               row.shape.pictures[i].size, row.shape.pictures[i].channels, std::move(row.pictures[i])});
   return shown;
 }

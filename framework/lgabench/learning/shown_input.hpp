@@ -11,7 +11,7 @@
 namespace lgabench {
 
 struct ShownPicture {
-  std::string name;  // for a caption
+  std::string name, note;  // for a caption; "", or how it is read
   PictureSize size;
   int channels = 1;           // 1: a mask of 1, 0 and -1; 3: colours of 0 to 1
   std::vector<float> values;  // rows x columns x channels

@@ -137,7 +137,8 @@ std::string grid_html(const Grid& grid) {
 
 std::string charts_html(const Charts& charts) {
   std::string text = fmt::format("<div class=\"charts{}\">", charts.charts.front().legend ? "" : " small");
-  for (const Chart& chart : charts.charts) text += "<figure>" + svg(chart, false) + "</figure>";
+  for (const Chart& chart : charts.charts)  // not larger than its text was meant to be
+    text += fmt::format("<figure style=\"max-width:{:.0f}px\">{}</figure>", 1.2 * chart.width, svg(chart, false));
   return text + "</div>\n";
 }
 

@@ -159,11 +159,9 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
 Pictures::Input read_input(const Json& drawn, std::vector<std::string>& seen) {
   Pictures::Input input;
   for (const Json& picture : drawn.at("pictures")) {
-    const auto at = std::find(seen.begin(), seen.end(), picture.at(3).get<std::string>()) - seen.begin();
-    if (static_cast<std::size_t>(at) == seen.size()) seen.push_back(picture.at(3));
-    input.pictures.emplace_back(fmt::format("{}, {} × {}", picture.at(0).get<std::string>(), picture.at(1).get<int>(),
-                                            picture.at(2).get<int>()),
-                                at);
+    const auto at = std::find(seen.begin(), seen.end(), picture.at(1).get<std::string>()) - seen.begin();
+    if (static_cast<std::size_t>(at) == seen.size()) seen.push_back(picture.at(1));
+    input.pictures.emplace_back(picture.at(0), at);
   }
   input.texts = drawn.at("texts").get<std::vector<std::string>>();
   input.unread = drawn.at("unread").get<std::vector<std::string>>();

@@ -145,7 +145,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   if (claims.empty()) return section;
   Grid verdicts;
   verdicts.name = "claims";
-  verdicts.caption = title;
+  verdicts.caption = "Verdicts";
   verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
   List lines;

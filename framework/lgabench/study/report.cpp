@@ -22,7 +22,8 @@ constexpr const char* simulated_words = "rehearsal, not people";
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
 std::string seconds(double s) { return fmt::format("{:.1f}", s); }
-std::string p_words(double p) { return p < .001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
+std::string p_cell(double p) { return p < .001 ? "< 0.001" : fmt::format("{:.3f}", p); }
+std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
 std::string change_words(const Change& c, const char* unit) {
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", c.difference, unit, c.interval.low, c.interval.high);
 }
@@ -153,8 +154,7 @@ Section model_section(const StudyResults& results) {
   grid.align = "llr";
   constexpr const char* effects[] = {"condition: Human / LGA-HILL", "period: first / second", "set: first / second"};
   for (std::size_t i = 0; i < 3; ++i)
-    grid.rows.push_back(
-        {{}, {effects[i], ratio_words(results.log_model[i]), fmt::format("{:.3f}", results.log_model[i].p)}});
+    grid.rows.push_back({{}, {effects[i], ratio_words(results.log_model[i]), p_cell(results.log_model[i].p)}});
   section.add(everywhere, std::move(grid));
   return section;
 }
@@ -172,10 +172,10 @@ Section commands_section(const StudyResults& results) {
   grid.heads = {"command", "Human", "LGA-HILL", "difference", "p"};
   grid.align = "lrrrr";
   for (const CommandResult& command : results.commands)
-    grid.rows.push_back({{},
-                         {command.item->asked_as, mean_of(command.seconds[0]), mean_of(command.seconds[1]),
-                          command.change ? change_words(*command.change, "") : "–",
-                          command.change ? fmt::format("{:.3f}", command.p_holm) : "–"}});
+    grid.rows.push_back(
+        {{},
+         {command.item->asked_as, mean_of(command.seconds[0]), mean_of(command.seconds[1]),
+          command.change ? change_words(*command.change, "") : "–", command.change ? p_cell(command.p_holm) : "–"}});
   section.add(everywhere, std::move(grid));
   return section;
 }
@@ -241,8 +241,7 @@ Section questionnaire_section(const StudyResults& results) {
 
 // The primary test in a sentence; of a rehearsal it says first that it is none.
 std::string headline(const StudyResults& results) {
-  const std::string begin =
-      results.record->kind == Kind::rehearsal ? fmt::format("{}, so no result: ", simulated_words) : "";
+  const std::string begin = results.record->kind == Kind::rehearsal ? "Rehearsal, not people, so no result: " : "";
   if (!results.primary) return begin + "fewer than two people can be compared.";
   return fmt::format(
       "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
