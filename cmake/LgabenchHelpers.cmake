@@ -86,6 +86,13 @@ function(lgabench_link_data)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/${name} SYMBOLIC)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${source}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${name})
   endforeach()
+  # What a packed leaderboard has beside its entries.
+  file(MAKE_DIRECTORY ${share}/archive)
+  foreach(source LICENSE CITATION.cff framework/lgabench/leaderboard/archive/README.md)
+    cmake_path(GET source FILENAME name)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
+    install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)
+  endforeach()
   # cmake/encoder puts the sentence encoder's weights there; too large to install.
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/.deps/encoder ${share}/encoder SYMBOLIC)
 endfunction()
