@@ -128,7 +128,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
   verb->add_option("--documents", a->documents, "build, check: documents that have tables of the board between markers")
       ->delimiter(',');
-  verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with licence and citation");
+  verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
   arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});

@@ -43,6 +43,9 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   std::vector<Request> all;
   for (const CellResult& cell : results.cells) {
     if (cell.failed || cell.is_reference()) continue;
+    std::vector<std::string> endings;  // of the masks' names, for each command; "" where there is no mask
+    for (const CommandResult& command : cell.commands)
+      endings.push_back(command.quality.is_null() ? "" : mask_key("", cell, command.selection));
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
         const PlayedEpisode& episode = cell.episodes.at(arm)[i];
@@ -52,12 +55,11 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         all[known->second].environment = cell.environment;
         Request& request = all[known->second];
         request.failed = request.failed || !episode.success;
-        const CommandResult& command = cell.commands[episode.command];
-        if (command.quality.is_null()) continue;
-        const std::string key = mask_key(episode.scene, cell, command.selection);
+        if (endings[episode.command].empty()) continue;
+        const std::string key = episode.scene + endings[episode.command];
         if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
         request.masks.push_back(key);
-        request.scene.selections.push_back(what_is_kept(cell, command.selection));
+        request.scene.selections.push_back(what_is_kept(cell, cell.commands[episode.command].selection));
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const Request& a, const Request& b) {
