@@ -187,7 +187,10 @@ MujocoPool::MujocoPool(const std::vector<BodyModel>& models, int bodies)
 void MujocoPool::give_out(const std::vector<int>& models) {
   for (const MujocoBody& body : given_out_) {
     set_collidable(body, false);
-    if (body.tree >= 0) model_->tree_sleep_policy[body.tree] = mjSLEEP_ALLOWED;
+    if (body.tree >= 0)
+      model_->tree_sleep_policy[body.tree] = mjSLEEP_ALLOWED;
+    else
+      set_mocap(body, true);
   }
   given_out_.clear();
   for (const int i : models)
@@ -209,6 +212,21 @@ void MujocoPool::give_out(const std::vector<int>& models) {
     set_collidable(given[i], true);
   }
   given_out_ = std::move(given);
+}
+
+void MujocoPool::pin_fixed(mjData* data) {
+  for (const MujocoBody& body : given_out_) {
+    if (body.mocap < 0) continue;
+    std::copy_n(data->mocap_pos + 3 * body.mocap, 3, model_->body_pos + 3 * body.body);
+    std::copy_n(data->mocap_quat + 4 * body.mocap, 4, model_->body_quat + 4 * body.body);
+    set_mocap(body, false);
+    data->body_awake[body.body] = mjS_STATIC;
+  }
+}
+
+void MujocoPool::set_mocap(const MujocoBody& body, bool mocap) {
+  model_->body_mocapid[body.body] = mocap ? body.mocap : -1;
+  model_->body_weldid[body.body] = mocap ? body.body : 0;  // welded to the world, which no asleep body collides with
 }
 
 void MujocoPool::set_collidable(const MujocoBody& body, bool collidable) {

@@ -39,12 +39,17 @@ class MujocoPool {
   /// In the order that was asked for.
   const std::vector<MujocoBody>& given_out() const { return given_out_; }
 
+  /// Holds the given out fixed bodies, whose poses `data` knows, where they are: to MuJoCo a mocap body moves at any
+  /// time, and what touches one costs every step, asleep or not. Until the next give_out().
+  void pin_fixed(mjData* data);
+
   /// Whether a body takes part in contacts.
   void set_collidable(const MujocoBody& body, bool collidable);
 
  private:
   using Model = std::unique_ptr<mjModel, void (*)(mjModel*)>;
 
+  void set_mocap(const MujocoBody& body, bool mocap);
   void put_on(const MujocoBody& shape, MujocoBody& body) const;
 
   Model patterns_;                  // each of the models once, never simulated

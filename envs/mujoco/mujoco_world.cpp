@@ -239,6 +239,7 @@ void MujocoWorld::lay_to_sleep() {
   for (const MujocoBody& b : pool_->given_out())
     if (b.tree >= 0) d->tree_asleep[b.tree] = -1;  // due to sleep at the end of a step in which it does not move
   mj_step(m, d);
+  pool_->pin_fixed(d);
   m->opt.disableflags = mujoco_disabled;
   d->time = 0;
 }

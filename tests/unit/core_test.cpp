@@ -268,7 +268,7 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /commands/0/truth: expected \"avoid\" for sweep");
   json = heart();
   json["environment"] = "kitchen";
-  EXPECT_SAYS(refusal(json), "mine.json: /environment: no environment \"kitchen\", expected one of: tabletop");
+  EXPECT_SAYS(refusal(json), "mine.json: /environment: no environment \"kitchen\", expected one of: mobile, tabletop");
   json = heart();
   json["commands"][0]["seen"] = false;
   EXPECT_SAYS(refusal(json), "mine.json: /tests/0: expected a scenario with commands for this arm");

@@ -1,6 +1,7 @@
 #include <lgabench/leaderboard/played_cell.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <lgabench/core/hash.hpp>
 
@@ -63,8 +64,12 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
     cell.lm_tokens += cost.at("lm_tokens").get<double>();
     cell.human_seconds += cost.at("human_seconds").get<double>();
   }
-  cell.learn_s = result.timing.at("learn_s");
-  cell.total_s = result.timing.at("total_s");
+  // Milliseconds: more digits would be noise, and not every writer of JSON ends such a number in the same digit.
+  const auto seconds = [&result](const char* of) {
+    return std::round(result.timing.at(of).get<double>() * 1000) / 1000;
+  };
+  cell.learn_s = seconds("learn_s");
+  cell.total_s = seconds("total_s");
   const fs::path training = directory / "training.jsonl";
   const std::vector<Json> epochs = parse_json_lines(read_file(training, Links::refused), training.string());
   if (!epochs.empty()) cell.steps = JsonReader(epochs.back(), training.string()).at("steps").integer(0, INT64_MAX);
