@@ -11,7 +11,7 @@ namespace {
 CellJob reference_job() {
   CellJob job;
   job.cell.suite = "q1";
-  job.cell.scenario = load_scenario("heart").json;
+  job.cell.scenario = std::make_shared<const Json>(load_scenario("heart").json);
   job.cell.method = {"reference", "oracle", "oracle", "1", Json::object()};
   job.cell.episodes = 3;
   job.cell.data = job.build = Json::object();

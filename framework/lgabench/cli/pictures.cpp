@@ -203,7 +203,7 @@ class Pictures {
     const auto known = cells_.find(file);
     if (known != cells_.end()) return *known->second;
     Cell read = read_cell(read_json(file), file);
-    Scenario scenario = read_scenario(read.scenario, file + ": /scenario");
+    Scenario scenario = read_scenario(*read.scenario, file + ": /scenario");
     return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
   }
 

@@ -103,7 +103,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
   const std::string file = (recorded.directory / "cell.json").string();
-  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"), cell.answers);
+  cell.data = data_hashes(read_scenario(*cell.scenario, file + ": /scenario"), cell.answers);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;
 }
@@ -165,6 +165,16 @@ void print_other_bytes(const std::vector<Recomputed>& verdicts) {
         "Of {} the record names another build, processor or data: its own word, which proves nothing.\n"
         "The recorded build, on such a processor, gives the same bytes.\n",
         excused);
+}
+
+// A cell's builds, its plugins by their ids: "engine mujoco" for "engine".
+Json by_plugin(const Json& build, const Cell& cell) {
+  Json named = Json::object();
+  for (const auto& [program, hash] : build.items())
+    named[program == "engine"   ? "engine " + cell.engine
+          : program == "method" ? "method " + cell.method.id
+                                : program] = hash;
+  return named;
 }
 
 void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
@@ -259,14 +269,8 @@ int verify(const Arguments& a) {
       const Cell& cell = cells[i].cell;
       const fs::path recomputed = plan.out / "cells" / key(plan.cells[i]);
       if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
-      Json build = read_json(recomputed / "status.json").at("build"), before = cells[i].status.at("build");
-      for (const auto& [plugin, id] : {std::pair("engine", cell.engine), {"method", cell.method.id}})
-        for (Json* hashes : {&build, &before})
-          if (hashes->contains(plugin)) {
-            (*hashes)[fmt::format("{} {}", plugin, id)] = (*hashes)[plugin];
-            hashes->erase(plugin);
-          }
-      add_differences(excuses[i], before, build, "build: ");
+      add_differences(excuses[i], by_plugin(cells[i].status.at("build"), cell),
+                      by_plugin(read_json(recomputed / "status.json").at("build"), cell), "build: ");
       verdicts.push_back(judge(cells[i], recomputed, !excuses[i].empty()));
       why.insert(excuses[i].begin(), excuses[i].end());
     }

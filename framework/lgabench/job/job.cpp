@@ -101,7 +101,8 @@ CellJob read_cell_job(const JsonReader& reader) {
 Json to_json(const CheckJob& job) {
   Json json{{"engine", plugin_json(job.engine)}, {"options", job.options},
             {"scratch", job.scratch.string()},   {"perturb", job.perturb},
-            {"report", job.report.string()},     {"limits", to_json(job.limits)}};
+            {"report", job.report.string()},     {"limits", to_json(job.limits)},
+            {"environment", job.environment}};
   if (job.method) json["method"] = plugin_json(*job.method);
   return json;
 }
@@ -113,7 +114,8 @@ CheckJob read_check_job(const JsonReader& reader) {
                reader.at("scratch").string(),
                static_cast<int>(reader.at("perturb").integer(0, 255)),
                reader.at("report").string(),
-               read_limits(reader)};
+               read_limits(reader),
+               reader.at("environment").string()};
   if (reader.has("method")) job.method = plugin_of(reader.at("method"));
   return job;
 }

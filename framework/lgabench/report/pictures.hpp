@@ -15,7 +15,7 @@ constexpr std::size_t most_pictures = 150;      // in one page: about 1 MB
 constexpr std::size_t most_ends = 300;          // episodes whose end is shown: about 1 MB
 constexpr std::size_t most_disagreements = 30;  // of engines that are shown
 
-/// Of a picture a page shows every so manyth pixel, of its rows and of its columns.
+/// A page shows every page_step-th row and column of a picture.
 constexpr int page_step(PictureSize picture) { return std::max(1, picture.columns / 256); }
 
 struct Pictures {
