@@ -94,6 +94,18 @@ function(lgabench_link_data)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/${name} SYMBOLIC)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${source}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${name})
   endforeach()
+  # Pages and examples, so that an installation needs no sources.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          PATTERN __pycache__ EXCLUDE)
+  install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
+          ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
+  # What a packed leaderboard has beside its entries.
+  file(MAKE_DIRECTORY ${share}/archive)
+  foreach(source LICENSE CITATION.cff framework/lgabench/leaderboard/archive/README.md)
+    cmake_path(GET source FILENAME name)
+    file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
+    install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)
+  endforeach()
   # cmake/encoder puts the sentence encoder's weights there; too large to install.
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/.deps/encoder ${share}/encoder SYMBOLIC)
 endfunction()

@@ -14,6 +14,10 @@ void register_tinyrenderer();
 void register_plugin();
 void register_harness();
 
+/// Ends the program with that message: Google Benchmark would stop at its own check of a repetition that failed after
+/// others did not, without a name.
+[[noreturn]] void stop_at(const std::string& failure);
+
 /// A promise of docs/performance.md: what `measured` must be beside `reference`, both names of benchmarks.
 struct Promise {
   std::string what, measured, reference;

@@ -11,13 +11,13 @@
 namespace lgabench {
 namespace {
 
-void execute(benchmark::State& state, const std::string& arguments) {
-  if (std::system(fmt::format("'{}' {} >/dev/null 2>&1", LGABENCH_PROGRAM, arguments).c_str()) != 0)
-    state.SkipWithError(("failed: lgabench " + arguments).c_str());
+void execute(const std::string& arguments) {
+  const int status = std::system(fmt::format("'{}' {} >/dev/null 2>&1", LGABENCH_PROGRAM, arguments).c_str());
+  if (status != 0) stop_at(fmt::format("ended with status {:#x}: lgabench {}", status, arguments));
 }
 
 void list(benchmark::State& state) {
-  for (auto _ : state) execute(state, "list");
+  for (auto _ : state) execute("list");
 }
 
 // Two dozen cells of about the same length, demonstrations at hand: few would show how the last two happen to end, a
@@ -25,9 +25,10 @@ void list(benchmark::State& state) {
 void workers(benchmark::State& state, int count) {
   static const Scratch scratch("benchmark");
   for (auto _ : state)
-    execute(state, fmt::format("run q1 --methods lga --scenarios heart,letter --demos 10 --seeds 0:12 --no-reference "
-                               "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",
-                               count, scratch.path.string(), scratch.path.string()));
+    execute(
+        fmt::format("run q1 --methods lga --scenarios heart,letter --demos 10 --seeds 0:12 --no-reference "
+                    "--fresh --jobs {} --out '{}/run' --cache '{}/cache'",
+                    count, scratch.path.string(), scratch.path.string()));
 }
 
 }  // namespace

@@ -3,12 +3,18 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include <lgabench/core/flush_denormals.hpp>
 
 #include "benchmarks.hpp"
 #include "summary.hpp"
+
+void lgabench::stop_at(const std::string& failure) {
+  std::fprintf(stderr, "lgabench-benchmarks: %s\n", failure.c_str());
+  std::exit(1);
+}
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a child without PyTorch ends before it has read what it is given

@@ -58,7 +58,7 @@ void pytorch(benchmark::State& state, const std::string& name, const std::string
   while (state.KeepRunningBatch(steps)) {
     bool failed = false;
     state.SetIterationTime(found->second->seconds(steps, failed));
-    if (failed) return state.SkipWithError("training_in_pytorch.py ended early");
+    if (failed) stop_at("training_in_pytorch.py ended early");
   }
   state.SetItemsProcessed(state.iterations());
 }

@@ -84,6 +84,11 @@ class Package(Consumer):
             for word in "check-plugin", "--demos":
                 self.assertIn(word, text, file)
 
+    def test_holds_the_pages_and_the_examples(self):
+        pages = self.prefix / "share/doc/lgabench"
+        for file in "README.md", "docs/tutorial.md", "docs/pictures/scene.png", "examples/select_only/select_only.cpp":
+            self.assertTrue((pages / file).is_file(), file)
+
     def test_works_where_it_was_moved_to(self):
         self.assertIn("mujoco", self.lgabench("list").stdout)
         self.runs("lga", self.prefix, "--set", "lga.epochs=2")

@@ -8,6 +8,8 @@ import os
 import pathlib
 import re
 import shutil
+import tarfile
+import time
 import unittest
 
 from case import BUILD, ENGINE, FIXTURES, Case
@@ -165,6 +167,34 @@ class Submissions(Board):
                  for line in file.read_text().splitlines()]
         failed = [line for line in lines if "failed" in line]
         self.assertEqual([line["outcomes"] for line in failed], [{"test": "!!!!"}])
+
+    def test_an_archive_has_what_checks_it_and_the_same_bytes_each_time(self):
+        self.take_run()
+        self.assertIn("no entry to pack", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
+        self.add()
+        self.leaderboard("build", "--archive", "one.tar.gz")
+        for file in (self.dir / "board").rglob("*.json*"):
+            os.utime(file, (0, 0))
+            file.chmod(0o600)
+        self.leaderboard("build", "--archive", "other.tar.gz")
+        self.assertEqual((self.dir / "one.tar.gz").read_bytes(), (self.dir / "other.tar.gz").read_bytes())
+        with tarfile.open(self.dir / "one.tar.gz") as archive:
+            files = archive.getmembers()
+            archive.extractall(self.dir / "away")
+        self.assertEqual([file.name for file in files], sorted((file.name for file in files), key=lambda name: name.split("/")))
+        self.assertEqual({(file.uid, file.gid) for file in files}, {(0, 0)})
+        started = json.loads((self.dir / "run/run.json").read_text())["started"]
+        self.assertEqual({time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(file.mtime)) for file in files}, {started})
+        root = self.dir / "away/lgabench-leaderboard"
+        readme = (root / "README.md").read_text()
+        self.assertIn(f"5 entries, the newest computed on {started[:10]}", readme)
+        self.assertEqual([link for link in re.findall(r"\]\(([^)]+)\)", readme) if not (root / link).exists()], [])
+        self.assertRegex((root / "CITATION.cff").read_text(), "(?m)^cff-version: ")
+        self.assertIn("5 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
+        (self.dir / "board/answers").mkdir()
+        (self.dir / "board/answers/elsewhere").symlink_to("/etc/passwd")
+        self.assertIn("a symbolic link", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
+        self.assertFalse((self.dir / "none.tar.gz").exists())
 
     def test_withdrawn_entries_keep_their_record(self):
         self.take_run()
@@ -354,10 +384,12 @@ class Versions(Case):
 
 
 class Published(Case):
-    """The repository's own board, as continuous integration checks it."""
+    """The repository's own board, and the tables of it in docs/results.md, as continuous integration checks them."""
 
     def test_it_is_what_its_entries_make(self):
-        done = self.call("leaderboard", "check", "--board", pathlib.Path(__file__).parents[2] / "results/leaderboard")
+        source = pathlib.Path(__file__).parents[2]
+        done = self.call("leaderboard", "check", "--board", source / "results/leaderboard",
+                         "--documents", source / "docs/results.md")
         self.assertRegex(done.stdout, r"^\d+ entries, 0 problems\n$")
 
 

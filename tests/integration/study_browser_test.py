@@ -38,7 +38,7 @@ PATIENCE = 30  # seconds
 # The lowest contrast of any text that is shown, against the nearest background that is not transparent (WCAG 2.1).
 CONTRAST = """
 const channel = c => (c /= 255) <= .03928 ? c / 12.92 : ((c + .055) / 1.055) ** 2.4;
-const numbers = text => text.match(/[\\d.]+/g).map(Number);
+const numbers = text => text.match(/[\\d.]+/g).map((n, i) => n * (text.startsWith('color(') && i < 3 ? 255 : 1));
 const light = ([r, g, b]) => .2126 * channel(r) + .7152 * channel(g) + .0722 * channel(b);
 let worst = [99, ''];
 for (const element of document.querySelectorAll('body *')) {

@@ -137,6 +137,7 @@ class Verify(BesideOneRun):
         self.assertRegex(done.stderr.splitlines()[0],
                          rf"^edited: .*{self.cell.name}/episodes.jsonl does not have the bytes that were written")
         self.assertIn("3 of 3 finished cells", done.stdout)
+        self.assertEqual(done.stdout.splitlines()[-1], "1 cells were edited: not verified")
 
     def test_a_cell_under_another_name_is_edited(self):
         self.change("cell.json", 0, training_seed=1)

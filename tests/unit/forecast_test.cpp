@@ -26,8 +26,8 @@ std::vector<Played> recorded(const std::string& run, std::size_t arms, bool unkn
     one.cell.method.name = one.cell.method.id;
     one.cell.method.options = {{"epochs", 750}, {"network", "text"}};
     one.cell.episodes = 20;
-    one.cell.scenario = {
-        {"id", "s"}, {"commands", Json::array({Json::object()})}, {"tests", Json(arms, Json::object())}};
+    one.cell.scenario = std::make_shared<const Json>(
+        Json{{"id", "s"}, {"commands", Json::array({Json::object()})}, {"tests", Json(arms, Json::object())}});
     all.push_back(one);
   }
   return all;
@@ -105,7 +105,9 @@ TEST(UsualSeconds, GrowWithWhatIsLearntAndPlayed) {
   EXPECT_GT(usual_seconds(few), 3);
   EXPECT_LT(usual_seconds(many), usual_seconds(few) + 2) << "as many steps for any data";
   Cell two = cell, hundred = cell;
-  two.scenario["commands"] = {Json::object(), Json::object(), {{"seen", false}}};
+  Json scenario = *cell.scenario;
+  scenario["commands"] = {Json::object(), Json::object(), {{"seen", false}}};
+  two.scenario = std::make_shared<const Json>(scenario);
   EXPECT_NEAR(usual_seconds(two) / usual_seconds(cell), 2, .1) << "demonstrations are of each seen command";
   hundred.episodes = 100;
   EXPECT_GT(usual_seconds(hundred), usual_seconds(cell) + .3);

@@ -95,6 +95,13 @@ TEST(Cells, ExpandCrossesTheGrid) {
   EXPECT_EQ(expand(suite, small_grid(), {"recorded", Json::object(), false}, catalogue()).size(), 2u * 2 * 3 * 2);
 }
 
+TEST(Cells, OfOneScenarioShareIt) {
+  std::set<const Json*> scenarios;
+  for (const Cell& cell : expand(load_suite("q1"), small_grid(), {}, catalogue()))
+    scenarios.insert(cell.scenario.get());
+  EXPECT_EQ(scenarios.size(), 2u);
+}
+
 TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
   const Suite robustness = load_suite("robustness");
   Grid grid = small_grid();
@@ -102,7 +109,7 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
   EXPECT_EQ(grid.scenarios, robustness.grid.scenarios);
   const auto cells = expand(robustness, grid, {}, catalogue());
   for (const Cell& cell : cells) {
-    const Scenario s = read_scenario(cell.scenario, "cell");
+    const Scenario s = read_scenario(*cell.scenario, "cell");
     ASSERT_EQ(s.tests.size(), 6u);
     EXPECT_EQ(s.tests[0].id, "test");
     std::vector<tabletop::Content> scenes;
@@ -433,7 +440,7 @@ std::vector<Cell> cells_to_play() {
     for (const int n : {10, 50})
       for (const char* method : {"quick", "slow"}) {
         Cell cell;
-        cell.scenario = {{"id", scenario}};
+        cell.scenario = std::make_shared<const Json>(Json{{"id", scenario}});
         cell.method.id = cell.method.name = method;
         cell.demonstrations = n;
         cells.push_back(cell);

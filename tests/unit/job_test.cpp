@@ -11,7 +11,7 @@ namespace {
 CellJob reference_job() {
   CellJob job;
   job.cell.suite = "q1";
-  job.cell.scenario = load_scenario("heart").json;
+  job.cell.scenario = std::make_shared<const Json>(load_scenario("heart").json);
   job.cell.method = {"reference", "oracle", "oracle", "1", Json::object()};
   job.cell.episodes = 3;
   job.cell.data = job.build = Json::object();
@@ -52,7 +52,9 @@ TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
   request.ends = {{"mujoco", {.1, .2}}, {"bullet", {.3}}};
+  request.inputs = {{{"pictures", {"mask"}}, {"selection", nullptr}}};
   const Json json = to_json(request);
+  EXPECT_EQ(json.at("inputs").size(), 1u);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }
 

@@ -31,6 +31,61 @@ TEST(Board, WhatIsBuiltIsCurrentAndAnEditIsNot) {
   EXPECT_SAYS(all(check(board.path).problems), "leaderboard.csv: not what lgabench leaderboard build makes");
 }
 
+void replace_in(const fs::path& file, const std::string& old, const std::string& with) {
+  std::string text = read_file(file);
+  ASSERT_NE(text.find(old), text.npos) << old << " in " << file;
+  write_file(file, text.replace(text.find(old), old.size(), with));
+}
+
+TEST(Board, APageIsCurrentIfWhatComesFromTheEntriesIs) {
+  const TemporaryDirectory board;
+  write_entry(board.path, made_entry(small_setting(), "a", .5));
+  build(board.path);
+  const fs::path page = board.path / "q1.html";
+  // Another version's style, dialog, scripts.
+  replace_in(page, "</style>", "b { color: red }</style>");
+  replace_in(page, ">Close</button>", ">Shut</button>");
+  replace_in(page, "</body>", "<script>let more</script></body>");
+  EXPECT_EQ(all(check(board.path).problems), "");
+  replace_in(page, "method_of_a", "method_of_b");
+  EXPECT_SAYS(all(check(board.path).problems), "q1.html: not what lgabench leaderboard build makes");
+  build(board.path);
+  replace_in(page, R"("successes":")", R"("successes":"A)");
+  EXPECT_SAYS(all(check(board.path).problems), "q1.html: not what lgabench leaderboard build makes");
+}
+
+TEST(Board, DocumentsHaveTheTablesOfReadme) {
+  const TemporaryDirectory scratch;
+  const fs::path board = scratch.path / "results/board", document = scratch.path / "docs/results.md";
+  const std::string before = "# Results\n\nBy hand.\n\n<!-- board:q1-board -->\n", after = "<!-- /board -->\n\nMore.\n";
+  const auto problems = [&] { return all(check(board, "", {document}).problems); };
+  fs::create_directories(board / "entries");
+  write_file(document, before + after);
+  build(board, {document});
+  EXPECT_EQ(read_file(document), before + "\nNo entry of q1-board yet.\n\n" + after);
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  write_entry(board, entry);
+  build(board);
+  EXPECT_SAYS(problems(), "results.md: not what lgabench leaderboard build makes");
+  build(board, {document});
+  EXPECT_EQ(problems(), "");
+  const std::string text = read_file(document), readme = read_file(board / "README.md");
+  EXPECT_EQ(text.find(before), 0u);
+  EXPECT_SAYS(text, "\n\n" + after);
+  std::string table = readme.substr(readme.find("| rank"));
+  EXPECT_SAYS(table, "](entries/");
+  table.replace(table.find("](entries/"), 2, "](../results/board/");
+  EXPECT_SAYS(text, table);
+  build(board, {document});
+  EXPECT_EQ(read_file(document), text) << "built twice";
+  for (const std::string& broken : {before, after, before + before + after}) {
+    write_file(document, broken);
+    EXPECT_SAYS(problems(), "results.md: expected <!-- ");
+    EXPECT_THROW(build(board, {document}), InputError);
+    EXPECT_EQ(read_file(document), broken);
+  }
+}
+
 TEST(Board, EntriesOfOneTablePlayedTheSameScenes) {
   const TemporaryDirectory board;
   Entry other = made_entry(small_setting(), "b", .5);

@@ -106,6 +106,8 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
               "the hash of /preset");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),
+              "/evidence/0/started: expected a time");
   EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "alone here");
   EXPECT_SAYS(after([&](auto& path) { edit(path / "entry.json", "\n", "\n\n"); }), "not as it is written");
 }

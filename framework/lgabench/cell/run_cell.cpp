@@ -170,7 +170,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const pid_t self = ::getpid();
   const Cell& cell = job.cell;
   const std::string& id = cell.method.id;
-  const Scenario scenario = read_scenario(cell.scenario, "cell: /scenario");
+  const Scenario scenario = read_scenario(*cell.scenario, "cell: /scenario");
   if (data_hashes(scenario, cell.answers) != cell.data)
     throw InputError("cell: /data: the data directory changed since the run began");
   Phases phases(report);

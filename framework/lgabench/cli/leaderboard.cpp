@@ -12,6 +12,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/leaderboard/add.hpp>
+#include <lgabench/leaderboard/archive.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/replay.hpp>
@@ -21,9 +22,9 @@ namespace {
 
 struct Arguments {
   std::string action, what, about, against, reason, python = "python3";
-  fs::path board = "results/leaderboard";
+  fs::path board = "results/leaderboard", archive;
   Words rows, methods;
-  std::vector<fs::path> plugin_path;
+  std::vector<fs::path> plugin_path, documents;
   leaderboard::ReplayOptions replay;
   int jobs = 0;  // as many as there are cores
 };
@@ -83,16 +84,20 @@ int withdraw(const Arguments& a) {
   return ok;
 }
 
-int build(const Arguments& a) {
-  for (const std::string& name : leaderboard::build(a.board)) to_stdout("{}\n", (a.board / name).string());
-  return ok;
-}
-
 int check(const Arguments& a) {
-  const leaderboard::Checked checked = leaderboard::check(a.board, a.against);
+  const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
   for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
   to_stdout("{} entries, {} problems\n", checked.entries, checked.problems.size());
   return print_all(checked.problems, "");
+}
+
+int build(const Arguments& a) {
+  for (const fs::path& file : leaderboard::build(a.board, a.documents)) to_stdout("{}\n", file.string());
+  if (a.archive.empty()) return ok;
+  if (const int found = check(a); found != ok) return found;
+  leaderboard::write_archive(a.board, a.archive);
+  to_stdout("{}\n", a.archive.string());
+  return ok;
 }
 
 }  // namespace
@@ -121,6 +126,9 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
+  verb->add_option("--documents", a->documents, "build, check: documents that have tables of the board between markers")
+      ->delimiter(',');
+  verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
   arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
@@ -133,7 +141,8 @@ void add_leaderboard(CLI::App& app, int& exit) {
            {"--plugin-path", "PATH"},
            {"--methods", "FILE.py:CLASS,..."},
            {"--python", "PROGRAM"}});
-  arrange(*verb, "check", {{"--against", "REVISION"}});
+  arrange(*verb, "build and check",
+          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}});
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
       "add refuses what is not the board's preset, whole and on its scenes, and says what is missing, line by line.\n"

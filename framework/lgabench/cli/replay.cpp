@@ -61,7 +61,7 @@ Recorded recorded(const Arguments& a) {
   const fs::path cell = cell_of(a.run, a.episode.substr(0, first));
   const std::string cell_file = (cell / "cell.json").string(), episodes_file = (cell / "episodes.jsonl").string();
   episode.cell = read_cell(read_json(cell_file, Links::refused), cell_file);
-  episode.scenario = read_scenario(episode.cell.scenario, cell_file + ": /scenario");
+  episode.scenario = read_scenario(*episode.cell.scenario, cell_file + ": /scenario");
   episode.arm = first == last ? episode.scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
   episode.scenario.arm(episode.arm);  // says which there are
 

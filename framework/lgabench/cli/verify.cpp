@@ -103,7 +103,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
   const std::string file = (recorded.directory / "cell.json").string();
-  cell.data = data_hashes(read_scenario(cell.scenario, file + ": /scenario"), cell.answers);
+  cell.data = data_hashes(read_scenario(*cell.scenario, file + ": /scenario"), cell.answers);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;
 }
@@ -215,6 +215,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
   print_other_bytes(verdicts);
   if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
+  if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
 }
 
 int verify(const Arguments& a) {

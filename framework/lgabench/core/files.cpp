@@ -87,14 +87,17 @@ void write_file(const fs::path& file, std::string_view bytes, Sync sync) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 
-  // A name that no other process takes, on no machine that shares the directory.
-  fs::path temporary;
+  fs::path temporary = file;
   Descriptor out{-1};
-  std::random_device random;
-  do {
-    temporary = fmt::format("{}.{:08x}.tmp", file.string(), random());
-    out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  } while (out.fd < 0 && errno == EEXIST);
+  if (sync == Sync::later) {
+    out.fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  } else {  // a name that no other process takes, on no machine that shares the directory
+    std::random_device random;
+    do {
+      temporary = fmt::format("{}.{:08x}.tmp", file.string(), random());
+      out.fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    } while (out.fd < 0 && errno == EEXIST);
+  }
   if (out.fd < 0) fail(file, "cannot be written");
   const auto give_up = [&](const char* wanted) {
     const int reason = errno;
@@ -103,7 +106,8 @@ void write_file(const fs::path& file, std::string_view bytes, Sync sync) {
     fail(file, wanted);
   };
   if (!write_all(out.fd, bytes)) give_up("cannot be written");
-  if (sync == Sync::now && ::fsync(out.fd) != 0) give_up("cannot be written to disk");
+  if (sync == Sync::later) return;
+  if (::fsync(out.fd) != 0) give_up("cannot be written to disk");
   if (::rename(temporary.c_str(), file.c_str()) != 0) give_up("cannot be written");
 }
 

@@ -23,10 +23,10 @@ std::string read_file(const fs::path& file, Links links = Links::followed,
 /// there holds none.
 void expect_plain_entries(const fs::path& directory);
 
-/// Whether write_file() ends on the disk, or a sync_file_system() after many of them.
+/// `later`: the file is of a directory that gets its name after a sync_file_system(), so that nobody reads it before.
 enum class Sync { now, later };
 
-/// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, never a part.
+/// Writes to a temporary beside `file`, fsyncs, renames: a reader sees the old bytes or the new, unless synced later.
 /// Makes missing parent directories. @throws InputError naming the file and the system's reason (a full disk included).
 void write_file(const fs::path& file, std::string_view bytes, Sync sync = Sync::now);
 

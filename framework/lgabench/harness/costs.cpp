@@ -74,10 +74,10 @@ double usual_seconds(const Cell& cell) {
   if (options.value("network", Json()) == "plain") learn_ms *= network_plain;
   const Json epochs = options.value("epochs", Json(750));
   const double passes = epochs.is_number() ? epochs.get<double>() : 750;
-  const double demonstrations = cell.demonstrations * count(cell.scenario, "commands", [](const Json& c) {
+  const double demonstrations = cell.demonstrations * count(*cell.scenario, "commands", [](const Json& c) {
                                   return !c.is_object() || c.value("seen", Json()) != false;
                                 });
-  const double episodes = cell.episodes * count(cell.scenario, "tests", [](const Json&) { return true; });
+  const double episodes = cell.episodes * count(*cell.scenario, "tests", [](const Json&) { return true; });
   const double learn_s = options.value("policy", Json()) == "heat_map" ? heat_map_s * std::min(demonstrations, 16.)
                                                                        : demonstrations * passes * learn_ms / 1000;
   return start_s + demonstrations * demonstration_s + learn_s + episodes * episode_s;

@@ -40,7 +40,7 @@ Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenari
   Cell cell;
   cell.suite = suite.id;
   cell.environment = suite.environment;
-  cell.scenario = scenario.json;
+  cell.scenario = std::make_shared<const Json>(scenario.json);
   cell.scene_seed = grid.scene_seed;
   cell.test_scenes = grid.test_scenes;
   cell.episodes = grid.episodes;

@@ -39,7 +39,7 @@ Json to_json(const Cell& cell) {
   Json json{{"suite", cell.suite},
             {"environment", cell.environment},
             {"layout", cell.layout},
-            {"scenario", cell.scenario},
+            {"scenario", *cell.scenario},
             {"engine", cell.engine},
             {"method",
              {{"kind", cell.method.kind},
@@ -73,7 +73,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.suite = reader.at("suite").string();
   cell.environment = reader.at("environment").string();
   cell.layout = reader.at("layout").string();
-  cell.scenario = reader.at("scenario").json();
+  cell.scenario = std::make_shared<const Json>(reader.at("scenario").json());
   reader.at("scenario").at("id").string();
   cell.engine = reader.at("engine").string();
   cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),

@@ -1,6 +1,7 @@
 // A cell: the unit of work, failure and resuming. It trains one policy and plays every arm of its scenario.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,7 +36,7 @@ bool is_live(const std::string& answers);
 /// All that a cell's results depend on, besides the programs themselves.
 struct Cell {
   std::string suite, environment, layout, engine;
-  Json scenario;  // the scenario file, whole
+  std::shared_ptr<const Json> scenario = std::make_shared<const Json>();  // the file, whole; a plan's cells share it
   Competitor method;
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
@@ -47,7 +48,7 @@ struct Cell {
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
 
-  std::string scenario_id() const { return scenario.at("id"); }
+  std::string scenario_id() const { return scenario->at("id"); }
   /// For people: "lga heart cells n=20 seed=0".
   std::string title() const;
   /// The training seed where the test scenes are its own.

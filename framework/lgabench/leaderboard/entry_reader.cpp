@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <ctime>
 
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/leaderboard/entry.hpp>
@@ -13,6 +14,13 @@ void expect_sha256(const JsonReader& reader) {
   const std::string text = reader.string();
   if (text.size() != 64 || text.find_first_not_of("0123456789abcdef") != std::string::npos)
     reader.fail("64 hexadecimal digits");
+}
+
+void expect_time(const JsonReader& reader) {
+  const std::string text = reader.string();
+  std::tm time{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%SZ", &time);
+  if (end == nullptr || *end != '\0' || text.size() != 20) reader.fail("a time, as 2026-01-31T12:00:00Z");
 }
 
 Identity read_identity(const JsonReader& reader) {
@@ -130,7 +138,8 @@ void expect_evidence(const JsonReader& evidence) {
   if (evidence.elements().empty()) evidence.fail("at least one run");
   for (const JsonReader& one : evidence.elements()) {
     one.only({"by", "program", "version", "build", "plugins", "machine", "confinement", "started", "command", "data"});
-    for (const char* text : {"by", "program", "version", "confinement", "started", "command"}) one.at(text).string();
+    for (const char* text : {"by", "program", "version", "confinement", "command"}) one.at(text).string();
+    expect_time(one.at("started"));
     one.at("machine").at("processor").string();
     for (const JsonReader& plugin : one.at("plugins").elements())
       for (const char* text : {"kind", "id", "version", "sha256"}) plugin.at(text).string();

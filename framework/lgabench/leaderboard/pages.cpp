@@ -23,8 +23,11 @@ using report::reading;
 using report::Section;
 using report::Span;
 
-// A table as README.md and index.html have it: of README.md all rows, of index.html the first.
-Grid short_grid(const NamedTable& table, std::size_t most) {
+using Suites = std::map<std::string, std::vector<NamedTable>>;
+constexpr std::size_t first_rows = 10, all_rows = 1'000'000;
+
+// The rows of a table, at most so many; `board` is where its links find the board.
+Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board) {
   Grid grid;
   grid.name = table.setting.name();
   grid.caption = title_of(table.setting);
@@ -35,13 +38,18 @@ Grid short_grid(const NamedTable& table, std::size_t most) {
     grid.rows.push_back({{},
                          {Span::number(rank_text(s)), Span(display_name(table.names[i])), Span::number(score_text(s)),
                           Span(to_string(s.entry->tier())), Span(s.entry->about.at("by").get<std::string>()),
-                          Span::link(s.entry->id(), s.entry->place().string() + "/entry.json")},
+                          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
                          s.entry->identity.row.is_reference()});
   }
   return grid;
 }
 
-Document index(const std::map<std::string, std::vector<NamedTable>>& suites, std::size_t most) {
+void add_table(Section& section, const NamedTable& table, std::size_t most, const fs::path& board = "") {
+  section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
+  section.add<Grid>(reading, short_grid(table, most, board));
+}
+
+Document index(const Suites& suites, std::size_t most) {
   Document document;
   document.title = "lgabench leaderboard";
   document.headline = {
@@ -52,8 +60,7 @@ Document index(const std::map<std::string, std::vector<NamedTable>>& suites, std
     section.add<Paragraph>(reading, {{Span::link("Sortable table, scenarios, episodes of " + suite, suite + ".html")}});
     for (const NamedTable& table : tables) {
       section.add<Heading>(reading, {title_of(table.setting)});
-      section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
-      section.add<Grid>(reading, short_grid(table, most));
+      add_table(section, table, most);
     }
     document.sections.push_back(std::move(section));
   }
@@ -67,7 +74,7 @@ Document index(const std::map<std::string, std::vector<NamedTable>>& suites, std
 
 std::string number(double value) { return fmt::format("{:.6g}", value); }
 
-std::string csv_of(const std::map<std::string, std::vector<NamedTable>>& suites) {
+std::string csv_of(const Suites& suites) {
   std::string text = csv_line({"suite",          "preset",       "preset_hash", "scene_seed", "id",
                                "method",         "name",         "version",     "engine",     "answers",
                                "demonstrations", "rank",         "success",     "low",        "high",
@@ -112,31 +119,56 @@ std::string csv_of(const std::map<std::string, std::vector<NamedTable>>& suites)
   return text;
 }
 
+// A document whose text between <!-- board:SUITE-PRESET --> and <!-- /board --> is that preset's tables, as README.md
+// has them.
+std::string with_tables(const fs::path& file, const fs::path& board, const Suites& suites) {
+  const std::string text = read_file(file), open = "<!-- board:", close = "<!-- /board -->";
+  std::string out;
+  std::size_t at = 0;
+  for (std::size_t begin = 0; (begin = text.find(open, at)) != text.npos;) {
+    const std::size_t end = text.find(close, begin), inside = text.find(" -->", begin) + 4;
+    if (end == text.npos || inside > end || text.find(open, begin + 1) < end)
+      throw InputError(fmt::format("{}: expected {} after {}SUITE-PRESET -->", file.string(), close, open));
+    const std::string name = text.substr(begin + open.size(), inside - 4 - begin - open.size());
+    Section section;
+    for (const auto& suite : suites)
+      for (const NamedTable& table : suite.second)
+        if (table.setting.name() == name) add_table(section, table, all_rows, board);
+    if (section.blocks.empty()) section.add<Paragraph>(reading, {{fmt::format("No entry of {} yet.", name)}});
+    out += text.substr(at, inside - at) + '\n' + markdown(section) + '\n';
+    at = end;
+  }
+  if (at == 0) throw InputError(fmt::format("{}: expected {}SUITE-PRESET --> and {}", file.string(), open, close));
+  return out + text.substr(at);
+}
+
 }  // namespace
 
-std::map<std::string, std::string> pages(const std::vector<Entry>& entries) {
-  std::map<std::string, std::vector<NamedTable>> suites;
+std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
+                                           const std::vector<fs::path>& documents) {
+  Suites suites;
   for (const auto& table : tables(entries)) suites[table.front()->setting.suite].push_back(named_table(table));
-  std::map<std::string, std::string> files;
-  constexpr std::size_t first_rows = 10, all_rows = 1'000'000;
-  files["README.md"] = markdown(index(suites, all_rows));
-  files["index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");
-  files["leaderboard.csv"] = csv_of(suites);
+  std::map<fs::path, std::string> files;
+  files[board / "README.md"] = markdown(index(suites, all_rows));
+  files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");
+  files[board / "leaderboard.csv"] = csv_of(suites);
   for (const auto& [suite, tables] : suites)
-    files[suite + ".html"] = html(suite_document(suite, tables), suite_data(tables), "leaderboard.js");
+    files[board / (suite + ".html")] = html(suite_document(suite, tables), suite_data(tables), "leaderboard.js");
+  for (const fs::path& document : documents)
+    files[document] = with_tables(document, fs::relative(board, fs::absolute(document).parent_path()), suites);
   return files;
 }
 
-std::vector<std::string> build(const fs::path& board) {
-  const std::map<std::string, std::string> files = pages(read_entries(board));
-  std::vector<std::string> names;
-  for (const auto& [name, bytes] : files) {
-    write_file(board / name, bytes);
-    names.push_back(name);
+std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents) {
+  const std::map<fs::path, std::string> files = made_files(board, read_entries(board), documents);
+  std::vector<fs::path> paths;
+  for (const auto& [path, bytes] : files) {
+    write_file(path, bytes);
+    paths.push_back(path);
   }
   for (const auto& file : fs::directory_iterator(board))
-    if (file.path().extension() == ".html" && files.count(file.path().filename()) == 0) fs::remove(file.path());
-  return names;
+    if (file.path().extension() == ".html" && files.count(board / file.path().filename()) == 0) fs::remove(file.path());
+  return paths;
 }
 
 }  // namespace lgabench::leaderboard

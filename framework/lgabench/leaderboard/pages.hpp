@@ -1,4 +1,5 @@
-// What people look at, made from the entries alone: README.md, leaderboard.csv, index.html and a page for each suite.
+// What people look at, made from the entries alone: README.md, leaderboard.csv, index.html, a page for each suite, and
+// the tables in documents that people write.
 #pragma once
 #include <map>
 #include <string>
@@ -8,10 +9,13 @@
 
 namespace lgabench::leaderboard {
 
-/// Each file of the board that is made, by its name. The same entries give the same bytes.
-std::map<std::string, std::string> pages(const std::vector<Entry>& entries);
+/// The bytes of each file that is made: the board's, and `documents`, in which the tables of a preset stand between
+/// <!-- board:SUITE-PRESET --> and <!-- /board -->. The same entries give the same bytes.
+/// @throws InputError for a document without such a pair.
+std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
+                                           const std::vector<fs::path>& documents);
 
-/// Reads the entries and writes their pages; pages of suites that are gone are removed. Returns the files' names.
-std::vector<std::string> build(const fs::path& board);
+/// Reads the entries and writes these files; pages of suites that are gone are removed. Returns their paths.
+std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents = {});
 
 }  // namespace lgabench::leaderboard

@@ -69,6 +69,13 @@ std::string block_text(const Block& block) {
 
 }  // namespace
 
+std::string markdown(const Section& section) {
+  std::string text;
+  for (const Block& block : section.blocks)
+    if ((block.in & in_markdown) != 0) text += '\n' + block_text(block);
+  return text;
+}
+
 std::string markdown(const Document& document) {
   std::string text = fmt::format("# {}\n\n", plain(document.title));
   if (!document.headline.empty()) text += text_of(document.headline) + "\n\n";
@@ -78,9 +85,7 @@ std::string markdown(const Document& document) {
           fmt::format("> {}{}  \n", plain(note.text), note.log.empty() ? "" : fmt::format(" ({})", plain(note.log)));
   for (const Section& section : document.sections) {
     if ((section.in & in_markdown) == 0) continue;
-    text += fmt::format("\n## {}\n", plain(section.title));
-    for (const Block& block : section.blocks)
-      if ((block.in & in_markdown) != 0) text += '\n' + block_text(block);
+    text += fmt::format("\n## {}\n", plain(section.title)) + markdown(section);
   }
   return text;
 }

@@ -16,6 +16,8 @@ std::string terminal(const Grid& grid);
 
 /// report.md. Charts are named as RUN/figures/FILE.svg.
 std::string markdown(const Document& document);
+/// A section without its title, each block after an empty line.
+std::string markdown(const Section& section);
 
 /// A table for a paper: a tabular with the rules of the package booktabs. Pure ASCII; a character that LaTeX has no
 /// command for here becomes "?".

@@ -73,15 +73,18 @@ function show(row) {
   const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");
   about.innerHTML = facts.map(([name, value]) => `<dt>${name}</dt><dd>${escaped(value)}</dd>`).join("");
   choice.innerHTML = setting.scenarios.map((one, i) => `<option${i === at ? " selected" : ""} value="${escaped(one.id)}">${escaped(words(one.id))}</option>`).join("");
-  choice.onchange = () => fill(body, entry, setting, choice.value);
+  choice.onchange = () => {
+    fill(body, entry, setting, choice.value);
+    fit(body);
+  };
   $("panel-body").replaceChildren(about, body);
-  choice.onchange();
   for (const [id, step] of [["previous", -many], ["next", many]]) {
     $(id).disabled = !data.entries[Math.floor((row + step) / many)];
     $(id).onclick = () => show(row + step);
   }
   tip.hidden = true;
   if (!$("panel").open) $("panel").showModal();
+  choice.onchange();
   $("panel").scrollTop = 0;
   history.replaceState(null, "", `#row=${row}`);
 }

@@ -44,17 +44,14 @@ for (const table of document.querySelectorAll("table.sortable")) {
 }
 
 // A table that is wider than its place becomes a list of its rows, each number with its column's head before it.
-const frames = [...document.querySelectorAll(".frame")];
-for (const frame of frames) {
-  const heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
-  for (const row of frame.querySelectorAll("tbody tr:not(.group)"))
-    [...row.cells].forEach((cell, i) => cell.tagName === "TD" && (cell.dataset.head = heads[i]));
-}
-function fit() {
+function fit(within = document) {
+  const frames = [...within.querySelectorAll(".frame")];
   frames.forEach((frame) => frame.classList.remove("list"));
   const wide = frames.filter((frame) => frame.scrollWidth > frame.clientWidth + 1);
   frames.forEach((frame) => {
-    const list = wide.includes(frame);
+    const list = wide.includes(frame), heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
+    for (const row of list ? frame.querySelectorAll("tbody tr:not(.group)") : [])
+      [...row.cells].forEach((cell, i) => cell.tagName === "TD" && (cell.dataset.head = heads[i]));
     frame.classList.toggle("list", list);
     frame.removeAttribute("tabindex");  // nothing to scroll
     // A display of their own costs rows and cells their roles.
@@ -66,19 +63,19 @@ let width = 0;
 new ResizeObserver(() => {
   if (document.body.clientWidth !== width) width = document.body.clientWidth, fit();
 }).observe(document.body);
-for (const folded of document.querySelectorAll("details")) folded.addEventListener("toggle", fit);
+for (const folded of document.querySelectorAll("details")) folded.addEventListener("toggle", () => fit());
 
 // On paper all is open, and as wide as a page of A4.
 let closed = [];
 addEventListener("beforeprint", () => {
   closed = [...document.querySelectorAll("main details:not([open])")];
   closed.forEach((folded) => { folded.open = true; });
-  document.body.classList.add("paper");
+  document.body.classList.add("printed");
   fit();
 });
 addEventListener("afterprint", () => {
   closed.forEach((folded) => { folded.open = false; });
-  document.body.classList.remove("paper");
+  document.body.classList.remove("printed");
   fit();
 });
 
@@ -126,7 +123,7 @@ function csvOf(frame) {
     else lines.push([group, ...[...row.cells].map(text)]);
   return lines.map((line) => line.join(",") + "\n").join("");
 }
-const takeable = [...document.querySelectorAll("svg.chart"), ...frames].map((element) => ({
+const takeable = [...document.querySelectorAll("svg.chart, .frame")].map((element) => ({
   name: element.getAttribute("aria-label"),
   ...(element.tagName === "svg" ? { ending: "svg", text: () => new XMLSerializer().serializeToString(element) }
     : { ending: "csv", text: () => csvOf(element) }),

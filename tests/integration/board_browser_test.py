@@ -1,0 +1,111 @@
+"""A leaderboard of 200 made-up entries in headless Chromium; skipped by name where Chromium or Selenium is missing.
+
+LGABENCH_STUDY_SHOTS names a directory that screenshots are put into, to be looked at.
+"""
+import json
+import os
+import subprocess
+import unittest
+
+from case import BUILD, Case
+from study_browser_test import CONTRAST, MISSING, NAMELESS, Browser
+
+WIDER = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrollWidth > f.clientWidth + 1)
+    .map((f) => f.getAttribute("aria-label")).concat(
+    document.documentElement.scrollWidth > innerWidth ? [document.documentElement.scrollWidth] : [])"""
+COLUMN = """return [...document.querySelectorAll("#table1 tbody tr:not([hidden])")].map((row) => row.cells[arguments[0]].textContent.trim())"""
+
+
+@unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
+class BoardInABrowser(Case):
+    @classmethod
+    def setUpClass(cls):
+        cls.made = cls()
+        cls.made.setUp()
+        cls.addClassCleanup(cls.made.doCleanups)
+        cls.board = cls.made.dir / "board"
+        subprocess.run([BUILD / "bin/leaderboard_test", "--gtest_filter=Board.TwoHundredEntries*"], check=True,
+                       capture_output=True, env={**os.environ, "LGABENCH_KEEP_BOARD": str(cls.board)})
+
+    def runTest(self):
+        pass
+
+    def open(self, page="q1.html", **looks):
+        self.browser = Browser(self, **looks).open(f"file://{self.board}/{page}")
+        self.browser.until(lambda: self.script("return document.readyState === 'complete'"), "expected a page")
+        self.assertEqual(self.browser.complaints(), [])
+
+    def script(self, text, *arguments):
+        return self.browser.driver.execute_script(text, *arguments)
+
+    def press(self, *keys):
+        """By the keyboard, wherever the focus is."""
+        self.browser.driver.switch_to.active_element.send_keys(*keys)
+
+    def click(self, selector):
+        self.script("document.querySelector(arguments[0]).click()", selector)
+
+    def test_rows_are_sorted_and_filtered(self):
+        self.open()
+        names = self.script(COLUMN, 1)
+        self.assertEqual((len(names), names[0], names[-1]), (200, "method_of_author_196", "best constant action"))
+        success = [float(text[:5]) for text in self.script(COLUMN, 2)]
+        self.click("#table1 thead th:nth-child(3) button")
+        self.assertEqual([float(text[:5]) for text in self.script(COLUMN, 2)], sorted(success))
+        self.click("#table1 thead th:nth-child(3) button")
+        self.assertEqual([float(text[:5]) for text in self.script(COLUMN, 2)], sorted(success, reverse=True))
+        self.click("#table1 input[type=search]")
+        self.script("document.querySelector('#table1 input[type=search]').focus()")
+        self.press("AUTHOR_19")
+        self.assertEqual(set(self.script(COLUMN, 1)), {f"method_of_author_{i}" for i in (19, *range(190, 197))})
+        self.press("\b" * 9)
+        self.assertEqual(len(self.script(COLUMN, 1)), 200)
+
+    def test_a_number_leads_by_the_keyboard_to_the_episodes_of_its_entry(self):
+        self.open()
+        self.script("document.querySelector('#table1 tbody button').focus()")
+        self.press("\ue015")  # arrow down
+        self.press("\n")
+        self.assertTrue(self.script("return document.getElementById('panel').open"))
+        entry = self.script("return data.entries[1]")
+        self.assertIn(entry["name"], self.browser.text())
+        self.assertRegex(self.browser.driver.current_url, "#row=1000$")
+        shown = self.script("return [...document.querySelectorAll('#panel tbody tr')].map((row) => row.cells[4].textContent)")
+        lines = (self.board / entry["place"] / "cells.jsonl").read_text().splitlines()
+        scenario = self.script("return document.getElementById('outcome').value")
+        outcomes = [cell["outcomes"]["test"] for cell in map(json.loads, lines) if cell["scenario"] == scenario]
+        self.assertEqual(shown, [f"{letters.count('.')} of {len(letters)}" for letters in outcomes])
+        self.assertIn(f"--scenarios {scenario}", self.script("return document.querySelector('#panel pre').textContent"))
+        self.press("\ue00c")  # escape
+        self.assertFalse(self.script("return document.getElementById('panel').open"))
+        self.assertEqual(self.script("return document.activeElement.dataset.row"), "1000")
+        address = self.browser.driver.current_url
+        self.browser.open("about:blank").open(f"{address}#row=1003")  # the second entry's third scenario
+        self.assertEqual(self.script("return document.getElementById('outcome').selectedIndex"), 2)
+
+    def test_looks(self):
+        for width in 1280, 390:
+            for dark in False, True:
+                for page in "index.html", "q1.html":
+                    with self.subTest(page, width=width, dark=dark):
+                        self.open(page, width=width, dark=dark)
+                        self.browser.shot(f"board-{page}-{width}-{dark}")
+                        self.assertEqual(self.script(WIDER), [])
+                        self.assertEqual(self.script(NAMELESS), [])
+                        self.assertGreaterEqual(self.script(CONTRAST)[0], 4.5, self.script(CONTRAST)[1])
+                        if page != "index.html":
+                            self.click("#table1 button.rate")
+                            self.browser.shot(f"board-dialog-{width}-{dark}")
+                            panel = "const panel = document.getElementById('panel'); return panel.scrollWidth - panel.clientWidth"
+                            self.assertEqual(self.script(panel), 0)
+                            self.assertEqual(self.script(WIDER), [])
+
+    def test_a_suites_page_is_one_click_from_the_index(self):
+        self.open("index.html")
+        self.assertEqual(len(self.script("return [...document.querySelectorAll('tbody tr')]")), 10)
+        self.click("main a[href='q1.html']")
+        self.browser.see("q1, preset leaderboard")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
