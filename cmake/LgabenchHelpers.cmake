@@ -26,6 +26,7 @@ function(lgabench_environment name)
   foreach(program lgabench lgabench-worker lgabench_pages)
     add_dependencies(${program} lgabench_${name})
   endforeach()
+  set_property(GLOBAL APPEND PROPERTY lgabench_environments lgabench_${name})  # whatever reads scenarios needs them all
 endfunction()
 
 # What plugins include: it is installed, and has pages (docs/Doxyfile.in). Of learning/ what docs/add-a-method.md and
@@ -75,7 +76,14 @@ function(lgabench_link_data)
     endforeach()
     install(FILES ${files} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${kind})
   endforeach()
-  foreach(pair mobile:envs/mobile/tables answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
+  # An environment's own data, as share/lgabench/ID.
+  set(tables)
+  file(GLOB directories CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/envs ${PROJECT_SOURCE_DIR}/envs/*/tables)
+  foreach(directory ${directories})
+    cmake_path(GET directory PARENT_PATH name)
+    list(APPEND tables ${name}:envs/${directory})
+  endforeach()
+  foreach(pair ${tables} answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
@@ -86,6 +94,11 @@ function(lgabench_link_data)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/${name} SYMBOLIC)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${source}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${name})
   endforeach()
+  # Pages and examples, so that an installation needs no sources.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+          PATTERN __pycache__ EXCLUDE)
+  install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
+          ${PROJECT_SOURCE_DIR}/CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
   # What a packed leaderboard has beside its entries.
   file(MAKE_DIRECTORY ${share}/archive)
   foreach(source LICENSE CITATION.cff framework/lgabench/leaderboard/archive/README.md)

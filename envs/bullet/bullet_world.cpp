@@ -53,7 +53,7 @@ btVector3 at_most(double limit, const btVector3& v) {
 
 void BulletWorld::load(const std::vector<BodyModel>& models, int bodies) {
   if (most_bodies_ > 0) throw EngineError("Bullet: load() is called once");
-  // Of the process, unfortunately. By default 2 s, most of an episode, and .02 m, which keeps neighbours awake.
+  // The whole process has these. By default 2 s, most of an episode, and .02 m, which keeps neighbours awake.
   gDeactivationTime = asleep_after_s;
   gContactBreakingThreshold = contact_m;
   for (const BodyModel& model : models) models_.push_back(make_bullet_model(model));

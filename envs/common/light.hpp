@@ -35,7 +35,7 @@ struct Look {
   bool operator==(const Look& other) const { return brightness == other.brightness && plane == other.plane; }
 };
 
-/// Of a triangle with that normal, where the light comes from there; both in the body's frame.
+/// Light on a triangle with that normal, where it comes from there; both in the body's frame.
 inline Look look_of(Vec3 normal, Vec3 towards_light) {
   const double cosine = dot(normal, towards_light);
   const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;

@@ -34,7 +34,7 @@ class Clock {
   int left_;
 };
 
-/// Of the gripper, or of another tool.
+/// Where the gripper, or another tool, is.
 struct Stance {
   Vec3 position_m;
   double yaw_rad = 0;

@@ -13,7 +13,7 @@ namespace lgabench::common {
 struct Area {
   int first_row, last_row, first_column, last_column;
 };
-/// Of a picture of that size, what lies between two corners in pixels: (row, column), whole numbers at pixels' centres.
+/// What of a picture lies between two corners in pixels: (row, column), whole numbers at pixels' centres.
 inline Area area_of(PictureSize picture, Vec2 low, Vec2 high) {
   const auto up = [](double x, int n) { return static_cast<int>(std::ceil(std::clamp(x, 0.0, n + 0.0))); };
   const auto down = [](double x, int n) { return static_cast<int>(std::floor(std::clamp(x, -1.0, n - 1.0))); };

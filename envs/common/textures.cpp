@@ -36,7 +36,7 @@ bool take_prefix(std::string& text, const std::string& word) {
   return true;
 }
 
-// Likewise from the back.
+// Takes the word from the back.
 bool take_suffix(std::string& text, const std::string& word) {
   const std::string end = " " + word;
   if (text.size() <= end.size() || text.compare(text.size() - end.size(), end.size(), end) != 0) return false;

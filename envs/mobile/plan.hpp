@@ -17,7 +17,7 @@ struct Plan {
   operator Action() const { return {u, v, waypoint_m.x, waypoint_m.y, cosine, sine, drop_m.x, drop_m.y}; }
 };
 
-/// Of Plan as numbers. Places in the world are within 3 m of where the robot starts.
+/// Plan as numbers. Places in the world are within 3 m of where the robot starts.
 inline const ActionSpace& plans() {
   static const ActionSpace space{{{"grasp.u", "", 0, 1},
                                   {"grasp.v", "", 0, 1},

@@ -55,7 +55,7 @@ struct Renderer::Impl {
   std::vector<Kind> room;
   std::vector<std::uint8_t> room_rgb, room_shaded;
   std::vector<double> room_nearness;
-  // Of the picture in work: one over the depth of the nearest, and its look; ids of objects.
+  // The picture in work: one over the depth of the nearest, and its look; ids of objects.
   std::vector<double> nearness;
   std::vector<Look> looks;
   std::vector<std::uint8_t> ids, shadow;  // shadow: all 0 between uses

@@ -44,7 +44,7 @@ class Renderer {
   /// Ids alone, of the same bytes. @throws InputError likewise.
   std::vector<std::uint8_t> ids(const std::vector<VisibleObject>& objects);
 
-  /// Of the last picture.
+  /// What a pixel of the last picture shows.
   Surface surface(int row, int column) const;
 
  private:

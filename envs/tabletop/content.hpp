@@ -27,7 +27,7 @@ struct Content : SceneContent {
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 };
 
-/// Of scenes that lgabench read for this environment: an arm's, or those to train on.
+/// What scenes hold that lgabench read for this environment: an arm's, or those to train on.
 const Content& content_of(const SceneContent& scenes);
 const Content& content_of(const Scenario& scenario, const std::string& arm);
 

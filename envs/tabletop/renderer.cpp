@@ -65,7 +65,7 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
 
 struct Renderer::Impl {
   Solids solids;
-  // Of the picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
+  // The picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
   std::vector<double> heights_m;
   std::vector<Look> looks;
   std::vector<std::uint8_t> shadow;  // pixels to which an object keeps the light from the table; all 0 between pictures

@@ -31,7 +31,7 @@ struct TwoPoses {
   }
 };
 
-/// Of TwoPoses as numbers: pose0.x to pose1.qw.
+/// TwoPoses as numbers: pose0.x to pose1.qw.
 inline const ActionSpace& two_poses() {
   static const ActionSpace space = [] {
     ActionSpace s;

@@ -32,7 +32,7 @@ class Lga:
         steps = [(step, demonstration.instruction) for demonstration in demonstrations for step in demonstration.steps]
         masks = numpy.stack([small_mask(step.observation, instruction) for step, instruction in steps])
         labels = numpy.stack([step.label for step, _ in steps])
-        network = make_network()
+        network = make_network(labels.shape[1])
         train(network, torch.from_numpy(masks), torch.from_numpy(labels).float(), services)
         return Policy(network, masks)
 
@@ -47,10 +47,10 @@ def small_mask(observation, instruction):
     return mask[None].astype(numpy.float32)
 
 
-def make_network():
-    """Three convolutions with ReLU, and a linear layer to the 12 numbers of an action; PyTorch's first weights."""
+def make_network(numbers):
+    """Three convolutions with ReLU, and a linear layer to the numbers of an action; PyTorch's first weights."""
     return nn.Sequential(nn.Conv2d(1, 32, 8, stride=4), nn.ReLU(), nn.Conv2d(32, 64, 4, stride=2), nn.ReLU(),
-                         nn.Conv2d(64, 32, 3), nn.ReLU(), nn.Flatten(), nn.Linear(160, 12))
+                         nn.Conv2d(64, 32, 3), nn.ReLU(), nn.Flatten(), nn.Linear(160, numbers))
 
 
 def train(network, masks, labels, services):

@@ -16,6 +16,8 @@ FULL = os.environ.get("LGABENCH_FULL") == "1"
 COMPILERS = ["g++"] + (["clang++"] if FULL and shutil.which("clang++") else [])
 # An empty file system over the sources, for one command; it needs a user namespace or root.
 HIDE = ["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", 'mount -t tmpfs none "$0" && exec "$@"', SOURCE]
+SMALL_MOBILE = ["run", "mobile", "--scenarios", "bring_fruit", "--engines", "kinematic", "--demos", "1", "--seeds", "0",
+                "--episodes", "3", "--no-reference"]
 SMALL = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference"]
 
 
@@ -62,11 +64,14 @@ class Consumer(unittest.TestCase):
         return {finding["check"]: finding["state"] for finding in report["findings"]}
 
     def runs(self, method, directory, *options, **environment):
-        self.lgabench(*SMALL, "--methods", method, "--plugin-path", directory, "--out", self.dir / f"run-{method}",
-                      *options, **environment)
-        rows = json.loads((self.dir / f"run-{method}" / "summary.json").read_text())["rows"]
-        self.assertEqual([(row["method"].split("+")[0], row["episodes"], row["n_error"]) for row in rows if row["scenario"] == "heart"],
-                         [(method, 3, 0)])
+        """In both environments."""
+        for small, scenario, arms in (SMALL, "heart", 1), (SMALL_MOBILE, "bring_fruit", 5):
+            out = self.dir / f"run-{method}"
+            self.lgabench(*small, "--methods", method, "--plugin-path", directory, "--out", out, *options, **environment)
+            rows = json.loads((out / "summary.json").read_text())["rows"]
+            shutil.rmtree(out)
+            self.assertEqual([(row["method"].split("+")[0], row["episodes"], row["n_error"], row["failures"].get("method_error", 0))
+                              for row in rows if row["scenario"] == scenario], [(method, 3, 0, 0)] * arms)
 
 
 class Package(Consumer):
@@ -78,6 +83,11 @@ class Package(Consumer):
             text = (self.prefix / "share" / file).read_text().replace("\\-", "-")
             for word in "check-plugin", "--demos":
                 self.assertIn(word, text, file)
+
+    def test_holds_the_pages_and_the_examples(self):
+        pages = self.prefix / "share/doc/lgabench"
+        for file in "README.md", "docs/tutorial.md", "docs/pictures/scene.png", "examples/select_only/select_only.cpp":
+            self.assertTrue((pages / file).is_file(), file)
 
     def test_works_where_it_was_moved_to(self):
         self.assertIn("mujoco", self.lgabench("list").stdout)
@@ -153,7 +163,6 @@ class Examples(Consumer):
                     self.call("cmake", "--build", build)
                     self.assert_no_path_of_the_sources(build)
                     getattr(self, name)(build)
-                    shutil.rmtree(self.dir / f"run-{name}")
 
     def select_only(self, build):
         self.assertEqual(self.check(build / "select_only.so", "--set", "epochs=5")["sweep"], "note")

@@ -310,7 +310,7 @@ class Plugins(Case):
             with self.subTest(how):
                 shutil.rmtree(self.dir / "out", ignore_errors=True)
                 done = self.unconfined(how, expect=3 if failed else 0)
-                self.assertIn(f"{2 - failed} cells computed, 0 were there, {failed} failed", done.stderr)
+                self.assertIn(f"{2 - failed} cells computed, 0 reused, {failed} failed", done.stderr)
                 self.assertIn("fixture_constant", done.stdout)
                 self.assertEqual([*self.failed()], ["fixture_faulty"] * failed)
                 self.assertTrue(all(p.is_file() and not p.is_symlink() for p in (self.dir / "out").glob("cells/*/*")))
@@ -319,7 +319,7 @@ class Plugins(Case):
         done = self.unconfined("cells_gone", "--seeds", "0:3")
         gone = done.stderr.count("was kept and is gone")
         self.assertGreater(gone, 0, done.stderr)
-        self.assertIn(f"{6 - gone} cells computed, 0 were there, {gone} failed", done.stderr)
+        self.assertIn(f"{6 - gone} cells computed, 0 reused, {gone} failed", done.stderr)
         self.assertNotIn("are not run here", done.stderr)
 
     def test_its_process_does_not_reach_the_run(self):

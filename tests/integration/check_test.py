@@ -73,6 +73,19 @@ class CheckPlugin(Case):
         detail = self.check(FIXTURES / "refused/duplicate.so")["id"]["detail"]
         self.assertEqual(detail, f"fixture_constant is also the id of {FIXTURES}/good/fixture_constant.so")
 
+    def test_in_the_environment_that_is_named(self):
+        constant = FIXTURES / "good/fixture_constant.so"
+        for words, environment, unseen in ((), "tabletop", True), (("--environment", "mobile"), "mobile", False):
+            report = json.loads(self.call("check-plugin", constant, "--json", *words).stdout)
+            found = {finding["check"]: finding["detail"] for finding in report["findings"]}
+            self.assertEqual((found["environment"], "unseen commands" in found), (environment, unseen))
+        self.assertIn("8 numbers each", found["actions"])
+        engine = BUILD / "lib/lgabench/plugins/kinematic.so"
+        report = json.loads(self.call("check-plugin", engine, "--json", "--environment", "mobile").stdout)
+        oracles = {finding["check"] for finding in report["findings"] if finding["check"].startswith("oracle")}
+        self.assertEqual(oracles, {"oracle, bring", "oracle, throw_away"})
+        self.assertIn("no environment", self.call("check-plugin", engine, "--environment", "moon", expect=2).stderr)
+
     def test_shipped_plugins_are_good(self):
         for name, setting in {"mujoco": (), "lga": ("epochs=5",), "gcbc_dart": ("epochs=2",)}.items():
             with self.subTest(name):

@@ -84,7 +84,7 @@ class Mistakes(Case):
             (["info", "lag"], r'"lag" \(did you mean "lga"\?\); .*--plugin-path'),
             (["demos", "hart", "--out", "x"], r'no scenario "hart" \(did you mean "heart"\?\)'),
             (["report", "x", "--format", "yaml"], r'--format: no format "yaml", expected one of: text, md, latex, json, csv'),
-            (["select", "Bring me the unicorn."], r"expected some for .*; --answers openai asks a model"),
+            (["select", "Bring me the unicorn."], r"expected some for .*; a model is asked with --answers openai \(docs/language-models.md\)$"),
             (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
         ]:
             with self.subTest(words):
@@ -151,7 +151,7 @@ class Resuming(Case):
         (run,) = (self.dir / "runs").iterdir()
         said = self.call(*RUN, "--resume").stderr
         self.assertIn(f"going on in runs/{run.name}\n", said)
-        self.assertIn("0 cells computed, 4 were there", said)
+        self.assertIn("0 cells computed, 4 reused", said)
 
         # As another build leaves it: the same settings, another hash.
         other = run.rename(run.with_name(run.name[:-8] + "0" * 8))
@@ -221,7 +221,7 @@ class CacheCommand(Case):
         self.assertEqual(done.stderr, "3 other files in it: left alone\n")
         self.assertEqual(sorted(p.name for p in cache.iterdir()), ["0" * 32 + ".hdf5", "notes.tmp", "thesis.hdf5"])
         self.assertIn("no action \"claer\" (did you mean \"clear\"?)", self.call("cache", "claer", expect=2).stderr)
-        self.assertIn("4 were there", self.call(*RUN, "--out", "out").stderr)
+        self.assertIn("4 reused", self.call(*RUN, "--out", "out").stderr)
 
     def test_a_file_says_which_programs_made_it(self):
         """Another build of any of them makes its own."""

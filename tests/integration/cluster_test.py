@@ -43,7 +43,7 @@ class Elements(Case):
         self.assertIn("not begun: 2\nto finish: --array=2\n", status)
         self.assertEqual(self.play(2).returncode, 0)
         done = self.play(1)  # again: harmless
-        self.assertIn("0 cells computed, 7 were there, 0 failed", done.stderr)
+        self.assertIn("0 cells computed, 7 reused, 0 failed", done.stderr)
         self.assertRegex(self.call("status", "out").stdout, r" 1/3 +7 +7 +0 +0 +0 ")
         merged = subprocess.run(["bash", self.dir / "out/merge.sbatch"], capture_output=True, text=True, cwd="/",
                                 env=self.environment, timeout=300)

@@ -18,7 +18,8 @@ SOURCE = pathlib.Path(__file__).parents[2]
 PAGES = sorted([SOURCE / "README.md", *(SOURCE / "docs").glob("*.md")])
 # A reader's own things -> what stands for them here.
 OWN = {"my_method": "fixture_constant", "my_engine": "kinematic", "runs/NAME": "run", "runs/BEFORE": "run",
-       "runs/AFTER": "run", "RUN": "run", "runs/q1": "run", "runs/*": "run"}
+       "runs/AFTER": "run", "RUN": "run", "runs/q1": "run", "runs/*": "run", "ID": "mobile", "SCENARIO": "bring_fruit",
+       "SUITE": "mobile"}
 WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("own_network", "my_stack", "my_statistic")
 LONGEST = 300 if os.environ.get("LGABENCH_FULL") else 10  # seconds, as --dry-run expects them

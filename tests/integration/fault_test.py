@@ -140,7 +140,7 @@ class FaultyPlugins(Faults):
                                cwd=self.dir)
         self.assertEqual(again.returncode, 3, again.stderr)
         failed = sum(1 for expected in self.FAULTS.values() if expected)
-        self.assertIn(f"0 cells computed, {1 + len(methods) - failed} were there, {failed} failed", again.stderr)
+        self.assertIn(f"0 cells computed, {1 + len(methods) - failed} reused, {failed} failed", again.stderr)
 
 
 class Killed(Faults):
@@ -300,7 +300,7 @@ class FullDisk(Faults):
                     said = self.call(*NO_TRAINING, "--cache", "disk/cache", "--out", "disk/out").stderr
                     self.assertEqual({**self.finished("disk/out"), **before}, self.finished("disk/out"))
                     if before:
-                        self.assertIn("0 cells computed, 1 were there", said)
+                        self.assertIn("0 cells computed, 1 reused", said)
                     self.assert_as_undisturbed("disk/out")
 
 
@@ -321,7 +321,7 @@ class TornFiles(Faults):
                     file.unlink() if torn is None else file.write_bytes(torn)
                     said = self.call(*NO_TRAINING, "--out", "out").stderr
                     self.assertRegex(said, rf"{file.name}.*; computed again")
-                    self.assertIn("1 cells computed, 0 were there", said)
+                    self.assertIn("1 cells computed, 0 reused", said)
                     self.assert_as_undisturbed()
 
     def test_a_status_that_says_less(self):

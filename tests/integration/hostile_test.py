@@ -62,7 +62,7 @@ class Hostile(Harm):
         self.assert_matches_schemas("out")
         failed = sum(1 for reason in KINDS.values() if reason) * len(self.writers)
         self.assertEqual(re.search(r"\d+ cells computed, .*", done.stderr)[0],
-                         f"{1 + len(rows) - failed} cells computed, 0 were there, {failed} failed")
+                         f"{1 + len(rows) - failed} cells computed, 0 reused, {failed} failed")
         self.assertEqual(self.bytes_of(self.dir / "cache"), cache)
         after = self.bytes_of(self.dir / "out/cells" / honest["fixture_constant"])
         for name in ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl"):

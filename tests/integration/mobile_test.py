@@ -27,12 +27,37 @@ class Mobile(Case):
         self.assertIn("moved", (self.dir / "run/report.html").read_text())
         self.call("verify", "run", "--sample", "2")
 
+    def test_every_shipped_plugin_plays_here_as_on_the_tabletop(self):
+        listed = json.loads(self.call("list", "--json").stdout)
+        methods, engines = ([plugin["id"] for plugin in listed[kind]] for kind in ("methods", "engines"))
+        self.assertGreater(len(methods), 7)
+        for suite, scenario in ("mobile", "bring_fruit"), ("q1", "heart"):
+            tiny = ("run", suite, "--scenarios", scenario, "--demos", "1", "--seeds", "0", "--episodes", "1",
+                    "--set", "*.epochs=1", "--no-reference")
+            self.call(*tiny, "--methods", ",".join(methods), "--engines", "kinematic", "--out", suite)
+            self.call(*tiny, "--methods", "lga", "--engines", ",".join(engines), "--out", f"{suite}-engines")
+            for run, count in (suite, len(methods)), (f"{suite}-engines", len(engines)):
+                self.assert_matches_schemas(run)
+                played = [[json.loads(line)["failure"] for line in file.read_text().splitlines()]
+                          for file in (self.dir / run / "cells").glob("*/episodes.jsonl")]
+                self.assertEqual(len(played), count)
+                self.assertNotIn("method_error", sum(played, []))
+
     def test_every_arm_can_be_drawn(self):
         for scenario in "bring_fruit", "throw_away_drink":
             for arm in "train", "same_place", "moved", "crowd", "perceived", "perceived_hard":
                 split = "train" if arm == "train" else "test"
                 self.call("render", scenario, "--arm", arm, "--split", split, "--out", f"{arm}.png")
                 self.assertTrue((self.dir / f"{arm}.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_environments_are_listed_and_a_name_of_two_things_shows_both(self):
+        self.assertIn("\nenvironments\n  mobile    tasks: bring, throw_away\n  tabletop  tasks: pick_and_place, ", self.call("list").stdout)
+        said = self.call("info", "mobile").stdout
+        self.assertIn("mobile, a suite in mobile\n", said)
+        self.assertIn("\nmobile, an environment\n  task        bring\n", said)
+        self.assertRegex(said, r"\n    waypoint\.cos  -1 to 1\n")
+        self.assertEqual([thing["kind"] for thing in json.loads(self.call("info", "mobile", "--json").stdout)], ["suite", "environment"])
+        self.assertEqual(json.loads(self.call("info", "tabletop", "--json").stdout)["kind"], "environment")
 
     def test_another_environments_members_are_refused_with_their_place(self):
         shipped = json.loads((BUILD / "share/lgabench/scenarios/bring_fruit.json").read_text())

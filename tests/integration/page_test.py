@@ -85,6 +85,10 @@ class PageInABrowser(BesideOneRun):
         self.assertEqual(self.script(wide), [])
         self.assertLessEqual(self.script(page), A4)
         self.assertEqual(self.script("return document.querySelectorAll('main details:not([open])').length"), 0)
+        # An interval is one line below its number, and text is as dark as on the screen.
+        numbers = "return [...document.querySelectorAll('.frame:not(.list) .rate')].map((e) => e.getBoundingClientRect().height)"
+        self.assertLess(max(self.script(numbers), default=0), 65)
+        self.assertEqual(self.script("return getComputedStyle(document.querySelector('h1')).color"), "rgb(27, 31, 36)")
 
     def test_a_table_and_a_chart_are_one_stop_each(self):
         self.open()
@@ -131,7 +135,9 @@ class PageInABrowser(BesideOneRun):
         (before, *_) = self.script("return [...document.querySelectorAll('.large figure')].map((f) => f.innerHTML)")
         for colour, what in (("#fff", "the action"), ("#5dff8f", "the oracle's"), ("#ffe100", "the target")):
             self.assertIn(f'stroke="{colour}"', before, what)
-        self.assertTrue(any(caption.startswith("after the action") for caption in self.shown(".large figcaption")))
+        captions = self.shown(".large figcaption")
+        self.assertTrue(any(caption.startswith("after the action") for caption in captions), captions)
+        self.assertIn("what the policy saw: goal mask, 36 × 72", captions)
         one = self.browser.current_url
         self.press("ArrowRight", "document.getElementById('panel')")
         self.assertNotEqual(self.browser.current_url, one)

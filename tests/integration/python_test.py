@@ -226,6 +226,16 @@ class PythonExamples(Case):
                               env=dict(os.environ, PYTHONPATH=f"{EXAMPLES}:{BUILD}/share/lgabench/python"))
         self.assertEqual((done.returncode, done.stdout), (0, "same\n"), done.stderr)
 
+    def test_each_in_the_other_environment(self):
+        for module, example in ("torch", "lga_torch.py:Lga"), ("sklearn", "forest_sklearn.py:Forest"):
+            with self.subTest(example):
+                self.need(module)
+                self.call("run", "mobile", "--scenarios", "bring_fruit", "--engines", "kinematic", "--methods",
+                          EXAMPLES / example, "--demos", "2", "--seeds", "0", "--episodes", "1", "--no-reference",
+                          "--python", PYTHON, *(("--set", "*.epochs=2") if module == "torch" else ()), "--out", module)
+                for row in json.loads((self.dir / module / "summary.json").read_text())["rows"]:
+                    self.assertNotIn("method_error", row["failures"])
+
     def test_a_forest_in_scikit_learn(self):
         self.need("sklearn")
         rows, _ = self.beside("lga", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50", "--episodes",

@@ -9,6 +9,7 @@ import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import unittest
 
@@ -127,7 +128,7 @@ class Variants(Case):
         settings = json.loads((self.dir / "out/run.json").read_text())["settings"]
         self.assertEqual([settings[row]["epochs"] for row in ("lga+epochs=5", "lga+loss=squared", "factorial")], [5, 6, 5])
         self.assertIn("beside the plugins' defaults, epochs=6, loss=squared: LGA loss=squared\n", table)
-        self.assertIn("0 cells computed, 6 were there", self.call(*arguments).stderr)
+        self.assertIn("0 cells computed, 6 reused", self.call(*arguments).stderr)
 
         # factorial with its defaults is LGA.
         results = {cell["method"]["name"]: [(self.dir / "out/cells" / key / name).read_bytes()
@@ -189,7 +190,7 @@ class Determinism(Case):
         self.assertEqual({scenario: len(kinds) for scenario, kinds in scenes.items()}, {"heart": 1, "letter": 1})
 
         # A second call computes nothing; a damaged file is computed again, and that is said.
-        self.assertIn(f"0 cells computed, {SMALL_CELLS} were there", self.call("run", *SMALL, "--out", "two").stderr)
+        self.assertIn(f"0 cells computed, {SMALL_CELLS} reused", self.call("run", *SMALL, "--out", "two").stderr)
         damaged = next((self.dir / "two/cells").glob("*/episodes.jsonl"))
         damaged.write_bytes(damaged.read_bytes()[:-10])
         said = self.call("run", *SMALL, "--out", "two").stderr
@@ -242,7 +243,7 @@ class Shards(Case):
         self.assertEqual(self.call("merge", "both", "part1", "part2", expect=3).stdout, said.stdout)  # again
         # A run like any other: it goes on, and only what failed is computed again.
         said = self.call(*self.RUN, "--out", "both", "--resume", expect=3).stderr
-        self.assertIn(f"0 cells computed, {self.CELLS - self.FAILED} were there, {self.FAILED} failed", said)
+        self.assertIn(f"0 cells computed, {self.CELLS - self.FAILED} reused, {self.FAILED} failed", said)
 
         # A part alone, a damaged cell: what is not there is not run, and that is said.
         torn = next((self.dir / "part1/cells").glob("*/episodes.jsonl"))
@@ -400,6 +401,19 @@ class Page(Case):
         for episode, (failure, scene) in ends.items():
             self.assertEqual(shown[episode] == "", failure == "missed_object", failure)
             self.assertNotEqual(shown[episode], data["pictures"][scene])
+        # What the policies saw in these: a picture once for all that saw the same.
+        expected = {"lga": (["goal mask, 36 × 72"], []), "gcbc_dart": (["picture, 36 × 72"], ["the command's words"])}
+        for cell in data["cells"]:
+            method = self.cells("out")[cell["cell"]][0]["method"]["id"]
+            for arm in cell["arms"] if method in expected else []:
+                for index in map(int, arm["ends"]):
+                    scene = data["scenes"][arm["scenes"]][index]
+                    saw = data["inputs"][scene + cell["inputs"][arm["commands"][index]]]
+                    self.assertEqual(([name for name, _ in saw["pictures"]], saw["texts"]), expected[method])
+                    width, height = struct.unpack(">II", base64.b64decode(data["seen"][saw["pictures"][0][1]])[16:24])
+                    self.assertEqual((width, height), (72, 36))
+        self.assertEqual(len(data["seen"]), len(set(data["seen"])))
+        self.assertEqual(len({name.split("/")[0] for name in data["inputs"]}), len(played))
         self.call("report", "out")
         self.assertEqual(self.data("out")[0], page)
 

@@ -232,7 +232,7 @@ class StudyRehearsal(StudyCase):
         said = self.call("study", "report", "data").stdout
         self.assertIn("rehearsal, not people", said)
         self.assertRegex(said, r"Primary: Human − LGA-HILL \+\d+\.\d s \[.*6 people")
-        for name in "report.md", "results.json", "trials.csv", "figures/seconds.svg", "figures/seconds.pdf", "tables/commands.tex":
+        for name in "report.html", "report.md", "results.json", "trials.csv", "figures/seconds.svg", "figures/seconds.pdf", "tables/commands.tex":
             self.assertTrue((self.dir / "data" / name).exists(), name)
         self.assertIn(r"simulated \<b>words\</b> \| of \*nobody\*", (self.dir / "data/report.md").read_text())
         self.assertIn("holds a study of rehearsal", self.refused_as_people())

@@ -1,21 +1,15 @@
 """`lgabench verify`: a run made again by the build that made it, and runs whose records were changed.
 
-LGABENCH_BUILD names the build tree. By hand: python3 verify_test.py
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 verify_test.py Verify
 """
 import hashlib
 import json
-import os
-import pathlib
 import re
 import shutil
-import subprocess
-import tempfile
 import unittest
 
-from case import command_line
+from case import BesideOneRun, BUILD, Case
 
-BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
-PROGRAM = BUILD / "bin" / "lgabench"
 # One cell that trains, for a second, and the three reference rows.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", "10", "--seeds", "0", "--episodes", "4",
        "--set", "lga.epochs=20"]
@@ -34,25 +28,20 @@ def rewrite(cell, name, change):
     (cell / "status.json").write_text(canonical(status))
 
 
-class Verify(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
-        cls.addClassCleanup(shutil.rmtree, cls.base, ignore_errors=True)
-        cls.environment = dict(os.environ, LGABENCH_CACHE=str(cls.base / "cache"), TMPDIR=str(cls.base))
-        subprocess.run(command_line(*RUN, "--out", cls.base / "run"), check=True, capture_output=True, env=cls.environment)
+class Verify(BesideOneRun):
+    run_of_class = RUN
 
     def setUp(self):
-        self.run_directory = pathlib.Path(tempfile.mkdtemp(dir=self.base)) / "run"
-        shutil.copytree(self.base / "run", self.run_directory)
-        self.cell = next(path.parent for path in self.run_directory.glob("cells/*/cell.json")
-                         if json.loads(path.read_text())["method"]["id"] == "lga")
+        super().setUp()
+        if self is not self.first:
+            self.copy_first("run")
+            self.run_directory = self.dir / "run"
+            self.cell = next(path.parent for path in self.run_directory.glob("cells/*/cell.json")
+                             if json.loads(path.read_text())["method"]["id"] == "lga")
 
     def verify(self, *arguments, expect):
-        done = subprocess.run([PROGRAM, "verify", self.run_directory, *arguments], capture_output=True, text=True,
-                              env=self.environment, timeout=300)
-        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
-        self.assertEqual(list(self.base.glob("lgabench-verify-*")), [], "scratch was left behind")
+        done = self.call("verify", "run", *arguments, expect=expect)
+        self.assertEqual(list(self.dir.glob("lgabench-verify-*")), [], "scratch was left behind")
         return done
 
     def line_of_the_cell(self, output):
@@ -148,6 +137,7 @@ class Verify(unittest.TestCase):
         self.assertRegex(done.stderr.splitlines()[0],
                          rf"^edited: .*{self.cell.name}/episodes.jsonl does not have the bytes that were written")
         self.assertIn("3 of 3 finished cells", done.stdout)
+        self.assertEqual(done.stdout.splitlines()[-1], "1 cells were edited: not verified")
 
     def test_a_cell_under_another_name_is_edited(self):
         self.change("cell.json", 0, training_seed=1)
@@ -160,19 +150,12 @@ class Verify(unittest.TestCase):
         self.assertIn("not the directory of a run (no run.json)", self.verify(expect=2).stderr)
 
 
-class Compare(unittest.TestCase):
+class Compare(Case):
     """Exit statuses of compare and report --claims."""
 
     def setUp(self):
-        self.base = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
-        self.addCleanup(shutil.rmtree, self.base, ignore_errors=True)
+        super().setUp()
         self.run_small("a")
-
-    def call(self, *arguments, expect=0):
-        done = subprocess.run(command_line(*arguments), capture_output=True, text=True, cwd=self.base, timeout=300,
-                              env=dict(os.environ, LGABENCH_CACHE=str(self.base / "cache")))
-        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
-        return done
 
     def run_small(self, out, episodes="8"):
         self.call("run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
@@ -180,7 +163,7 @@ class Compare(unittest.TestCase):
 
     def make(self, run, method, success):
         """Lets every episode of a method end so, under the name of the method as shipped."""
-        for path in (self.base / run).glob("cells/*/cell.json"):
+        for path in (self.dir / run).glob("cells/*/cell.json"):
             if json.loads(path.read_text())["method"]["id"] == method:
                 rewrite(path.parent, "episodes.jsonl", lambda episode: {
                     **episode, "success": success, "failure": "none" if success else "missed_object"})
@@ -189,7 +172,7 @@ class Compare(unittest.TestCase):
     def test_compare(self):
         self.assertEqual(self.call("compare", "a", "a").stdout.count("same actions"), 5)
         self.assertFalse(json.loads(self.call("compare", "a", "a", "--json").stdout)["regressed"])
-        shutil.copytree(self.base / "a", self.base / "worse")
+        shutil.copytree(self.dir / "a", self.dir / "worse")
         self.make("a", "oracle", True)
         self.make("worse", "oracle", False)
         self.assertRegex(self.call("compare", "a", "worse", expect=1).stdout, r"oracle .* -1.00 \[.* worse\n")
@@ -200,16 +183,16 @@ class Compare(unittest.TestCase):
         self.assertIn("did you mean \"lga\"", self.call("compare", "a", "--rows", "lg,gcbc_dart", expect=2).stderr)
 
     def test_a_page_over_several_runs(self):
-        shutil.copytree(self.base / "a", self.base / "b")
-        (self.base / "notes.txt").write_text("no run")
+        shutil.copytree(self.dir / "a", self.dir / "b")
+        (self.dir / "notes.txt").write_text("no run")
         said = self.call("report", "a", "b", "notes.txt")
         self.assertIn("LGA", said.stdout)
-        page = (self.base / "index.html").read_text()
+        page = (self.dir / "index.html").read_text()
         self.assertIn('href="a/report.html"', page)
         self.assertIn('href="b/report.html"', page)
         self.assertNotIn("notes.txt", page)
         self.call("report", "a", "b", "--index", "all.html")
-        self.assertEqual((self.base / "all.html").read_text(), page)
+        self.assertEqual((self.dir / "all.html").read_text(), page)
         self.call("report", "a", "b", "--claims", expect=2)
 
     def test_compare_refuses_other_episodes(self):

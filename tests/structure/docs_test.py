@@ -4,6 +4,7 @@ and Doxygen has nothing to complain of.
 Usage: docs_test.py SOURCE_DIR DOXYFILE
 """
 import functools
+import json
 import pathlib
 import re
 import shutil
@@ -51,6 +52,17 @@ class Pages(unittest.TestCase):
             self.assertLessEqual(len((example / f"{name}.cpp").read_text().splitlines()), lines)
         masked = SOURCE / "examples/masked_rgb/masked_rgb.cpp"
         self.assertLessEqual(len(masked.read_text().splitlines()), 40)
+
+    def test_shown_code_is_that_of_the_task(self):
+        page, tabletop = (SOURCE / "docs/add-a-task.md").read_text(), SOURCE / "envs/tabletop"
+        scenario = json.loads((tabletop / "scenarios/stack_small_block_on_hexagon.json").read_text())
+        code = " ".join((tabletop / "tasks/stack.cpp").read_text().split())
+        shown = [block for block in re.findall(r"(?:^ {4}.*\n|^\n(?= {4}))+", page, re.M) if "const override" in block or "task_stack" in block]
+        self.assertEqual(len(shown), 4)
+        for block in shown:
+            self.assertIn(" ".join(block.split()), code)
+        example = json.loads(re.search(r"^    \{\n     \"id\": \"stack_.*?^    \}\n", page, re.S | re.M)[0])
+        self.assertEqual(example, {member: value for member, value in scenario.items() if member != "note"})
 
     @unittest.skipUnless(shutil.which("git"), "needs git")
     def test_the_patch_of_a_statistic_applies(self):
@@ -115,6 +127,15 @@ class Documents(unittest.TestCase):
                 names += [name for name in re.findall(r"\bdocs/[\w/-]+\.md", text) if not (SOURCE / name).exists()]
                 names += [n for n in re.findall(r"docs/protocol\.md, sections? (\d)", text) if n not in sections]
                 wrong += [f"{file.relative_to(SOURCE)}: {name}" for name in names]
+        self.assertEqual(wrong, [])
+
+    def test_files_that_documents_name_are_there(self):
+        wrong = []
+        for page in PAGES:
+            for name in re.findall(r"`((?:framework|envs|plugins|baselines|examples|tests|cmake|results|python)/[^`\s]*)`", page.read_text()):
+                general = re.sub(r"\b[A-Z]+\b", "*", re.sub(r"#.*", "", name))  # envs/ID/suites: any of them
+                if page.name not in ("CHANGELOG.md", "decisions.md") and not any(SOURCE.glob(general)):
+                    wrong.append(f"{page.relative_to(SOURCE)}: {name}")
         self.assertEqual(wrong, [])
 
     def test_cited_as_it_is(self):

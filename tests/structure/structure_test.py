@@ -10,6 +10,8 @@ import unittest
 
 SOURCE, BUILD = (pathlib.Path(p) for p in sys.argv[1:3])
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.M)
+ENVIRONMENTS = sorted(file.parent.name for file in (SOURCE / "envs").glob("*/CMakeLists.txt")
+                      if "lgabench_environment(" in file.read_text())
 
 
 def includes(folder):
@@ -35,16 +37,16 @@ class IncludeGraph(unittest.TestCase):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
     def test_core_knows_nothing_above_it(self):
-        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|(tabletop|mobile|common)/|torch|ATen|opencv|boost|mujoco")
+        self.forbid("framework/lgabench/core", r"lgabench/(?!core/)|torch|ATen|opencv|boost|mujoco")
 
     def test_abstraction_knows_only_core(self):
-        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|(tabletop|mobile|common)/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/abstraction", r"lgabench/(?!core/|abstraction/)|torch|ATen|opencv|mujoco")
 
     def test_learning_knows_core_and_abstraction(self):
-        self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|(tabletop|mobile|common)/|mujoco")
+        self.forbid("framework/lgabench/learning", r"lgabench/(?!core/|abstraction/|learning/|plugin/)|mujoco")
 
     def test_host_knows_core_and_plugin(self):
-        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|(tabletop|mobile|common)/|torch|ATen|opencv|mujoco")
+        self.forbid("framework/lgabench/host", r"lgabench/(?!core/|plugin/|host/)|torch|ATen|opencv|mujoco")
 
     def test_torch_only_in_learning_sources(self):
         for folder in ("framework/lgabench/core", "framework/lgabench/plugin", "framework/lgabench/abstraction",
@@ -55,14 +57,14 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(headers, [], "torch.h takes 13 s a file: sources only")
 
     def test_engines_stay_in_their_plugins(self):
-        for folder in ("framework", "envs/common", "envs/tabletop", "envs/mobile", "plugins", "baselines"):
+        for folder in ("framework", "envs/common", *(f"envs/{id}" for id in ENVIRONMENTS), "plugins", "baselines"):
             self.forbid(folder, r"mujoco/|bullet/|btBullet")
         self.forbid("envs/bullet", r"mujoco/")
         self.forbid("envs/mujoco", r"bullet/|btBullet")
-        self.forbid("examples", r"mujoco/|bullet/|btBullet|(tabletop|mobile|common)/")
+        self.forbid("examples", rf"mujoco/|bullet/|btBullet|({'|'.join(ENVIRONMENTS)}|common)/")
 
     def test_the_framework_names_no_environment(self):
-        self.forbid("framework", r"(tabletop|mobile|common)/")
+        self.forbid("framework", rf"({'|'.join(ENVIRONMENTS)}|common)/")
 
     def test_the_framework_knows_no_word_of_the_tabletops(self):
         words = re.compile(r"^[^/\n]*\b(Workspace|TwoPoses|angle_rad|pose[01])\b", re.M)
@@ -71,9 +73,11 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual([(file, all_of_it) for file, all_of_it in found if all_of_it], [])
 
     def test_environments_share_the_common_parts_alone(self):
-        self.forbid("envs/common", r"(tabletop|mobile)/")
-        self.forbid("envs/tabletop", r"mobile/")
-        self.forbid("envs/mobile", r"tabletop/")
+        self.assertIn("mobile", ENVIRONMENTS)
+        self.forbid("envs/common", rf"({'|'.join(ENVIRONMENTS)})/")
+        for environment in ENVIRONMENTS:
+            others = [other for other in ENVIRONMENTS if other != environment]
+            self.forbid(f"envs/{environment}", rf"({'|'.join(others)})/")
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
         self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
@@ -81,9 +85,8 @@ class IncludeGraph(unittest.TestCase):
         self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|cli)/")
         self.forbid("framework/lgabench/cell", r"lgabench/(harness|report|cli)/")
 
-
     def test_the_study_knows_core_abstraction_and_report(self):
-        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|report/|study/)|tabletop/|torch|opencv")
+        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|report/|study/)|torch|opencv")
 
 
 class Needed(unittest.TestCase):
@@ -95,7 +98,7 @@ class Needed(unittest.TestCase):
             self.forbid(program, r"torch|c10|opencv_videoio|mujoco|Bullet|liblgabench_learning|liblgabench_env")
 
     def test_command_line_loads_no_engine_and_no_pictures(self):
-        self.forbid("bin/lgabench", r"tabletop|mobile|embree|opencv|hdf5")
+        self.forbid("bin/lgabench", rf"{'|'.join(ENVIRONMENTS)}|embree|opencv|hdf5")
 
     def test_core_is_light(self):
         self.forbid("lib/liblgabench_core.so", r"torch|c10|opencv|embree|hdf5")

@@ -254,6 +254,28 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
   EXPECT_EQ(read_file(tape()), "") << "what cannot be read is not kept";
 }
 
+TEST_F(Chat, AReplyWithoutAnAnswerIsAskedForAgain) {
+  std::atomic<int> about_star{0};
+  const auto evasive_until = [&about_star](int tries) {
+    return [&about_star, tries](int, const httplib::Request& request, httplib::Response& response) {
+      if (request.body.find("\\\"star\\\"?") == std::string::npos || ++about_star > tries) return false;
+      response.set_content(completion("I would not say so."), "application/json");
+      return true;
+    };
+  };
+  {
+    Server never(evasive_until(1000));
+    EXPECT_SAYS(failure(never),
+                "1 of 5 questions have no answer, asked 3 times each; the first: m, asked about \"star\"");
+    EXPECT_EQ(never.requests, 4 + 3) << "the others are asked and kept";
+  }
+  about_star = 0;
+  Server late(evasive_until(2));
+  const OpenAiOptions options = late.options();
+  EXPECT_EQ(ask(&options).target.object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(late.requests, 3) << "about the star alone";
+}
+
 TEST_F(Chat, AReplyWithoutEndOrBottomIsRefused) {
   Server endless([](int, const auto&, httplib::Response& response) {
     response.set_chunked_content_provider("application/json", [](std::size_t, httplib::DataSink& sink) {

@@ -52,7 +52,9 @@ TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
   request.ends = {{"mujoco", {.1, .2}}, {"bullet", {.3}}};
+  request.inputs = {{{"pictures", {"mask"}}, {"selection", nullptr}}};
   const Json json = to_json(request);
+  EXPECT_EQ(json.at("inputs").size(), 1u);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }
 

@@ -7,6 +7,7 @@
 
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/report/summary.hpp>
 
 #include "report_run.hpp"
 
@@ -141,6 +142,7 @@ TEST(Arms, ThatOneScenarioHasAloneHaveTheirMeanOverIt) {
 }
 
 TEST(Arms, SayHowManyDemonstrationsSeveralCommandsHad) {
+  EXPECT_EQ(report::Table().demonstrations_text(1), "1 demonstration");
   FabricatedRun run;
   run.run["suite"] = "q3";
   run.run["version"] = "0.2.0";

@@ -259,7 +259,7 @@ TEST(Claims, C5NeedsPeopleInBothRows) {
   EXPECT_EQ(claim_of(run, "C5").reason, "no human data");
   add_person(run, "lga_hill", "p01", 18, 50);
   EXPECT_EQ(claim_of(run, "C5").verdict, Verdict::not_tested);
-  EXPECT_EQ(claim_of(run, "C5").reason, "1 participants answered in both ways, expected 2 or more");
+  EXPECT_EQ(claim_of(run, "C5").reason, "expected 2 or more participants who answered in both ways, got 1");
 }
 
 TEST(Claims, C5OfACrossoverComparesPeoplesMeans) {

@@ -128,6 +128,14 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   EXPECT_SAYS(text, "p03: a \\| b \\<b>c\\</b> # d");
   EXPECT_SILENT(text, "\n# d");
   EXPECT_SAYS(text, "figures/seconds.svg");
+  const std::string page = read_file(data / "report.html");
+  EXPECT_SAYS(page,
+              "<p class=headline>3 people took 160.0 s a command from empty lists (Human), 60.0 s with a model's");
+  EXPECT_SAYS(page, "a | b &lt;b&gt;c&lt;/b&gt; # d");
+  EXPECT_SAYS(page, "<caption><span>Seconds a command: over people");
+  EXPECT_SAYS(page, "<svg");
+  EXPECT_SILENT(page, ">0.000<");
+  EXPECT_SILENT(page, "src=\"http");
   EXPECT_EQ(read_json(data / "results.json").at("used"), 3);
   EXPECT_EQ(complaints("study_results", read_json(data / "results.json")), std::vector<std::string>());
   EXPECT_SAYS(read_file(data / "trials.csv"), "\np01,,");
@@ -146,6 +154,8 @@ TEST_F(StudyResultsTest, ARehearsalSaysSo) {
   EXPECT_EQ(complaints("study_results", to_json(results)), std::vector<std::string>());
   const std::string text = report::terminal(document_of(results), data);
   EXPECT_SAYS(text, "rehearsal, not people");
+  write_report(data);
+  EXPECT_SAYS(read_file(data / "report.html"), "<p class=headline>Rehearsal, not people, so no result: 8 people took");
   EXPECT_SAYS(text, "condition: Human / LGA-HILL");
 }
 

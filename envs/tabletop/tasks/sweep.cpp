@@ -37,7 +37,7 @@ int under_spatula(const PhysicsWorld& world) {
   return no_body;
 }
 
-/// Of the outline, in the body's frame: the centre of mass, seen from above, of what is equally thick.
+/// Centre of mass of what is equally thick within the outline, seen from above; in the body's frame.
 Vec2 centroid(const std::vector<Polygon>& outline) {
   Vec2 moment;
   double total = 0;

@@ -52,7 +52,7 @@ class Cassette {
 
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
-  /// Of all replies, sorted.
+  /// Names of the models that replied, sorted.
   std::set<std::string> models() const;
   /// @throws InputError where they are not of exactly one.
   std::string only_model() const;

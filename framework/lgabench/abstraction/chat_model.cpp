@@ -12,34 +12,66 @@
 #include <thread>
 
 namespace lgabench {
+namespace {
+
+constexpr int most_tries = 3;  // of a question whose reply has no final answer
+
+struct NoFinalAnswer : MethodError {
+  using MethodError::MethodError;
+};
+
+// What can be read. @throws NoFinalAnswer where the last of the tries cannot be; tokens and seconds are those of all
+// tries.
+ChatReply complete(ChatClient& client, const Json& request) {
+  ChatReply all;
+  for (int attempt = 1;; ++attempt) {
+    const ChatReply reply = client.complete(request);
+    all.text = reply.text;
+    all.tokens += reply.tokens;
+    all.seconds += reply.seconds;
+    try {
+      final_answer(reply.text);
+      return all;
+    } catch (const MethodError& e) {
+      if (attempt == most_tries) throw NoFinalAnswer(e.what());
+    }
+  }
+}
+
+}  // namespace
 
 ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options)
     : cassette_(cassette), client_(client), options_(std::move(options)) {}
 
-// Several at once; the first that fails stops the rest, which has not begun.
+// Several at once. A server that fails stops the rest, which has not begun; a question without an answer does not.
 void ChatLanguageModel::ask(const std::vector<Request>& requests) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::condition_variable changed;
-  std::size_t finished = 0, working = 0;
+  std::size_t finished = 0, working = 0, unanswered = 0;
+  std::string first_unanswered;
   std::exception_ptr failure;
   const auto work = [&] {
     for (std::size_t i; (i = next++) < requests.size();) {
       std::exception_ptr thrown;
+      std::string no_answer;
+      const auto said = [&](const std::exception& e) {
+        return fmt::format("{}, asked about \"{}\": {}", options_.model, requests[i].candidate, e.what());
+      };
       try {
-        const ChatReply reply = client_->complete(requests[i].json);
-        final_answer(reply.text);  // what cannot be read is not kept, but asked again another time
-        cassette_.add(requests[i].key, requests[i].json, reply);
+        cassette_.add(requests[i].key, requests[i].json, complete(*client_, requests[i].json));
+      } catch (const NoFinalAnswer& e) {
+        no_answer = said(e);  // and is not kept, but asked again another time
       } catch (const MethodError& e) {
-        thrown = std::make_exception_ptr(
-            MethodError(fmt::format("{}, asked about \"{}\": {}", options_.model, requests[i].candidate, e.what())));
+        thrown = std::make_exception_ptr(MethodError(said(e)));
       } catch (...) {
         thrown = std::current_exception();
       }
       if (thrown) next = requests.size();
       const std::lock_guard lock(mutex);
       if (thrown && !failure) failure = thrown;
-      if (!thrown) ++finished;
+      if (!no_answer.empty() && unanswered++ == 0) first_unanswered = no_answer;
+      if (!thrown && no_answer.empty()) ++finished;
       changed.notify_one();
     }
     const std::lock_guard lock(mutex);
@@ -62,6 +94,9 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests) {
   for (std::thread& thread : threads) thread.join();
   asked_ += static_cast<int>(finished);
   if (failure) std::rethrow_exception(failure);
+  if (unanswered > 0)
+    throw MethodError(fmt::format("{} of {} questions have no answer, asked {} times each; the first: {}", unanswered,
+                                  requests.size(), most_tries, first_unanswered));
 }
 
 std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,

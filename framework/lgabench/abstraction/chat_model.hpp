@@ -36,7 +36,8 @@ class ChatLanguageModel : public LanguageModel {
   /// Both are borrowed and must outlive the model; `client` may be nullptr: then the cassette must hold every reply.
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
-  /// @throws MethodError for the first question without an answer; the replies that came are in the cassette.
+  /// A reply without a final answer is asked for three times. @throws MethodError where the server fails, or, once all
+  /// are asked, for questions without an answer: they are never a no. The replies that came are in the cassette.
   /// InputError without a client where the cassette lacks a reply (names the command line that asks), or where
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,

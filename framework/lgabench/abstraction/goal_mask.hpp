@@ -15,7 +15,7 @@ enum class Instances {
   first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
 };
 
-/// Of the observation's size, 0 and 1, row-major: 1 on the visible pixels of every instance that `selection` keeps.
+/// Numbers 0 and 1, row-major, as many as pixels: 1 on the visible ones of every instance that `selection` keeps.
 /// All 0 where nothing in view is kept.
 /// @throws InputError if the ids are not as many as the size says, or name an instance that the table lacks.
 std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection,

@@ -10,7 +10,7 @@ namespace lgabench {
 /// key.
 class OpenAiClient : public ChatClient {
  public:
-  /// Of a reply; a longer one ends the request.
+  /// Longest reply; a longer one ends the request.
   static constexpr std::size_t most_bytes = std::size_t{1} << 22;
 
   /// Connects to nothing yet.

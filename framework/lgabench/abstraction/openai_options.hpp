@@ -5,7 +5,7 @@
 
 namespace lgabench {
 
-/// Of one server.
+/// How one server is asked.
 struct OpenAiOptions {
   std::string base_url, api_key;  // as OPENAI_BASE_URL (up to /v1) and OPENAI_API_KEY; the key may be empty
   int attempts = 6;               // of a request, the first included

@@ -36,7 +36,7 @@ Participant read_participant(const std::filesystem::path& file);
 /// One person's answers in place of the truth.
 class ParticipantAsHuman : public HumanAnswers {
  public:
-  /// Of one scenario's commands.
+  /// Answers one scenario's commands.
   ParticipantAsHuman(Participant participant, Scenario scenario);
 
   /// @throws InputError where the participant was not asked.

@@ -33,7 +33,7 @@ class RecordedLanguageModel : public LanguageModel {
   /// there is none. @throws InputError where `source` is none of recorded_sources(). Answers are looked up when they
   /// are asked for.
   RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source);
-  /// Of the scenario's commands.
+  /// Knows the scenario's commands.
   RecordedLanguageModel(const Scenario& scenario, const std::string& source)
       : RecordedLanguageModel(scenario.space, scenario.answers_of, source) {}
 

@@ -37,7 +37,7 @@ class AskedByCells : public ChatLanguageModel {
   Provenance provenance() const override { return Provenance::live; }
 };
 
-// Of a run in which nobody is asked.
+// Refuses every question: nobody is asked in this run.
 class NobodyAnswers : public LanguageModel {
  public:
   std::vector<bool> answer(const Command& command, const FeatureSpace&, const std::vector<Question>&) override {

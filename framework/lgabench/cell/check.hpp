@@ -12,14 +12,17 @@ namespace lgabench {
 /// Told before each step, so that whoever waits knows where a crash happened.
 using CheckPhase = std::function<void(const std::string& phase)>;
 
-/// Uses the method twice from loading to acting, on small but real cells (heart, q3_fruit; sweep is selected for only),
-/// with the same seed, which is not the job's. Returns all findings; one thread.
+/// Uses the method twice from loading to acting, on small but real cells of the job's environment: its first task's
+/// example, and a scenario with commands that are only tested, where it has one; examples with a second set are
+/// selected for only. "" is the first environment that has such commands. The seed is not the job's. Returns all
+/// findings; one thread.
 /// @throws PluginError if it cannot be loaded, MethodGone where its process ends; whatever else it throws is a finding.
 /// EngineError for the engine's fault.
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase);
 
-/// Lets the oracle play scenes of every task on the engine, forwards and backwards, likewise.
-CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase);
+/// Lets the oracle play scenes of every task of the environment ("": of all) on the engine, forwards and backwards,
+/// likewise.
+CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase);
 
 /// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came. Threads are
 /// given half a second to end.

@@ -95,7 +95,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
 
 }  // namespace
 
-CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase) {
+CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase) {
   CheckReport report;
   const ProcessState at_first = ProcessState::now();
   std::string all, doing = "a block alone";
@@ -103,7 +103,7 @@ CheckReport check_engine(const PluginInfo& engine, const CheckPhase& phase) {
     phase(doing);
     use_alone(engine);
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
-    for (const TaskInfo& task : installed_tasks()) {
+    for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
       phase(doing = "scenes of " + task.example);
       all += judge_task(task, engine, report);
     }

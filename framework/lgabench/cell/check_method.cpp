@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
@@ -82,8 +84,8 @@ struct Bench {
   std::unique_ptr<Environment> environment;
   std::vector<Sight> sights;
 
-  Bench(const std::string& id, const PluginInfo& engine)
-      : scenario(load_scenario(id)),
+  Bench(Scenario played, const PluginInfo& engine)
+      : scenario(std::move(played)),
         layout(find_task(find_environment(scenario.environment), scenario.task).layouts.front()) {
     environment = make_environment(scenario, load_engine(engine));
     for (const Arm& arm : scenario.tests)
@@ -138,6 +140,7 @@ class MethodCheck {
   MethodCheck(const HostJob& job, const CheckPhase& phase) : job_(job), phase_(phase), method_(job) {}
 
   CheckReport run(const std::vector<std::unique_ptr<Bench>>& benches) {
+    report_.ok("environment", job_.environment);
     try {
       const Use first = use(benches, true);
       const long long between = heap_bytes();
@@ -267,7 +270,7 @@ class MethodCheck {
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
                   "select() bears a language model that answers no to everything",
                   "return the empty Selection: the host counts such a cell as failed by the abstraction");
-    for (const TaskInfo& task : installed_tasks())
+    for (const TaskInfo& task : find_environment(job_.environment).tasks())
       if (task.second) judge_second_set(needs, task);
   }
 
@@ -350,23 +353,27 @@ class MethodCheck {
   HostedMethod method_;
 };
 
-// The first shipped scenario that tests commands which were not demonstrated.
-std::string with_unseen_commands() {
-  for (const std::string& id : scenario_ids())
-    for (const ScenarioCommand& command : load_scenario(id).commands)
-      if (!command.seen) return id;
-  throw InputError("scenarios: expected one with an unseen command");
+// The first scenario that tests commands which were not demonstrated; none where the environment ("": any) has none.
+std::optional<Scenario> with_unseen_commands(const std::string& environment) {
+  for (const std::string& id : scenario_ids()) {
+    Scenario scenario = load_scenario(id);
+    if (!environment.empty() && scenario.environment != environment) continue;
+    for (const ScenarioCommand& command : scenario.commands)
+      if (!command.seen) return scenario;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
+  std::optional<Scenario> unseen = with_unseen_commands(job.environment);
+  if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;
-  auto unseen = std::make_unique<Bench>(with_unseen_commands(), engine);
-  job.environment = unseen->scenario.environment;
-  benches.push_back(std::make_unique<Bench>(find_environment(job.environment).tasks().front().example, engine));
-  benches.push_back(std::move(unseen));
+  const std::string& example = find_environment(job.environment).tasks().front().example;
+  benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
+  if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load");
   return MethodCheck(job, phase).run(benches);
 }

@@ -5,7 +5,7 @@
 namespace lgabench {
 
 /// The medoid of the demonstrated actions on the true distribution: the label whose summed Euclidean distance to the
-/// others, over the 12 numbers, is least (the first of equals).
+/// others, over all numbers, is least (the first of equals).
 class ConstantAction : public Method {
  public:
   Needs needs(const Json&) const override { return {Needs::Targets::truth, 0, 0}; }

@@ -14,11 +14,11 @@ void check(const JsonReader& reader, const Messages& messages) {
   perturb_heap(job.perturb);  // of an engine, which runs in this process
   const CheckPhase phase = [&messages](const std::string& name) { messages.at({name}); };
   const auto on_method = [&] {
-    HostJob method{*job.method, "", job.options, 0, job.scratch};
+    HostJob method{*job.method, job.environment, job.options, 0, job.scratch};
     method.perturb = job.perturb;
     return check_method(method, job.engine, phase);
   };
-  const CheckReport report = job.method ? on_method() : check_engine(job.engine, phase);
+  const CheckReport report = job.method ? on_method() : check_engine(job.engine, job.environment, phase);
   write_file(job.report, canonical(to_json(report)) + '\n');
 }
 

@@ -10,6 +10,7 @@
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -22,7 +23,7 @@ namespace lgabench::cli {
 namespace {
 
 struct Arguments {
-  std::string file, python = "python3";
+  std::string file, python = "python3", environment;
   std::vector<std::string> settings;
   double timeout_s = 600;
   bool json = false;
@@ -62,6 +63,7 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
     job.perturb = i == 0 ? 0 : 165;
     job.report = reports[i];
     job.limits = worker_limits(pool);
+    job.environment = a.environment;
     fs::create_directory(job.scratch);
     return WorkerTask{to_json(job), scratch.path / fmt::format("log{}.txt", i), "check-job"};
   };
@@ -130,13 +132,18 @@ void add_check_plugin(CLI::App& app, int& exit) {
       ->type_name("FILE");
   verb->add_option("--python", a->python, "The interpreter of a method in Python")->capture_default_str();
   verb->add_option("--set", a->settings, "An option of the plugin; may be given again")->allow_extra_args(false);
+  verb->add_option("--environment", a->environment, "Where it is used")
+      ->check(one_of("environment", environment_ids()));
   verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
       ->check(within(1, 1e6))
       ->capture_default_str();
   verb->add_flag("--json", a->json, "One JSON object on stdout");
-  arrange(*verb, "", {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--timeout", "SECONDS"}});
+  arrange(*verb, "",
+          {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--environment", "ID"}, {"--timeout", "SECONDS"}});
   verb->footer(
       "Two fresh processes use it as cells do, with the same seed. Exit 1 if there is a problem.\n"
+      "Where no environment is named, an engine is used in all, and a method in the first that has a\n"
+      "scenario with commands which are only tested.\n"
       "Example: lgabench check-plugin build/my_method.so");
   verb->callback([a, &exit] { exit = check_plugin(*a); });
 }

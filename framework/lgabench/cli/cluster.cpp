@@ -65,7 +65,7 @@ Costs costs_of(const fs::path& run) {
   return costs;
 }
 
-// Of the element that is expected to take longest.
+// Seconds of the element that is expected to take longest.
 double longest_s(const RunPlan& plan, const Arguments& a) {
   const Costs costs = costs_of(a.timings);
   double longest = 0;

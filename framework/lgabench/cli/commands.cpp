@@ -18,17 +18,20 @@ constexpr const char* surroundings =
     "\n"
     "Exit status\n"
     "  0    all went well\n"
-    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`; refused by "
-    "`leaderboard`\n"
+    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`;\n"
+    "       refused by `leaderboard`\n"
     "  2    a command line, a file or a directory is not as expected; nothing was overwritten\n"
     "  3    a cell failed\n"
     "  4    a plugin is missing or was refused\n"
-    "  5    `verify`: other bytes, of another build, processor or data, no more different than chance allows\n"
+    "  5    `verify`: other bytes, of another build, processor or data, no more different than chance\n"
+    "       allows\n"
     "  130  interrupted; what was finished is kept\n"
     "\n"
     "Examples\n"
     "  lgabench run q1 --preset smoke\n"
-    "  lgabench run --help";
+    "  lgabench run --help\n"
+    "\n"
+    "Documents: docs/README.md of the sources, share/doc/lgabench/docs of an installation";
 
 }  // namespace
 

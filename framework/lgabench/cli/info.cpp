@@ -110,17 +110,18 @@ void print(const EnvironmentType& environment) {
     if (task.second) to_stdout("    second set  {}, {}\n", task.second->id, task.second->phrase);
   }
   to_stdout("  failures    {}\n  action\n", fmt::join(environment.failures(), ", "));
+  std::size_t width = 0;
+  for (const ActionNumber& number : environment.action_space().numbers) width = std::max(width, number.name.size());
   for (const ActionNumber& number : environment.action_space().numbers)
-    to_stdout("    {:<8}  {} to {}{}{}\n", number.name, number.low, number.high, number.unit.empty() ? "" : " ",
+    to_stdout("    {:<{}}  {} to {}{}{}\n", number.name, width, number.low, number.high, number.unit.empty() ? "" : " ",
               number.unit);
 }
 
-template <class Thing>
-void show(const Thing& thing, const Json& as_json, bool json) {
-  if (json)
-    to_stdout("{}\n", as_json.dump(2));
-  else
-    print(thing);
+void print_reference_row(const Json& row) {
+  to_stdout(
+      "{}, a reference row\n  {}\n  Every run has it beside its methods, unless with --no-reference; it has no "
+      "options.\n",
+      row.at("id").get<std::string>(), row.at("summary").get<std::string>());
 }
 
 bool known(const std::vector<std::string>& ids, const std::string& id) {
@@ -129,30 +130,35 @@ bool known(const std::vector<std::string>& ids, const std::string& id) {
 
 void info(const std::string& name, bool json, const std::vector<fs::path>& directories) {
   const Catalogue catalogue = scan_plugins(plugin_directories(directories));
+  Json found = Json::array();  // an environment and a suite may have one name
   for (const PluginInfo& plugin : catalogue.plugins)
-    if (plugin.id == name) return show(plugin, to_json(plugin), json);
+    if (plugin.id == name) {
+      if (!json) print(plugin);
+      found.push_back(to_json(plugin));
+    }
   if (known(scenario_ids(), name)) {
     const Scenario scenario = load_scenario(name);
-    Json members = scenario.json;
-    members["kind"] = "scenario";
-    return show(scenario, members, json);
+    if (!json) print(scenario);
+    found.push_back(scenario.json);
+    found.back()["kind"] = "scenario";
   }
   if (fs::exists(data_directory() / "suites" / (name + ".json"))) {
     const Suite suite = load_suite(name);
-    return show(suite, to_json(suite), json);
+    if (!json) print(suite);
+    found.push_back(to_json(suite));
   }
   if (known(environment_ids(), name)) {
     const EnvironmentType& environment = find_environment(name);
-    return show(environment, to_json(environment), json);
+    if (!json) print(environment);
+    found.push_back(to_json(environment));
   }
   for (const Json& row : reference_rows())
     if (row.at("id") == name) {
-      if (json) return to_stdout("{}\n", row.dump(2));
-      return to_stdout(
-          "{}, a reference row\n  {}\n  Every run has it beside its methods, unless with --no-reference; it has no "
-          "options.\n",
-          name, row.at("summary").get<std::string>());
+      if (!json) print_reference_row(row);
+      found.push_back(row);
     }
+  if (json && !found.empty()) to_stdout("{}\n", (found.size() == 1 ? found.front() : found).dump(2));
+  if (!found.empty()) return;
   for (const auto& [file, reason] : catalogue.refused)
     if (file.stem() == name) throw PluginError(fmt::format("{} was refused: {}", file.string(), reason));
   std::vector<std::string> known = scenario_ids();
@@ -180,7 +186,7 @@ void add_info(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("info", "Everything known of a method, engine, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
   verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
-  verb->add_flag("--json", arguments->json, "One JSON object on stdout");
+  verb->add_flag("--json", arguments->json, "One JSON object on stdout; an array where several things have the name");
   add_plugin_path(*verb, arguments->directories);
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -13,7 +14,7 @@
 namespace lgabench::cli {
 namespace {
 
-constexpr const char* sections[] = {"methods", "reference rows", "engines", "suites", "scenarios"};
+constexpr const char* sections[] = {"methods", "reference rows", "engines", "environments", "suites", "scenarios"};
 
 // Shipped suites with what each says it is for, sorted by id.
 Json suites() {
@@ -29,6 +30,16 @@ Json suites() {
   return all;
 }
 
+Json environments() {
+  Json all = Json::array();
+  for (const std::string& id : environment_ids()) {
+    std::vector<std::string> tasks;
+    for (const TaskInfo& task : find_environment(id).tasks()) tasks.push_back(task.id);
+    all.push_back({{"id", id}, {"tasks", tasks}, {"summary", fmt::format("tasks: {}", fmt::join(tasks, ", "))}});
+  }
+  return all;
+}
+
 Json scenarios() {
   Json all = Json::array();
   for (const std::string& id : scenario_ids()) {
@@ -40,8 +51,9 @@ Json scenarios() {
 
 Json listing(const Catalogue& catalogue) {
   Json all{{"methods", Json::array()}, {"reference rows", reference_rows()},
-           {"engines", Json::array()}, {"refused", Json::array()},
-           {"suites", suites()},       {"scenarios", scenarios()}};
+           {"engines", Json::array()}, {"environments", environments()},
+           {"suites", suites()},       {"scenarios", scenarios()},
+           {"refused", Json::array()}};
   for (const PluginInfo& plugin : catalogue.plugins)
     all[plugin.kind + "s"].push_back(
         {{"id", plugin.id}, {"version", plugin.version}, {"summary", plugin.summary}, {"file", plugin.file.string()}});
@@ -79,7 +91,8 @@ void add_list(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("list", "Methods, engines, suites and scenarios; what was refused, and why");
+  CLI::App* verb =
+      app.add_subcommand("list", "Methods, engines, environments, suites and scenarios; what was refused, and why");
   verb->footer("Example: lgabench list --plugin-path my/build");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
   add_plugin_path(*verb, arguments->directories);

@@ -5,7 +5,7 @@
 
 namespace lgabench::cli {
 
-/// Of an app with all its commands: a page for man(1), and what bash and zsh complete by.
+/// A page for man(1), and what bash and zsh complete by, of an app with all its commands.
 std::string man_page(const CLI::App& app);
 std::string bash_completion(const CLI::App& app);
 std::string zsh_completion(const CLI::App& app);

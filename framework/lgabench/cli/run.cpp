@@ -41,7 +41,7 @@ int print_forecast(const RunPlan& plan, const Forecast& all) {
 }
 
 void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
-  to_stderr("{} cells computed, {} were there, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
+  to_stderr("{} cells computed, {} reused, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
   if (outcome.computed) to_stderr("{}\n", outcome.time.text(plan.pool.jobs));
   if (outcome.elsewhere)
     to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",

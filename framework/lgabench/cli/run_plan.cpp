@@ -202,7 +202,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb.add_option("--memory", a.memory_gib,
-                  "GiB of data at which a cell has failed (default: its share of the machine's, 4 at least)")
+                  "Memory limit of a cell, in GiB (default: its share of the machine's, 4 at least)")
       ->check(within(.1, 1e6));
   verb.add_option("--python", a.python, "The interpreter of methods in Python")->capture_default_str();
   verb.add_option("--shard", a.shard, "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");

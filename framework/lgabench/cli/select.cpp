@@ -134,22 +134,12 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
 }
 
-// Words that nobody recorded answers for can be asked about.
-Selection selected(const Asked& asked, LanguageModel& model) {
-  try {
-    return select_features(asked.command, asked.space, model);
-  } catch (const InputError& e) {
-    if (!asked.answers_of.empty() || dynamic_cast<const ChatLanguageModel*>(&model)) throw;
-    throw InputError(fmt::format("{}; --answers openai asks a model (lgabench select --help)", e.what()));
-  }
-}
-
 void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
   if (!model)
     model = &recorded.emplace(asked.space, asked.answers_of,
                               arguments.answers == "recorded" ? asked.recorded : arguments.answers);
-  const Selection selection = selected(asked, *model);
+  const Selection selection = select_features(asked.command, asked.space, *model);
   const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {

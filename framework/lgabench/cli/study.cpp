@@ -133,7 +133,7 @@ int rehearse(const Arguments& a) {
 
 int report_study(const Arguments& a) {
   to_stdout("{}", report::terminal(study::write_report(a.path), a.path));
-  to_stderr("{}\n", (a.path / "report.md").string());
+  to_stderr("{}\n", (a.path / "report.html").string());
   return ok;
 }
 

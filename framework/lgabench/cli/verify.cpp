@@ -167,6 +167,16 @@ void print_other_bytes(const std::vector<Recomputed>& verdicts) {
         excused);
 }
 
+// A cell's builds, its plugins by their ids: "engine mujoco" for "engine".
+Json by_plugin(const Json& build, const Cell& cell) {
+  Json named = Json::object();
+  for (const auto& [program, hash] : build.items())
+    named[program == "engine"   ? "engine " + cell.engine
+          : program == "method" ? "method " + cell.method.id
+                                : program] = hash;
+  return named;
+}
+
 void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
            const std::set<std::string>& why, const std::vector<Recomputed>& verdicts) {
   if (a.json) {
@@ -205,6 +215,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
   print_other_bytes(verdicts);
   if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
+  if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
 }
 
 int verify(const Arguments& a) {
@@ -258,14 +269,8 @@ int verify(const Arguments& a) {
       const Cell& cell = cells[i].cell;
       const fs::path recomputed = plan.out / "cells" / key(plan.cells[i]);
       if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
-      Json build = read_json(recomputed / "status.json").at("build"), before = cells[i].status.at("build");
-      for (const auto& [plugin, id] : {std::pair("engine", cell.engine), {"method", cell.method.id}})
-        for (Json* hashes : {&build, &before})
-          if (hashes->contains(plugin)) {
-            (*hashes)[fmt::format("{} {}", plugin, id)] = (*hashes)[plugin];
-            hashes->erase(plugin);
-          }
-      add_differences(excuses[i], before, build, "build: ");
+      add_differences(excuses[i], by_plugin(cells[i].status.at("build"), cell),
+                      by_plugin(read_json(recomputed / "status.json").at("build"), cell), "build: ");
       verdicts.push_back(judge(cells[i], recomputed, !excuses[i].empty()));
       why.insert(excuses[i].begin(), excuses[i].end());
     }

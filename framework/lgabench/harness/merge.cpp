@@ -20,7 +20,7 @@
 namespace lgabench {
 namespace {
 
-// Of a run's settings: what another part may have more of.
+// Lists among a run's settings that another part may add to.
 constexpr std::array<std::string_view, 6> grid_lists{"methods", "scenarios",      "layouts",
                                                      "engines", "demonstrations", "seeds"};
 
@@ -161,8 +161,15 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
       to_stderr("{}: {}; left out\n", part.cell(key).string(), state.why);
     }
   }
-  ++(!finished.empty() ? outcome.finished : !failed.empty() ? outcome.failed : outcome.missing);
-  return !finished.empty() ? finished : failed;
+  if (!finished.empty()) {
+    ++outcome.finished;
+    return finished;
+  }
+  if (failed.empty())
+    ++outcome.missing;
+  else
+    ++outcome.failed;
+  return failed;
 }
 
 bool asks_live(const Part& part) {
@@ -171,7 +178,7 @@ bool asks_live(const Part& part) {
          is_live(request["answers"].get<std::string>());
 }
 
-// Of parts that asked a model live, on one cassette, the one that keeps every reply; else the first.
+// The part that keeps every reply, where parts asked a model live, on one cassette; else the first.
 const Part& with_all_replies(const std::vector<Part>& parts) {
   const Part* all = &parts.front();
   if (!asks_live(*all)) return *all;

@@ -23,7 +23,7 @@ struct CellState {
   bool complete = false, failed = false, other_build = false;
   std::string why;
 };
-/// Of the cell `key` in `directory`, read from its files alone.
+/// State of the cell `key` in `directory`, read from its files alone.
 CellState cell_state(const fs::path& directory, const std::string& key, const Json& build);
 
 /// Which setting of two run.json differs first; data and versions may differ where no setting does.

@@ -42,7 +42,7 @@ class Schedule {
     double usual_s;
     std::size_t place;  // among the cells as they were given: of two that take as long the earlier goes first
   };
-  // Of one row: what is learnt of it changes all of its cells alike, so that their order stays.
+  // What is known of one row; new timings change all of its cells alike, so that their order stays.
   struct Row {
     std::string name;
     std::vector<Waiting> left;  // the longest last

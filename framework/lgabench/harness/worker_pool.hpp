@@ -54,7 +54,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
 /// interrupt too. Returns the worker's exit status.
 int run_in_foreground(const Json& job);
 
-/// Of this machine's memory.
+/// Size of this machine's memory.
 double machine_bytes();
 
 /// What each of the workers may take.

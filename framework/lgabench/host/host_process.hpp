@@ -24,7 +24,7 @@ struct HostCommand {
   bool in_foreground = false;                // on our terminal, until whoever debugs it ends it
 };
 
-/// Of a worker that a person debugs in: what that person types. Its own standard input is the job.
+/// Descriptor on which a worker that is debugged reads what the person types; its standard input is the job.
 constexpr int persons_input = 4;
 
 /// A process in a session of its own with the socket as descriptor 3. What it and its children print goes to our

@@ -50,7 +50,7 @@ Json method_json(const PluginInfo& method) {
   return json;
 }
 
-// Of lgabench's data what learners use; of the system what a library or an interpreter starts with.
+// What a method's process may read: the data that learners use, and what a library or an interpreter starts with.
 Reach reach_of(const HostJob& job) {
   const fs::path data = data_directory(), bin = program_directory();
   Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/ssl/openssl.cnf",

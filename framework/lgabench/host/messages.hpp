@@ -75,9 +75,9 @@ Layout read_layout(const JsonReader& hello);
 /// A file in memory, mapped. The last of its maps and descriptors frees it.
 class SharedMemory {
  public:
-  /// Of this size, filled with 0, writable here; no one who is sent it can write to it or change its size.
+  /// Makes one of this size, filled with 0, writable here; no one who is sent it can write to it or change its size.
   explicit SharedMemory(std::size_t size);
-  /// Likewise one that was sent, to be read. @throws InputError where it is smaller than `size`.
+  /// Maps one that was sent, to be read. @throws InputError where it is smaller than `size`.
   SharedMemory(const Descriptor& file, std::size_t size);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;

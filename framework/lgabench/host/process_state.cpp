@@ -18,7 +18,7 @@ std::vector<std::string> difference(const std::vector<std::string>& all, const s
   return more;
 }
 
-// Of each entry of a directory of /proc, which may be gone by the time it is read.
+// Describes each entry of a directory of /proc, which may be gone by the time it is read.
 template <class Describe>
 std::vector<std::string> entries(const fs::path& directory, Describe describe) {
   std::vector<std::string> all;

@@ -11,7 +11,7 @@ struct ProcessState {
   long long heap_bytes = 0;
   bool flushed = true;  // subnormal numbers, after every call so far
 
-  /// Of this process; `flushed` is left to whoever made the calls.
+  /// State of this process; `flushed` is left to whoever made the calls.
   static ProcessState now();
   /// This without the threads and descriptors of `before`.
   ProcessState beyond(const ProcessState& before) const;

@@ -101,7 +101,8 @@ CellJob read_cell_job(const JsonReader& reader) {
 Json to_json(const CheckJob& job) {
   Json json{{"engine", plugin_json(job.engine)}, {"options", job.options},
             {"scratch", job.scratch.string()},   {"perturb", job.perturb},
-            {"report", job.report.string()},     {"limits", to_json(job.limits)}};
+            {"report", job.report.string()},     {"limits", to_json(job.limits)},
+            {"environment", job.environment}};
   if (job.method) json["method"] = plugin_json(*job.method);
   return json;
 }
@@ -113,15 +114,16 @@ CheckJob read_check_job(const JsonReader& reader) {
                reader.at("scratch").string(),
                static_cast<int>(reader.at("perturb").integer(0, 255)),
                reader.at("report").string(),
-               read_limits(reader)};
+               read_limits(reader),
+               reader.at("environment").string()};
   if (reader.has("method")) job.method = plugin_of(reader.at("method"));
   return job;
 }
 
 Json to_json(const PictureRequest& request) {
-  Json json{{"cell", request.cell.string()},    {"arm", request.arm},
-            {"index", request.index},           {"scene", request.scene},
-            {"selections", request.selections}, {"ends", Json::array()}};
+  Json json{{"cell", request.cell.string()}, {"arm", request.arm},    {"index", request.index},
+            {"scene", request.scene},        {"ends", Json::array()}, {"selections", request.selections},
+            {"inputs", request.inputs}};
   for (const PictureRequest::End& end : request.ends)
     json["ends"].push_back({{"engine", end.engine}, {"action", end.action}});
   return json;
@@ -132,6 +134,8 @@ PictureRequest read_picture_request(const JsonReader& reader) {
                          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
                          reader.at("scene").string()};
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
+  if (reader.has("inputs"))
+    for (const JsonReader& input : reader.at("inputs").elements()) request.inputs.push_back(input.json());
   if (!reader.has("ends")) return request;
   for (const JsonReader& end : reader.at("ends").elements()) {
     Action& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;

@@ -56,9 +56,10 @@ struct CheckJob {
   int perturb = 0;                   // as perturb_heap()
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
+  std::string environment{};  // to play in; "": check_method() and check_engine() say which
 };
 Json to_json(const CheckJob& job);
-/// Likewise.
+/// @throws as read_cell_job().
 CheckJob read_check_job(const JsonReader& reader);
 
 /// One scene for `lgabench-worker pictures`, which is told a list of them and answers with a line of JSON each.
@@ -75,6 +76,8 @@ struct PictureRequest {
     Action action{};
   };
   std::vector<End> ends{};
+  /// What of it a policy acts on: each as learning/shown_input.hpp reads it, with a "selection", a distribution or null.
+  std::vector<Json> inputs{};
 };
 Json to_json(const PictureRequest& request);
 /// @throws InputError

@@ -7,7 +7,7 @@
 
 namespace lgabench {
 
-/// Of one convolution's outputs, `positions` x channels. The arrays given are the caller's.
+/// Normalises one convolution's outputs, `positions` x channels. The arrays given are the caller's.
 class BatchNorm {
  public:
   /// Takes its scale (1 at first) and shift (0). @pre both outlive this.
@@ -15,9 +15,9 @@ class BatchNorm {
 
   /// With the batch's own statistics, which move the running ones; negative numbers replaced by 0 if `relu`.
   void train(const float* values, int positions, float* out, bool relu);
-  /// Likewise with the running statistics.
+  /// As train(), with the running statistics.
   void apply(const float* values, int positions, float* out, bool relu);
-  /// Of the last train(): replaces d loss / d out by d loss / d value, in place; `out` where train() had a ReLU, else
+  /// Replaces d loss / d out of the last train() by d loss / d value, in place; `out` where train() had a ReLU, else
   /// null.
   void backward(const float* values, const float* out, int positions, float* gradient);
 

@@ -20,9 +20,9 @@ class FirstConvolution {
   /// Looks for the patches that differ from those of the picture `usual`. Both are the caller's, and are read until the
   /// last call for this batch. False if more than half do: then it is no gain.
   bool find(const std::vector<const float*>& pictures, const float* usual, int rows);
-  /// Of the pictures that find() took: rows x out rows x out columns x out channels.
+  /// Outputs for the pictures that find() took: rows x out rows x out columns x out channels.
   void forward(const float* weights, const float* bias, bool relu, float* out);
-  /// Of the last forward(), from the gradient of its outputs.
+  /// Gradient of the last forward(), from that of its outputs.
   void weight_gradient(const float* gradient, float* weight_gradient);
 
  private:

@@ -30,12 +30,12 @@ class HeatMapNetwork {
   /// The map of a picture: `padded` x planes, channels last; `prior` of each cell or null; 384 numbers of text or null.
   /// Valid until the next call, as is the picture needed by teach().
   const std::vector<float>& map(const float* planes, const float* prior, const float* text);
-  /// Of the last map(): each group's probability, given the taken point.
+  /// Each group's probability after the last map(), given the taken point.
   const std::vector<float>& groups(Vec2 taken_m);
 
   /// Before the first teach() of a batch.
   void clear_gradients();
-  /// Of the last map(): cross entropy of the map to `wanted`, a probability of each cell, and of the groups to `group`.
+  /// Cross entropy of the last map() to `wanted`, a probability of each cell, and of the groups to `group`.
   /// Adds `weight` times its gradients.
   double teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight);
   /// One step of Adam (betas .9 and .999, epsilon 1e-8).
@@ -64,7 +64,7 @@ class HeatMapNetwork {
   Parameters parameters_;
   std::vector<Convolution> convolutions_;
   std::size_t text_ = 0, heat_ = 0, scores_ = 0, score_biases_ = 0;
-  // Of the last picture:
+  // The last picture, and what was computed of it:
   const float* planes_ = nullptr;
   const float* embedding_ = nullptr;
   std::vector<float> map_, groups_;

@@ -8,7 +8,7 @@
 
 namespace lgabench {
 
-/// Of step t (Kingma and Ba 2015, algorithm 1), each rounded once.
+/// Adam at step t (Kingma and Ba 2015, algorithm 1), each number rounded once.
 struct AdamCoefficients {
   float beta1, beta2, epsilon;
   float rest1, rest2;  // 1 - beta, which single precision would round

@@ -17,7 +17,7 @@ class Linear {
   std::vector<std::size_t> places(int out) const;
   /// Numbers of a row of its input, padding included.
   int inputs() const { return layer_.channels; }
-  /// Likewise of its output.
+  /// Numbers of its output.
   int outputs() const { return layer_.out_channels; }
 
   /// out = in * weights + bias, row by row.

@@ -26,7 +26,7 @@ Vec2 place_of(const ActionSpace& actions, const Action& action, std::size_t plac
 /// More than half have that place on the target.
 bool mostly_on_target(const std::vector<Demonstrated>& all, std::size_t place);
 
-/// Of each group the numbers of its demonstrations.
+/// Each group's demonstrations, by their numbers.
 using Groups = std::vector<std::vector<std::size_t>>;
 Groups one_group(const std::vector<Demonstrated>& all);
 /// By the direction from the first place to the second: unit vectors within .15 of the group's first. One group where

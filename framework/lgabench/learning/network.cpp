@@ -28,9 +28,9 @@ struct Network::Impl {
   Parameters parameters;
   std::vector<Tower> towers;
   std::optional<Head> head;
-  // Of each tower, what most pictures share in training, 0 before begin(); and, acting, 0.
+  // What most of each tower's pictures share in training, 0 before begin(); and, acting, 0.
   std::vector<std::vector<float>> usual, nothing;
-  // Of one batch:
+  // Room for one batch:
   int capacity = 0;
   Numbers text, output_gradients;
   std::vector<std::vector<const float*>> pictures;  // of each tower, for each row

@@ -28,9 +28,9 @@ class Network : public Learner {
   /// (out, in, row, column), bias and, with batch normalisation, scale and shift; then the layers of single inputs (the
   /// text's; `released` the towers'), the one that joins them, and `released` with text the last.
   std::vector<float> parameters() const override;
-  /// Likewise. @throws InputError for another number of them.
+  /// In the same order. @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);
-  /// Of the last backward(), likewise. That of a bias before batch normalisation is 0.
+  /// Gradients of the last backward(), in the same order. That of a bias before batch normalisation is 0.
   std::vector<float> gradients() const;
 
   /// Finds what most pictures share, which makes a step faster and changes its rounding: not in `plain`, which keeps
@@ -39,7 +39,7 @@ class Network : public Learner {
   /// With batch normalisation the running statistics are used.
   const std::vector<float>& predict(const Samples& samples) override;
   double backward(const Samples& samples, const std::vector<int>& batch) override;
-  /// Of Adam (betas .9 and .999, epsilon 1e-8).
+  /// One step of Adam (betas .9 and .999, epsilon 1e-8).
   void update(double learning_rate) override;
 
  private:

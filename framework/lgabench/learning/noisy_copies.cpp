@@ -11,7 +11,7 @@
 namespace lgabench {
 namespace {
 
-// Of all n values, as numpy.std.
+// Standard deviation of all n values, as numpy.std.
 double deviation(const float* values, std::size_t n) {
   double sum = 0, squares = 0;
   for (std::size_t i = 0; i < n; ++i) sum += values[i];

@@ -24,7 +24,7 @@ class Numbers {
   }
   /// The first; owned by this. Null if there are none.
   operator float*() { return values_.get(); }
-  /// Likewise.
+  /// As above, read only.
   operator const float*() const { return values_.get(); }
 
  private:

@@ -10,7 +10,7 @@ namespace lgabench {
 /// Numbers of a sentence embedding.
 constexpr int text_size = 384;
 
-/// Of one row: its pictures, channels last, whether there is a text, and what its label's numbers are.
+/// What one row has: its pictures, channels last, whether there is a text, and what its label's numbers are.
 struct SampleShape {
   struct Picture {
     PictureSize size;

@@ -12,7 +12,7 @@
 #include <lgabench/learning/safetensors.hpp>
 #include <lgabench/learning/word_pieces.hpp>
 
-// Of OpenBLAS where ATen uses it: its own pool of threads does not heed at::set_num_threads.
+// OpenBLAS, where ATen uses it, has a pool of threads that does not heed at::set_num_threads.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace lgabench {

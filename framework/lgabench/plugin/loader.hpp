@@ -20,7 +20,7 @@ struct PluginInfo {
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
   std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
-  /// Of a method in Python (host/python_method.hpp): {"class", "interpreter", "reads", "versions"}; null for a library.
+  /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "versions"}; else null.
   Json python{};
 };
 

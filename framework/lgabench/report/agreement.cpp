@@ -26,7 +26,7 @@ bool same_endings(const CellResult& a, const CellResult& b, const std::string& a
                     [](const PlayedEpisode& e, const PlayedEpisode& f) { return e.failure == f.failure; });
 }
 
-// Of two cells whose bytes differ for a reason.
+// Compares two cells whose bytes differ for a reason.
 CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& recomputed) {
   if (recorded.arms != recomputed.arms) return {Agreement::differs, "other arms", 0, 0};
   CellAgreement both{Agreement::same_outcomes, "", 0, 0};

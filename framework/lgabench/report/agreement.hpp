@@ -40,8 +40,8 @@ struct PooledAgreement {
   bool differs() const { return p_holm <= 0.05; }
 };
 
-/// Of each row of which an episode changed, by name, and of all of them where they are several. `cells`: row and
-/// agreement.
+/// Pools the cells of each row in which an episode changed, by name, and all of them where there are several such rows.
+/// `cells`: row and agreement.
 std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, CellAgreement>>& cells);
 
 }  // namespace lgabench::report

@@ -134,10 +134,10 @@ double Outcomes::Sample::mean() const {
 
 Outcomes::Sample Outcomes::sample() const {
   std::set<std::string> participants;
-  for (const Policy& policy : policies_) participants.insert(policy.participant);
+  for (const PolicyOutcomes& policy : policies_) participants.insert(policy.participant);
   std::map<std::pair<std::string, std::size_t>, ByScene> units;
   for (std::size_t i = 0; i < policies_.size(); ++i) {
-    const Policy& policy = policies_[i];
+    const PolicyOutcomes& policy = policies_[i];
     ByScene& unit = units[{policy.participant, participants.size() > 1 ? 0 : i}];
     for (std::size_t j = 0; j < policy.scenes.size(); ++j) {
       auto& [sum, played] = unit[policy.scenes[j]];

@@ -28,12 +28,12 @@ class Outcomes {
   Sample sample() const;
 
  private:
-  struct Policy {
+  struct PolicyOutcomes {
     std::string participant;
     std::vector<std::string> scenes;
     std::vector<double> values;
   };
-  std::vector<Policy> policies_;
+  std::vector<PolicyOutcomes> policies_;
 };
 
 /// A row's scenarios.

@@ -9,7 +9,7 @@
 namespace lgabench::report {
 namespace {
 
-constexpr double left = 40, right = 14, bottom = 46, small_text = 11, radius = 4.2;
+constexpr double left = 40, right = 14, small_text = 11, radius = 4.2;
 constexpr double spare_width = 1.12;  // a browser without Helvetica sets a wider font
 const Pen grid{Ink::rule};
 
@@ -34,7 +34,13 @@ class Drawing {
     return left + (at - chart_.left) / (chart_.right - chart_.left) * (chart_.width - left - right);
   }
   double y_of(double value) const {
-    return top_ + (chart_.top - value) / (chart_.top - chart_.bottom) * (chart_.height - top_ - bottom);
+    return top_ + (chart_.top - value) / (chart_.top - chart_.bottom) * (chart_.height - top_ - bottom());
+  }
+  // Room for the ticks, and for the axis or ticks that are slanted.
+  double bottom() const { return chart_.axis.empty() && !slanted() ? 26 : 46; }
+  bool slanted() const {
+    return std::any_of(chart_.ticks.begin(), chart_.ticks.end(),
+                       [this](const Chart::Tick& tick) { return text_width(tick.label, small_text) > gap() - 8; });
   }
   // Points between two ticks.
   double gap() const {
@@ -56,13 +62,10 @@ class Drawing {
       canvas_.path({{'m', {left, y}}, {'l', {chart_.width - right, y}}}, grid);
       canvas_.text(level.label, left - 7, y + 4, Anchor::end, small_text, false, Ink::soft);
     }
-    const double foot = chart_.height - bottom;
-    const bool slanted = std::any_of(chart_.ticks.begin(), chart_.ticks.end(), [this](const Chart::Tick& tick) {
-      return text_width(tick.label, small_text) > gap() - 8;
-    });
+    const double foot = chart_.height - bottom();
     for (const Chart::Tick& tick : chart_.ticks)
-      canvas_.text(tick.label, x_of(tick.at), foot + 16, slanted ? Anchor::end : Anchor::middle, small_text, false,
-                   Ink::soft, slanted ? -20 : 0);
+      canvas_.text(tick.label, x_of(tick.at), foot + 16, slanted() ? Anchor::end : Anchor::middle, small_text, false,
+                   Ink::soft, slanted() ? -20 : 0);
     if (!chart_.axis.empty())
       canvas_.text(chart_.axis, (left + chart_.width - right) / 2, chart_.height - 8, Anchor::middle, small_text, false,
                    Ink::soft);

@@ -164,7 +164,7 @@ void test_equivalence(Claim& claim, const PaperClaim& paper, const Field& field)
                    (paper.demonstrations ? fmt::format(" at {} demonstrations", *paper.demonstrations) : std::string());
 }
 
-// Of each participant, the seconds that each command took; one command has one answer, however many cells it is in.
+// Seconds that each command took each participant; one command has one answer, however many cells it is in.
 using Seconds = std::map<std::string, std::map<std::pair<std::string, std::string>, double>>;
 Seconds seconds_of(const Field& field, const std::string& method) {
   Seconds seconds;
@@ -216,7 +216,8 @@ void test_seconds(Claim& claim, const PaperClaim& paper, const Field& field) {
     d.participants = static_cast<int>(differences.size());
     d.scenarios = static_cast<int>(scenarios.size());
     if (differences.size() < 2)
-      d.these.reason = fmt::format("{} participants answered in both ways, expected 2 or more", differences.size());
+      d.these.reason =
+          fmt::format("expected 2 or more participants who answered in both ways, got {}", differences.size());
     else
       d.these.change = paired_t(differences);
     d.alike.reason = "people are the sample, not scenarios";

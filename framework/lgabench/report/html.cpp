@@ -12,7 +12,15 @@
 namespace lgabench::report {
 namespace {
 
-std::string span_html(const Span& span) {
+// A span without what is around it for its emphasis.
+std::string words_html(const Span& span) {
+  std::string text = escaped(span.text);
+  if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
+  return span.url.empty() ? text : fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
+}
+
+// Details side by side, as an interval's bounds and brackets, are one element: a narrow table sets it below the number.
+std::string spans_html(const Spans& spans) {
   constexpr std::array<std::array<const char*, 2>, 8> around{{{"", ""},
                                                               {"<b>", "</b>"},
                                                               {"<i class=paper>", "</i>"},
@@ -21,16 +29,16 @@ std::string span_html(const Span& span) {
                                                               {"<span class=better>", "</span>"},
                                                               {"<span class=worse>", "</span>"},
                                                               {"<span class=missed>", "</span>"}}};
-  const auto& [open, close] = around[static_cast<std::size_t>(span.emphasis)];
-  std::string text = escaped(span.text);
-  if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
-  if (!span.url.empty()) text = fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
-  return open + text + close;
-}
-
-std::string spans_html(const Spans& spans) {
   std::string text;
-  for (const Span& span : spans) text += span_html(span);
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const auto is_detail = [&spans](std::size_t k) {
+      return k < spans.size() && spans[k].emphasis == Emphasis::detail;
+    };
+    const auto& [open, close] = around[static_cast<std::size_t>(spans[i].emphasis)];
+    if (!is_detail(i) || i == 0 || !is_detail(i - 1)) text += open;
+    text += words_html(spans[i]);
+    if (!is_detail(i) || !is_detail(i + 1)) text += close;
+  }
   return text;
 }
 
@@ -129,7 +137,8 @@ std::string grid_html(const Grid& grid) {
 
 std::string charts_html(const Charts& charts) {
   std::string text = fmt::format("<div class=\"charts{}\">", charts.charts.front().legend ? "" : " small");
-  for (const Chart& chart : charts.charts) text += "<figure>" + svg(chart, false) + "</figure>";
+  for (const Chart& chart : charts.charts)  // not larger than its text was meant to be
+    text += fmt::format("<figure style=\"max-width:{:.0f}px\">{}</figure>", 1.2 * chart.width, svg(chart, false));
   return text + "</div>\n";
 }
 

@@ -123,7 +123,7 @@ std::string provenance_words(const std::string& provenance) {
   if (provenance == "recorded") return "a language model's recorded answers";
   if (provenance == "live") return "a language model asked during this run";
   if (provenance == "cassette") return "a language model's replies, replayed";
-  if (provenance == "truth") return "true φ̂: an upper bound, no human data";
+  if (provenance == "truth") return "true φ̂: no human data";
   if (provenance == "simulated_edit") return "simulated edit: no human data";
   if (provenance == "human") return "people's answers";
   return "";

@@ -44,7 +44,7 @@ class MethodStyles {
   std::map<std::string, MethodStyle> styles_;
 };
 
-/// A Selection's provenance in words for a reader, e.g. "true φ̂: an upper bound, no human data"; "" for none.
+/// A Selection's provenance in words for a reader, e.g. "true φ̂: no human data"; "" for none.
 std::string provenance_words(const std::string& provenance);
 
 /// Whether two wordings differ by more than a final full stop.

@@ -61,7 +61,7 @@ Json page_data(const Material& material) {
   Json cells = Json::array();
   for (const CellResult& cell : material.run.cells) {
     if (cell.failed) continue;
-    Json commands = Json::array(), masks = Json::array(), selected = Json::array();
+    Json commands = Json::array(), masks = Json::array(), inputs = Json::array(), selected = Json::array();
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
       Json chips = Json::array();  // [what, whether right, missed or wrong, the names]
@@ -71,6 +71,7 @@ Json page_data(const Material& material) {
       selected.push_back(phis.emplace(chips, phis.size()).first->second);
       // What follows the scene's hash in the names of pictures.masks.
       masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", cell, command.selection)));
+      inputs.push_back(input_key("", cell, command));  // likewise, of pictures.inputs
     }
     Json played = Json::array();
     for (const std::string& arm : cell.arms) {
@@ -109,6 +110,7 @@ Json page_data(const Material& material) {
                      {"participant", cell.participant},
                      {"commands", commands},
                      {"masks", masks},
+                     {"inputs", inputs},
                      {"phi", selected},
                      {"arms", played}});
   }
@@ -116,11 +118,17 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
+  Json inputs = Json::object();
+  for (const auto& [name, input] : pictures.inputs)
+    inputs[name] = {{"pictures", input.pictures}, {"texts", input.texts}, {"unread", input.unread}};
   Json oracle = Json::object();
   for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
-  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
-          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
-          {"oracle", oracle}};
+  return {{"failures", words},       {"phi", selections},
+          {"titles", titles},        {"cells", cells},
+          {"scenes", lists},         {"pictures", pictures.scenes},
+          {"masks", pictures.masks}, {"targets", pictures.targets},
+          {"oracle", oracle},        {"inputs", inputs},
+          {"seen", pictures.seen}};
 }
 
 }  // namespace lgabench::report

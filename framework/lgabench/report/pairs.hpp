@@ -15,7 +15,7 @@ struct PolicyPair {
   int episodes = 0, won_first = 0, won_second = 0;
   int only_first = 0, only_second = 0;  // scenes in which one alone succeeded
   bool same_actions = true;             // in every scene the same, bit for bit
-  // Of each episode its scene's hash, and who succeeded, 1 or 0.
+  // Each episode's scene, by its hash, and who succeeded, 1 or 0.
   std::vector<std::string> scenes;
   std::vector<double> first, second;
 };

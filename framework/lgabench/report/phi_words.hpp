@@ -14,7 +14,7 @@ struct PhiWords {
   std::size_t known = 0;                          // names that the feature space has
 };
 
-/// Of one of the cell's commands; empty for a method that selects nothing, and where the installed data lack the
+/// Words for one of the cell's commands; empty for a method that selects nothing, and where the installed data lack the
 /// scenario's feature space.
 std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& command);
 

@@ -17,23 +17,54 @@
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/selection.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/settings.hpp>
 
 namespace lgabench::report {
 namespace {
 
 struct Request {
   PictureRequest scene;
-  std::vector<std::string> masks;   // mask_key of each of its selections
-  std::vector<std::string> ends{};  // end_key of each of its ends
-  std::string before{};             // end_key of the scene itself, where engines disagree about its end
-  bool failed = false;              // a method in it
-  std::string environment{};        // whose actions these are
+  std::vector<std::string> masks;     // mask_key of each of its selections
+  std::vector<std::string> ends{};    // end_key of each of its ends
+  std::string before{};               // end_key of the scene itself, where engines disagree about its end
+  bool failed = false;                // a method in it
+  std::string environment{};          // whose actions these are
+  std::vector<std::string> inputs{};  // input_key of each of its inputs
 };
 
 // All that a goal mask depends on beside the scene.
 Json what_is_kept(const CellResult& cell, const Json& selection) {
   const Json all = "all", chosen = cell.options.value("instances", all);
   return {{"distribution", distribution_of(selection)}, {"instances", chosen.is_string() ? chosen : all}};
+}
+
+// What learning/shown_input.hpp makes of the cell's policy, as methods.json describes its method; null where it does
+// not.
+Json input_of(const CellResult& cell, const CommandResult& command) {
+  static const fs::path file = data_directory() / "paper" / "methods.json";
+  static const Json json = read_json(file);
+  for (const JsonReader& one : JsonReader(json, file.string()).at("inputs").elements()) {
+    if (!fits(cell, one)) continue;
+    Json input{{"selection", nullptr}};
+    for (const char* member : {"pictures", "text", "left_out"})
+      if (one.has(member)) input[member] = one.at(member).json();
+    for (const auto& [option, usual] :
+         {std::pair{"policy", "regression"}, {"instances", "all"}, {"mask", "binary"}})  // no option of every method
+      input[option] = cell.options.value(option, Json(usual));
+    const Json& pictures = input.at("pictures");
+    if (std::find(pictures.begin(), pictures.end(), Json("mask")) != pictures.end())
+      input["selection"] = one.has("true_mask") ? command.truth : distribution_of(command.selection);
+    return input;
+  }
+  return nullptr;
+}
+
+// Whether the list lacked the scene's picture of that name, which it then has; not of "".
+bool is_new_in(std::vector<std::string>& names, const std::string& scene, const std::string& name) {
+  if (name.empty() || std::find(names.begin(), names.end(), scene + name) != names.end()) return false;
+  names.push_back(scene + name);
+  return true;
 }
 
 // A request for each scene that a method played: those in which one failed first, then by index, then as the cells are
@@ -43,9 +74,11 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   std::vector<Request> all;
   for (const CellResult& cell : results.cells) {
     if (cell.failed || cell.is_reference()) continue;
-    std::vector<std::string> endings;  // of the masks' names, for each command; "" where there is no mask
-    for (const CommandResult& command : cell.commands)
-      endings.push_back(command.quality.is_null() ? "" : mask_key("", cell, command.selection));
+    std::vector<std::string> masks, inputs;  // of each command, what follows the scene's hash in their names
+    for (const CommandResult& command : cell.commands) {
+      masks.push_back(command.quality.is_null() ? "" : mask_key("", cell, command.selection));
+      inputs.push_back(input_key("", cell, command));
+    }
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
         const PlayedEpisode& episode = cell.episodes.at(arm)[i];
@@ -55,11 +88,11 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         all[known->second].environment = cell.environment;
         Request& request = all[known->second];
         request.failed = request.failed || !episode.success;
-        if (endings[episode.command].empty()) continue;
-        const std::string key = episode.scene + endings[episode.command];
-        if (std::find(request.masks.begin(), request.masks.end(), key) != request.masks.end()) continue;
-        request.masks.push_back(key);
-        request.scene.selections.push_back(what_is_kept(cell, cell.commands[episode.command].selection));
+        const CommandResult& command = cell.commands[episode.command];
+        if (is_new_in(request.masks, episode.scene, masks[episode.command]))
+          request.scene.selections.push_back(what_is_kept(cell, command.selection));
+        if (is_new_in(request.inputs, episode.scene, inputs[episode.command]))
+          request.scene.inputs.push_back(input_of(cell, command));
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const Request& a, const Request& b) {
@@ -122,6 +155,19 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
     }
 }
 
+// A picture that is there already, of another policy, is not kept twice.
+Pictures::Input read_input(const Json& drawn, std::vector<std::string>& seen) {
+  Pictures::Input input;
+  for (const Json& picture : drawn.at("pictures")) {
+    const auto at = std::find(seen.begin(), seen.end(), picture.at(1).get<std::string>()) - seen.begin();
+    if (static_cast<std::size_t>(at) == seen.size()) seen.push_back(picture.at(1));
+    input.pictures.emplace_back(picture.at(0), at);
+  }
+  input.texts = drawn.at("texts").get<std::vector<std::string>>();
+  input.unread = drawn.at("unread").get<std::vector<std::string>>();
+  return input;
+}
+
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 // Standard output of `lgabench-worker pictures`, given `input`. Returns what went wrong, or "".
@@ -149,6 +195,11 @@ std::string run_worker(const std::string& input, std::string& output) {
 
 std::string mask_key(const std::string& scene, const CellResult& cell, const Json& selection) {
   return scene + "/" + sha256(canonical(what_is_kept(cell, selection))).substr(0, 8);
+}
+
+std::string input_key(const std::string& scene, const CellResult& cell, const CommandResult& command) {
+  const Json input = input_of(cell, command);
+  return input.is_null() ? "" : scene + "/" + sha256(canonical(input)).substr(0, 8);
 }
 
 std::string end_key(const CellResult& cell, const std::string& arm, std::size_t index, const std::string& engine) {
@@ -179,6 +230,9 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     }
     for (std::size_t i = 0; i < request.ends.size(); ++i)
       if (const Json& png = drawn.at("ends").at(i); png.is_string()) pictures.ends[request.ends[i]] = png;
+    for (std::size_t i = 0; i < request.inputs.size(); ++i)
+      if (const Json& input = drawn.at("inputs").at(i); !input.is_null())
+        pictures.inputs[request.inputs[i]] = read_input(input, pictures.seen);
     if (!request.before.empty()) {
       pictures.ends[request.before] = drawn.at("picture");
       continue;

@@ -34,23 +34,26 @@ Report write_report(const fs::path& run) {
   const Pictures pictures = draw_pictures(run, report.run, report.agreements);
   const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
   report.document = report_document(material);
-  for (const Chart* chart : report.document.charts()) {
-    write_file(run / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
-    write_file(run / "figures" / (chart->file + ".pdf"), pdf(*chart));
-  }
-  for (const Grid* grid : report.document.grids()) {
-    write_file(run / "tables" / (grid->name + ".tex"), latex(*grid));
-    write_file(run / "tables" / (grid->name + ".csv"), csv(*grid));
-  }
-  write_file(run / "report.md", markdown(report.document));
-  write_file(run / "report.html", html(report.document, page_data(material)));
+  write_document(run, report.document, page_data(material));
   return report;
+}
+
+void write_document(const fs::path& directory, const Document& document, const Json& data) {
+  for (const Chart* chart : document.charts()) {
+    write_file(directory / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
+    write_file(directory / "figures" / (chart->file + ".pdf"), pdf(*chart));
+  }
+  for (const Grid* grid : document.grids()) {
+    write_file(directory / "tables" / (grid->name + ".tex"), latex(*grid));
+    write_file(directory / "tables" / (grid->name + ".csv"), csv(*grid));
+  }
+  write_file(directory / "report.md", markdown(document));
+  write_file(directory / "report.html", html(document, data));
 }
 
 Document write_index(const std::vector<Report>& reports, const fs::path& file) {
   Document document = index_document(reports, file.parent_path());
-  const Json none{{"titles", Json::array()}};  // a click leads to the runs' own pages
-  write_file(file, html(document, none));
+  write_file(file, html(document, no_episodes()));  // a click leads to the runs' own pages
   return document;
 }
 

@@ -26,6 +26,12 @@ struct Report {
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 Report write_report(const fs::path& run);
 
+/// What a page without episodes shows on a click: nothing.
+inline Json no_episodes() { return {{"titles", Json::array()}}; }
+
+/// Writes a document's report.md, report.html (`data`: as html() takes it), figures/ and tables/ into the directory.
+void write_document(const fs::path& directory, const Document& document, const Json& data = no_episodes());
+
 /// Writes `file`, a page over several runs that have a report. Returns its document.
 Document write_index(const std::vector<Report>& reports, const fs::path& file);
 

@@ -95,7 +95,7 @@ Section how_to_read() {
              "proportions)."},
             {"A test input was seen in training where all that the policy is given, pictures and text, is there to the "
              "byte: a high share measures what was learned by heart. – where a policy does not tell."},
-            {"Reference rows are no methods: the best constant action knows the training actions alone, the random "
+            {"Reference rows are not methods: the best constant action knows the training actions alone, the random "
              "visible object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing "
              "and are the same for every number of demonstrations."}}});
   return section;

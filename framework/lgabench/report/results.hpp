@@ -52,7 +52,7 @@ struct CellResult {
   std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
   std::string method_error;                                    // what the first episode of that failure threw
   std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
-  // Of training.jsonl: "loss", or a name of the method's own -> its values along the epochs.
+  // Curves of training.jsonl: "loss", or a name of the method's own -> its values along the epochs.
   std::map<std::string, std::map<long long, double>> training;
   Json timing;  // as in timing.json
 

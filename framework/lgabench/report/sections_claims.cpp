@@ -145,7 +145,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   if (claims.empty()) return section;
   Grid verdicts;
   verdicts.name = "claims";
-  verdicts.caption = title;
+  verdicts.caption = "Verdicts";
   verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
   List lines;
@@ -177,7 +177,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
       reading,
       Paragraph{{"A claim's verdict is that on these scenarios: would other test scenes and training seeds of "
                  "theirs say the same? Beside it stands the harder question, whether other scenarios like these "
-                 "would: Student's t over their differences. Each difference is on the mean over scenarios, "
+                 "would: Student's t over their differences. Each difference is that of the mean over scenarios, "
                  "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over "
                  "the rows compared in one arm at one number of demonstrations, for each of the two by itself."}});
   section.add(reading, details(styles, tested));

@@ -169,10 +169,11 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
 
   const bool one_of_arms = joined && table.arms.size() > 1;
   chart.title = table.title(scenario);
-  chart.subtitle = fmt::format("{}, {}{}", material.run.suite, table.title(), one_of_arms ? ", arm " + arm : "");
+  chart.subtitle =
+      fmt::format("success in {}, {}{}", material.run.suite, table.title(), one_of_arms ? ", arm " + arm : "");
   chart.axis = joined ? "demonstrations" : "arm, " + table.demonstrations_text(demonstrations.front());
   chart.alternative =
-      fmt::format("success against {}: {}, {}", joined ? "demonstrations" : "arms", chart.title, chart.subtitle);
+      fmt::format("{}, against {}: {}", chart.subtitle, joined ? "demonstrations" : "arms", chart.title);
   return chart;
 }
 
@@ -198,7 +199,7 @@ Charts scenario_charts(const Material& material, const Table& table, const std::
   for (const std::string& scenario : scenarios) {
     Chart chart = chart_of(material, table, table.arms.front(), scenario);
     chart.subtitle = chart.axis = "";
-    chart.width = 300, chart.height = 200;
+    chart.width = 300, chart.height = 180;
     chart.legend = false;
     all.charts.push_back(std::move(chart));
   }
@@ -277,7 +278,7 @@ std::vector<Section> success(const Material& material) {
         reading,
         Paragraph{{fmt::format("The paper's values, in italics, are those of its figure {}, {}.", paper.figure,
                                paper.rates.count(mean_scenario) != 0
-                                   ? "± its error bars, on the mean over its own scenarios, not only those of this run"
+                                   ? "± its error bars, of the mean over its own scenarios, not only those of this run"
                                    : "at 50 demonstrations, a scenario's arms pooled; its scenes are not public")}});
   return sections;
 }

@@ -89,7 +89,7 @@ struct Endings {
     mean.align += 'r';
   }
 
-  // Of the row: its bar, and the columns' numbers.
+  // Adds a row with its bar and the columns' numbers.
   void add(const Material& material, const Table& table, const Row& row, Cell bar, std::vector<Cell> numbers) {
     std::vector<Cell> cells{table.title(), row.arm, named(material, row.method),
                             count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};

@@ -12,16 +12,11 @@
 namespace lgabench::report {
 namespace {
 
-// Names of the run's rows that a description of methods.json fits, {"id"?, "options"?}, in the order of tables.
+// Names of the run's rows that a description of methods.json fits, in the order of tables.
 std::vector<std::string> rows_like(const RunResults& run, const JsonReader& description) {
   std::set<std::string, ByRank> rows;
-  for (const CellResult& cell : run.cells) {
-    bool fits = !description.has("id") || cell.id == description.at("id").string();
-    if (description.has("options"))
-      for (const auto& [option, value] : description.at("options").json().items())
-        fits = fits && cell.options.value(option, Json()) == value;
-    if (fits) rows.insert(cell.method);
-  }
+  for (const CellResult& cell : run.cells)
+    if (fits(cell, description)) rows.insert(cell.method);
   std::vector<std::string> names;
   for (const std::string& row : rows) names.push_back(display_name(row));
   return names;
@@ -66,6 +61,14 @@ std::vector<std::string> options_beside_defaults(const Json& settings) {
 }
 
 }  // namespace
+
+bool fits(const CellResult& cell, const JsonReader& description) {
+  bool all = !description.has("id") || cell.id == description.at("id").string();
+  if (description.has("options"))
+    for (const auto& [option, value] : description.at("options").json().items())
+      all = all && cell.options.value(option, Json()) == value;
+  return all;
+}
 
 std::vector<std::string> settings(const RunResults& run) {
   std::vector<std::string> lines;

@@ -16,7 +16,7 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Of n ranks 1..n with random signs: the probability that the positive ones sum to `sum` at most.
+// Probability that, of the ranks 1..n with random signs, the positive ones sum to `sum` at most.
 double signed_rank_tail(std::size_t n, std::size_t sum) {
   std::vector<double> ways(n * (n + 1) / 2 + 1);  // whole numbers up to 2^25
   ways[0] = 1;

@@ -13,8 +13,8 @@
 namespace lgabench::report {
 namespace {
 
-// What one cell adds to a row: a policy on one arm.
-struct Policy {
+// What one cell, a training seed (of one participant), adds to a row: its episodes on one arm.
+struct SeedResult {
   std::string participant;
   int episodes = 0, successes = 0;
   std::vector<std::string> scenes;  // of each episode
@@ -27,30 +27,30 @@ struct Policy {
 
 using Episodes = std::vector<PlayedEpisode>;
 
-Policy played(const Episodes& episodes) {
-  Policy policy;
-  policy.episodes = static_cast<int>(episodes.size());
+SeedResult played(const Episodes& episodes) {
+  SeedResult seed;
+  seed.episodes = static_cast<int>(episodes.size());
   for (const PlayedEpisode& e : episodes) {
-    policy.scenes.push_back(e.scene);
-    policy.won.push_back(e.success ? 1 : 0);
-    policy.successes += e.success ? 1 : 0;
+    seed.scenes.push_back(e.scene);
+    seed.won.push_back(e.success ? 1 : 0);
+    seed.successes += e.success ? 1 : 0;
   }
-  return policy;
+  return seed;
 }
 
-void pair(Policy& policy, const Episodes& first, const Episodes& here) {
-  policy.paired = policy.same_actions = first.size() == here.size();
-  for (std::size_t i = 0; policy.paired && i < here.size(); ++i) {
-    policy.paired = first[i].command == here[i].command;
-    policy.difference.push_back((here[i].success ? 1 : 0) - (first[i].success ? 1 : 0));
-    policy.same_actions = policy.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
+void pair(SeedResult& seed, const Episodes& first, const Episodes& here) {
+  seed.paired = seed.same_actions = first.size() == here.size();
+  for (std::size_t i = 0; seed.paired && i < here.size(); ++i) {
+    seed.paired = first[i].command == here[i].command;
+    seed.difference.push_back((here[i].success ? 1 : 0) - (first[i].success ? 1 : 0));
+    seed.same_actions = seed.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
   }
 }
 
-// A row in the making: the policies of each scenario.
+// A row in the making: what each scenario's seeds add to it.
 struct Draft {
   Row row;
-  std::vector<std::vector<Policy>> scenarios;
+  std::vector<std::vector<SeedResult>> scenarios;
   std::set<std::string> participants;
 };
 
@@ -140,23 +140,23 @@ std::string stream_name(const char* what, const Row& row) {
                      row.arm);
 }
 
-// Success, its change against the first arm, and their intervals, from the policies.
+// Success, its change against the first arm, and their intervals, from the seeds.
 void estimate(Draft& draft, const std::string& first_arm) {
   Samples rates, differences;
   bool all_paired = true, same_actions = true;
-  for (const auto& policies : draft.scenarios)
-    for (const Policy& p : policies) {
-      all_paired = all_paired && p.paired;
-      same_actions = same_actions && p.same_actions;
+  for (const auto& seeds : draft.scenarios)
+    for (const SeedResult& seed : seeds) {
+      all_paired = all_paired && seed.paired;
+      same_actions = same_actions && seed.same_actions;
     }
   Row& row = draft.row;
   const bool shifts = row.arm != first_arm && all_paired;
-  for (const auto& policies : draft.scenarios) {
-    if (policies.empty()) continue;
+  for (const auto& seeds : draft.scenarios) {
+    if (seeds.empty()) continue;
     Outcomes won, difference;
-    for (const Policy& p : policies) {
-      won.add(p.participant, p.scenes, p.won);
-      if (shifts) difference.add(p.participant, p.scenes, p.difference);
+    for (const SeedResult& seed : seeds) {
+      won.add(seed.participant, seed.scenes, seed.won);
+      if (shifts) difference.add(seed.participant, seed.scenes, seed.difference);
     }
     rates.push_back(won.sample());
     if (shifts) differences.push_back(difference.sample());
@@ -184,7 +184,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.kind = first.kind;
   row.demonstrations = first.demonstrations;
   row.phi = phi_of(cells, arm);
-  auto& policies = draft.scenarios.emplace_back();
+  auto& results = draft.scenarios.emplace_back();
   std::set<long long> seeds;
   for (const CellResult* cell : cells) {
     if (cell->failed) {
@@ -192,25 +192,25 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
       continue;
     }
     const Episodes& episodes = cell->episodes.at(arm);
-    Policy policy = played(episodes);
-    policy.participant = cell->participant;
+    SeedResult result = played(episodes);
+    result.participant = cell->participant;
     if (!cell->participant.empty()) draft.participants.insert(cell->participant);
     seeds.insert(cell->training_seed);
     if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
-      pair(policy, control->second, episodes);
+      pair(result, control->second, episodes);
     for (const PlayedEpisode& e : episodes) {
       if (!e.success) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
       row.inputs_told += e.input_seen ? 1 : 0;
       row.inputs_seen += e.input_seen.value_or(false) ? 1 : 0;
     }
-    row.episodes += policy.episodes;
-    row.successes += policy.successes;
-    policies.push_back(policy);
+    row.episodes += result.episodes;
+    row.successes += result.successes;
+    results.push_back(result);
   }
   row.seeds = static_cast<int>(seeds.size());
   row.participants = static_cast<int>(draft.participants.size());
-  if (policies.size() < cells.size()) row.marks.emplace_back("incomplete");
+  if (results.size() < cells.size()) row.marks.emplace_back("incomplete");
   if (first.asks == "network") row.marks.emplace_back("network");
   estimate(draft, first_arm);
   return draft;
@@ -360,7 +360,7 @@ std::vector<int> Table::demonstrations() const {
 }
 
 std::string Table::demonstrations_text(int n) const {
-  if (demonstrated_commands == 1) return fmt::format("{} demonstrations", n);
+  if (demonstrated_commands == 1) return fmt::format("{} demonstration{}", n, n == 1 ? "" : "s");
   if (demonstrated_commands == 0) return fmt::format("demonstrations: {} per command", n);
   return fmt::format("demonstrations: {} per command, {} in all", n, n * demonstrated_commands);
 }

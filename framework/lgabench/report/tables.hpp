@@ -28,7 +28,7 @@ struct Mark {
   const char *word, *sign, *meaning;
 };
 constexpr std::array<Mark, 5> table_marks{
-    {{"baseline_not_learned", "†", "baseline not learned: below the best constant action with as many demonstrations"},
+    {{"baseline_not_learned", "†", "below the best constant action with as many demonstrations: nothing was learned"},
      {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
      {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
      {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},

@@ -7,6 +7,7 @@
 #include <map>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -21,7 +22,8 @@ constexpr const char* simulated_words = "rehearsal, not people";
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
 std::string seconds(double s) { return fmt::format("{:.1f}", s); }
-std::string p_words(double p) { return p < .001 ? "p < 0.001" : fmt::format("p = {:.3f}", p); }
+std::string p_cell(double p) { return p < .001 ? "< 0.001" : fmt::format("{:.3f}", p); }
+std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
 std::string change_words(const Change& c, const char* unit) {
   return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", c.difference, unit, c.interval.low, c.interval.high);
 }
@@ -85,22 +87,40 @@ Chart seconds_chart(const StudyResults& results) {
   return chart;
 }
 
+// A table of two rows: of each condition the `values` below the heads.
+template <class Values>
+Grid by_condition(const std::string& name_of_table, const std::string& caption, const std::vector<std::string>& heads,
+                  const Values& values) {
+  Grid grid;
+  grid.name = name_of_table;
+  grid.caption = caption;
+  grid.heads = {"condition"};
+  grid.heads.insert(grid.heads.end(), heads.begin(), heads.end());
+  grid.align = "l" + std::string(heads.size(), 'r');
+  for (const Condition condition : both) {
+    std::vector<Cell> cells{name(condition)};
+    for (const std::string& value : values(condition)) cells.emplace_back(value);
+    grid.rows.push_back({{}, std::move(cells)});
+  }
+  return grid;
+}
+
 Section seconds_section(const StudyResults& results) {
   Section section{"seconds", "Seconds a command"};
-  Grid grid;
-  grid.name = "seconds";
-  grid.caption = "Seconds a command: over people, each with the mean of their trials";
-  grid.heads = {"condition", "people", "mean", "sd", "se", "mean active", "the paper"};
-  grid.align = "lrrrrrr";
   const auto paper = published();
-  for (const Condition condition : both) {
-    const Spread &raw = results.seconds[index(condition)], &active = results.active_s[index(condition)];
-    const auto& [mean, error] = paper.at(name(condition));
-    grid.rows.push_back({{},
-                         {name(condition), std::to_string(results.used()), seconds(raw.mean), seconds(raw.sd),
-                          seconds(raw.se), seconds(active.mean), fmt::format("{} ± {}", mean, error)}});
-  }
-  section.add(everywhere, std::move(grid));
+  section.add(everywhere,
+              by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
+                           {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
+                             const Spread &raw = results.seconds[index(condition)],
+                                          &active = results.active_s[index(condition)];
+                             const auto& [mean, error] = paper.at(name(condition));
+                             return std::vector{std::to_string(results.used()),
+                                                seconds(raw.mean),
+                                                seconds(raw.sd),
+                                                seconds(raw.se),
+                                                seconds(active.mean),
+                                                fmt::format("{} ± {}", mean, error)};
+                           }));
   List tests;
   if (results.primary)
     tests.items.push_back(
@@ -134,8 +154,7 @@ Section model_section(const StudyResults& results) {
   grid.align = "llr";
   constexpr const char* effects[] = {"condition: Human / LGA-HILL", "period: first / second", "set: first / second"};
   for (std::size_t i = 0; i < 3; ++i)
-    grid.rows.push_back(
-        {{}, {effects[i], ratio_words(results.log_model[i]), fmt::format("{:.3f}", results.log_model[i].p)}});
+    grid.rows.push_back({{}, {effects[i], ratio_words(results.log_model[i]), p_cell(results.log_model[i].p)}});
   section.add(everywhere, std::move(grid));
   return section;
 }
@@ -153,28 +172,24 @@ Section commands_section(const StudyResults& results) {
   grid.heads = {"command", "Human", "LGA-HILL", "difference", "p"};
   grid.align = "lrrrr";
   for (const CommandResult& command : results.commands)
-    grid.rows.push_back({{},
-                         {command.item->asked_as, mean_of(command.seconds[0]), mean_of(command.seconds[1]),
-                          command.change ? change_words(*command.change, "") : "–",
-                          command.change ? fmt::format("{:.3f}", command.p_holm) : "–"}});
+    grid.rows.push_back(
+        {{},
+         {command.item->asked_as, mean_of(command.seconds[0]), mean_of(command.seconds[1]),
+          command.change ? change_words(*command.change, "") : "–", command.change ? p_cell(command.p_holm) : "–"}});
   section.add(everywhere, std::move(grid));
   return section;
 }
 
 Section phi_section(const StudyResults& results) {
   Section section{"phi", "φ̂ against the released truth"};
-  Grid grid;
-  grid.name = "phi";
-  grid.caption = "φ̂ against the released truth, mean over trials";
-  grid.heads = {"condition", "types: precision", "recall", "textures: precision", "recall"};
-  grid.align = "lrrrr";
-  for (const Condition condition : both) {
-    const PhiQuality& q = results.phi[index(condition)];
-    grid.rows.push_back({{},
-                         {name(condition), share(q.object_types.precision), share(q.object_types.recall),
-                          share(q.textures.precision), share(q.textures.recall)}});
-  }
-  section.add(everywhere, std::move(grid));
+  section.add(everywhere, by_condition("phi", "φ̂ against the released truth, mean over trials",
+                                       {"types: precision", "types: recall", "textures: precision", "textures: recall"},
+                                       [&](Condition condition) {
+                                         const PhiQuality& q = results.phi[index(condition)];
+                                         return std::vector{share(q.object_types.precision),
+                                                            share(q.object_types.recall), share(q.textures.precision),
+                                                            share(q.textures.recall)};
+                                       }));
   return section;
 }
 
@@ -224,6 +239,16 @@ Section questionnaire_section(const StudyResults& results) {
   return section;
 }
 
+// The primary test in a sentence; of a rehearsal it says first that it is none.
+std::string headline(const StudyResults& results) {
+  const std::string begin = results.record->kind == Kind::rehearsal ? "Rehearsal, not people, so no result: " : "";
+  if (!results.primary) return begin + "fewer than two people can be compared.";
+  return fmt::format(
+      "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
+      begin, results.used(), seconds(results.seconds[0].mean), name(Condition::human), seconds(results.seconds[1].mean),
+      name(Condition::lga_hill), change_words(*results.primary, " s"), p_words(results.primary->p));
+}
+
 Json change_json(const std::optional<Change>& c) {
   if (!c) return nullptr;
   return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
@@ -244,6 +269,7 @@ Document document_of(const StudyResults& results) {
   Document document;
   document.suite = record.protocol->id;
   document.title = fmt::format("Study: {}", record.protocol->title);
+  document.headline = {headline(results)};
   const auto note = [&document](const std::string& text) { document.notes.push_back({Note::note, text}); };
   if (record.kind == Kind::rehearsal) note(fmt::format("{}: no number here is a result.", simulated_words));
   if (!record.shown_as_now)
@@ -320,17 +346,9 @@ Document write_report(const fs::path& directory) {
   const Record record = read_study(directory);
   const StudyResults results = results_of(record);
   Document document = document_of(results);
-  for (const Chart* chart : document.charts()) {
-    write_file(directory / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
-    write_file(directory / "figures" / (chart->file + ".pdf"), pdf(*chart));
-  }
-  for (const Grid* grid : document.grids()) {
-    write_file(directory / "tables" / (grid->name + ".tex"), latex(*grid));
-    write_file(directory / "tables" / (grid->name + ".csv"), csv(*grid));
-  }
   write_file(directory / "trials.csv", trials_csv(results));
   write_file(directory / "results.json", to_json(results).dump(1) + "\n");
-  write_file(directory / "report.md", markdown(document));
+  write_document(directory, document);
   return document;
 }
 

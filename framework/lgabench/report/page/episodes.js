@@ -17,6 +17,7 @@ function episodesOf(row) {
             action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
             oracle: data.oracle[scene], targets: data.targets[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
+            input: cell.inputs[command] && data.inputs[scene + cell.inputs[command]],
             phi: data.phi[cell.phi[command]],
           });
         });
@@ -60,6 +61,12 @@ const where = (e) => `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training s
 const wayOf = (name, action) => action ? `, ${name} from ${action.map((place) => place.join(",")).join(" to ")}` : `, no ${name}`;
 const told = (e) => `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
 
+// An arrow that is cut off says so.
+const leaves = (e) => {
+  const [width, height] = sizeOf(e.picture);
+  return (e.action || []).some(([x, y]) => x < 0 || y < 0 || x > width || y > height) ? " The action leaves the picture." : "";
+};
+
 const before = (e) => picture(e.picture, `before: ${where(e)}${wayOf("action", e.action)}${wayOf("oracle", e.oracle)}`,
   outline(e) + oracle(e) + own(e));
 const kept = (e) => e.mask ? picture(e.mask, `goal mask: ${where(e)}`, outline(e) + own(e)) : "";
@@ -70,16 +77,27 @@ const card = (e) =>
   `${before(e)}${kept(e)}</span></button><figcaption>${told(e)}<br>${escaped(e.command)}${chips(e)}` +
   `<small>${escaped(where(e))}</small></figcaption></figure>`;
 
+// What the policy acted on, at its size, and in words what of it is no picture.
+const saw = (e) => !e.input ? [] : e.input.pictures.map(([name, number]) =>
+  [`what the policy saw: ${name}`, picture(data.seen[number], `what the policy saw: ${name}; ${where(e)}`)]);
+const joined = (all) => all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} and ${all.at(-1)}`;
+function read(e) {
+  if (!e.input) return "";
+  const { pictures, texts, unread } = e.input;
+  const also = texts.length ? `The policy read ${joined(texts)}${pictures.length ? " as well" : " alone"}, as a sentence embedding. ` : "";
+  return also || unread.length ? `<p>${also}${unread.length ? `It did not read: ${joined(unread)}.` : ""}</p>` : "";
+}
+
 // One episode, as large as the dialog.
 function single(e) {
   const shown = [["before: the action is white, the oracle’s green, the target outlined", before(e)],
     [e.end === "" ? "after the action: nothing moved" : "after the action", after(e)],
-    ["goal mask: what the policy was told to look at", kept(e)]].filter(([, drawn]) => drawn);
-  return `<p>${told(e)}. ${escaped(e.command)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
+    ["goal mask: what φ̂ keeps of the scene", kept(e)], ...saw(e)].filter(([, drawn]) => drawn);
+  return `<p>${told(e)}. ${escaped(e.command)}${leaves(e)} <small>${escaped(where(e))}</small></p>${chips(e)}<div class="large">` +
     shown.map(([name, drawn]) =>
       `<figure><button type="button" class="zoom" aria-pressed="false">${drawn}</button><figcaption>${name}</figcaption></figure>`)
       .join("") +
-    `</div><p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
+    `</div>${read(e)}<p>Again, as an animation: <code>lgabench replay RUN ${escaped(episodeId(e))} --out episode.gif</code></p>`;
 }
 
 function listOf(shown) {

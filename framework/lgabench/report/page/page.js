@@ -70,12 +70,12 @@ let closed = [];
 addEventListener("beforeprint", () => {
   closed = [...document.querySelectorAll("main details:not([open])")];
   closed.forEach((folded) => { folded.open = true; });
-  document.body.classList.add("paper");
+  document.body.classList.add("printed");
   fit();
 });
 addEventListener("afterprint", () => {
   closed.forEach((folded) => { folded.open = false; });
-  document.body.classList.remove("paper");
+  document.body.classList.remove("printed");
   fit();
 });
 
