@@ -26,9 +26,7 @@ std::string sha256(std::string_view bytes) {
   unsigned int size = 0;
   if (EVP_Digest(bytes.data(), bytes.size(), digest, &size, EVP_sha256(), nullptr) != 1)
     throw Error("libcrypto could not compute a SHA-256");
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
+  return fmt::format("{:02x}", fmt::join(digest, digest + size, ""));
 }
 
 std::string sha256_file(const std::filesystem::path& file) { return sha256(read_file(file)); }

@@ -38,10 +38,11 @@ double RandomStream::uniform() {
 }
 
 std::uint32_t RandomStream::below(std::uint32_t n) {
-  const std::uint32_t threshold = (0u - n) % n;  // values below it would make small results likelier
+  // Lemire (2019). Low halves below 2^32 mod n would make small results likelier; the division is rarely needed.
   for (;;) {
     const std::uint64_t product = std::uint64_t{next()} * n;
-    if (static_cast<std::uint32_t>(product) >= threshold) return static_cast<std::uint32_t>(product >> 32);
+    const auto low = static_cast<std::uint32_t>(product);
+    if (low >= n || low >= (0u - n) % n) return static_cast<std::uint32_t>(product >> 32);
   }
 }
 
