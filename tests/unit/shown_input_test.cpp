@@ -15,7 +15,7 @@
 #undef LGABENCH_METHOD_ASKING
 #define LGABENCH_METHOD(...)
 #define LGABENCH_METHOD_ASKING(...)
-#include "../../baselines/factorial.cpp"
+#include "../../plugins/factorial.cpp"
 #include "../../baselines/gcbc_dart.cpp"
 #include "../../baselines/gcbc_seg.cpp"
 #include "../../plugins/human.cpp"
