@@ -15,9 +15,9 @@
 #undef LGABENCH_METHOD_ASKING
 #define LGABENCH_METHOD(...)
 #define LGABENCH_METHOD_ASKING(...)
-#include "../../baselines/factorial.cpp"
 #include "../../baselines/gcbc_dart.cpp"
 #include "../../baselines/gcbc_seg.cpp"
+#include "../../plugins/factorial.cpp"
 #include "../../plugins/human.cpp"
 #include "../../plugins/lga.cpp"
 #include "../../plugins/lga_hill.cpp"
