@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <common/shapes.hpp>
@@ -114,6 +115,13 @@ const std::vector<std::string>& object_types() {
     return all;
   }();
   return types;
+}
+
+void expect_finite(const VisibleObject& object) {
+  const auto& [p, q] = object.pose;
+  for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w})
+    if (!std::isfinite(number))
+      throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
 }
 
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad) {

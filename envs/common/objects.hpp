@@ -42,6 +42,16 @@ const ObjectModel& standing_model(const std::string& type);
 /// All object types that can be made, in the order of the household space, which begins with the tabletop's.
 const std::vector<std::string>& object_types();
 
+/// What a picture shows of an object.
+struct VisibleObject {
+  std::string object_type, texture;
+  Pose pose;                 // of the body's frame
+  std::uint8_t instance_id;  // 1..255
+};
+
+/// @throws InputError for a pose that is not finite.
+void expect_finite(const VisibleObject& object);
+
 /// Outlines moved to a pose on the table.
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);
 

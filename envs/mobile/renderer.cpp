@@ -91,10 +91,7 @@ struct Renderer::Impl {
   }
 
   Placed place(const VisibleObject& object) {
-    const auto& [p, q] = object.pose;
-    for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w})
-      if (!std::isfinite(number))
-        throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
+    expect_finite(object);
     Placed placed(solids.of(object.object_type, standing_model(object.object_type).mesh), object.pose);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;

@@ -2,20 +2,16 @@
 // shadows on objects. No display.
 #pragma once
 #include <memory>
-#include <string>
 #include <vector>
 
+#include <common/objects.hpp>
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/scene.hpp>
 #include <mobile/camera.hpp>
 
 namespace lgabench::mobile {
 
-struct VisibleObject {
-  std::string object_type, texture;
-  Pose pose;                 // of the body's frame
-  std::uint8_t instance_id;  // 1..255
-};
+using common::VisibleObject;
 
 /// The scene's objects at rest on the table, before any action; in the scene's order.
 std::vector<VisibleObject> visible_objects(const Scene& scene);
