@@ -148,7 +148,7 @@ class Killed(Faults):
         moments, kills, runs = random.Random(5), {"parent": 0, "worker": 0, "method": 0}, 0
         while sum(kills.values()) < (200 if FULL else 20) or min(kills.values()) < 4:
             runs += 1
-            self.assertLess(runs, 100, kills)
+            self.assertLess(runs, 400 if FULL else 100, kills)
             out = f"out{runs}"
             self.environment["LGABENCH_CACHE"] = str(self.dir / f"cache/{runs}")
             for disturbances in range(moments.randint(3, 8)):
