@@ -332,7 +332,8 @@ class Replays(Board):
     def test_a_made_up_cell_is_found_and_not_outvoted(self):
         honest = (self.entry / "cells.jsonl").read_bytes()
         self.forge(1)
-        self.assertIn("DIFFERS", self.verify("--cells", "2", expect=1))
+        # Of the honest cells the nonce chooses others; the same five in their order once in 6,720 times.
+        self.assertIn("DIFFERS", self.verify("--cells", "5", expect=1))
         self.assertEqual(self.tier(), "recomputed")
         self.assertIn("a replay differed", (self.dir / "board/leaderboard.csv").read_text())
         (self.entry / "cells.jsonl").write_bytes(honest)
