@@ -80,11 +80,14 @@ void misbehave(const std::string& how) {
     std::puts("{\"phase\": \"the fixture's own line\"}");
     for (int i = 0; i < 100000; ++i) std::puts("the fixture prints and prints");
   }
-  if (how == "messages")  // on the worker's own channel
-    std::thread([] {
-      for (const char line[] = "{\"phase\": \"the fixture's own\"}\n";;)
-        if (::write(3, line, std::strlen(line)) < 0) return;
-    }).detach();
+  if (how == "messages") {  // on the worker's own channel: one before anything else is said, then more and more
+    static constexpr char line[] = "{\"phase\": \"the fixture's own\"}\n";
+    const auto write_line = [] { return ::write(3, line, std::strlen(line)) >= 0; };
+    if (write_line())
+      std::thread([write_line] {
+        while (write_line()) continue;
+      }).detach();
+  }
   if (how == "fork") {
     [[maybe_unused]] const pid_t both_go_on = ::fork();
   }
