@@ -30,8 +30,8 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   const Scene& scene = test.scene;
   Episode episode{scene.arm, scene.index, scene.command, scene.hash(), failure::abstraction_empty, {}, "", {}, ""};
   if (test.abstraction_empty) return episode;
-  const Observation shown = environment.reset(scene);
-  const Observation observation = test.perception ? test.perception(shown, scene) : shown;
+  Observation observation = environment.reset(scene);
+  if (test.perception) observation = test.perception(observation, scene);
   try {
     const Move move = actor(environment, scene, observation);
     episode.failure = environment.step(move.action).failure;  // refuses one that is not executable()
