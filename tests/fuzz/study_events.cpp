@@ -27,8 +27,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   log.append({{"kind", "begin"}, {"slot", 0}, {"key", "k"}, {"consent", {{"given", true}}}});
   Session session(protocol(), std::move(log));
   int sent = 0;
-  for (const char* kind : {"opened", "familiarised", "example_seen", "start", "shown"})
-    session.post({{"key", std::to_string(++sent)}, {"page", "p"}, {"kind", kind}, {"page_ms", 1}}, sent);
+  for (const char* kind : {"opened", "familiarised", "example_seen", "start", "shown"}) {
+    ++sent;
+    session.post({{"key", std::to_string(sent)}, {"page", "p"}, {"kind", kind}, {"page_ms", 1}}, sent);
+  }
   for (const std::string_view line : fuzz::split(fuzz::text_of(data, size), "\n")) try {
       session.post(json_or_null(line), ++sent);
       canonical(session.state());

@@ -131,6 +131,38 @@ TEST_F(Play, ADamagedFileIsRefusedAndNeverACrash) {
   EXPECT_GT(refused, 50);
 }
 
+// Sets one byte of a file: `offset` bytes behind the start of the first place that holds `what`.
+std::string damaged(std::string file, const std::string& what, std::size_t offset, char value) {
+  const auto place = file.find(what);
+  EXPECT_NE(place, std::string::npos);
+  file[place + offset] = value;
+  return file;
+}
+
+std::string refusal(const std::string& file) {
+  try {
+    read_demonstrations(file, "d.hdf5");
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "read";
+}
+
+TEST_F(Play, SizesOfADamagedFileAreRefusedBeforeTheyAreAllocated) {
+  const auto demonstration = demonstrations(1);
+  const std::string good = bytes(demonstration);
+  const std::string unsigned_byte("\x10\0\0\0\1\0\0\0\0\0\x08\0", 12);  // an HDF5 datatype message
+  EXPECT_NE(refusal(damaged(good, unsigned_byte, 7, 0x10)).find("of another type"), std::string::npos);
+
+  const PictureSize size = demonstration.front().steps.front().observation.size;
+  std::string dimensions;
+  for (const std::size_t n : {demonstration.front().steps.size(), static_cast<std::size_t>(size.rows),
+                              static_cast<std::size_t>(size.columns), std::size_t{3}})
+    for (std::size_t i = 0; i < 8; ++i) dimensions += static_cast<char>(n >> (8 * i) & 0xff);
+  const std::string taller = damaged(good, dimensions, 8 + 2, 0x7f);  // some 8 million rows
+  EXPECT_NE(refusal(damaged(taller, dimensions.substr(16), 2, 0x7f)).find("expected the shape"), std::string::npos);
+}
+
 TEST_F(Play, CacheIsTheSameAsNoCache) {
   const DemonstrationCache cache{path / "cache", {{"engine", "1"}}, "test"};
   const Needs needs{Needs::Targets::truth, 1, .2};

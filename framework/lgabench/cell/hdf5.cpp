@@ -162,11 +162,15 @@ std::vector<T> read_dataset(const Library& h5, hid_t group, const char* name, hi
   const int rank = H5Sget_simple_extent_dims(space, found.data(), nullptr);
   bool fits = rank == static_cast<int>(sizes.size());
   hsize_t count = 1;
+  constexpr hsize_t most = hsize_t{1} << 28;  // bytes: a damaged size must not become an allocation
   for (std::size_t i = 0; fits && i < sizes.size(); ++i) {
-    fits = sizes[i] == 0 ? found[i] > 0 && found[i] < (1u << 24) : found[i] == sizes[i];
+    fits = (sizes[i] == 0 ? found[i] > 0 : found[i] == sizes[i]) && found[i] <= most / sizeof(T) / count;
     count *= found[i];
   }
   if (!fits) h5.fail(where, fmt::format("expected the shape [{}]", fmt::join(sizes, ", ")));
+  const Handle stored = h5.handle(H5Dget_type(set), where);
+  if (H5Tget_class(stored) != H5Tget_class(type) || H5Tget_size(stored) > sizeof(double))
+    h5.fail(where, "its values are of another type");  // HDF5 allocates by the stored size when it converts
   std::copy_n(found.begin(), sizes.size(), sizes.begin());
   std::vector<T> values(count);
   h5.check(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), where);

@@ -11,9 +11,9 @@ namespace lgabench {
 /// The file's bytes: a function of the demonstrations and the environment's id alone (no time stamps).
 ///     data                          attributes total, env_args {"env_name", "type", "env_kwargs"}
 ///     data/demo_i                   attributes num_samples, utterance
-///     data/demo_i/actions           T x 12 float32: the noiseless labels
+///     data/demo_i/actions           T x action numbers, float32: the noiseless labels
 ///     data/demo_i/instances         JSON text as uint8: an instance table for each step
-///     data/demo_i/obs/rgb, ids      T x 128 x 256 (x 3) uint8
+///     data/demo_i/obs/rgb, ids      T x rows x columns (x 3) uint8
 ///     mask/train                    names of all demonstrations
 /// It holds what a method may see: no role, scene, seed or Selection.
 /// @throws InputError if the HDF5 library fails.
