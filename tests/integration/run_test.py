@@ -268,10 +268,22 @@ class Shards(Case):
         run = json.loads(record.read_text())
         run["build"]["lgabench-worker"] = "0" * 64
         record.write_text(json.dumps(run))
+        for copy in ("without_plugin", "other_plugin"):
+            shutil.copytree(self.dir / "a", self.dir / copy)
+            record = self.dir / copy / "run.json"
+            run = json.loads(record.read_text())
+            plugin, = [plugin for plugin in run["plugins"] if plugin["kind"] == "method"]
+            if copy == "without_plugin":
+                run["plugins"].remove(plugin)
+            else:
+                plugin["sha256"] = "0" * 64
+            record.write_text(json.dumps(run))
         for runs, says in [
             (["a", "b"], r"a and b are not parts of one run: other cells: episodes 2 there, 3 wanted"),
             (["a", "forged"], rf"a/cells/{cell.name} and forged/cells/{cell.name}: other results of one cell: episodes"),
             (["a", "rebuilt"], r"a and rebuilt are not parts of one run: other builds of lgabench-worker"),
+            (["without_plugin", "a", "other_plugin"],
+             r"a and other_plugin are not parts of one run: other builds of method fixture_constant"),
             (["a", "none"], r"none/run.json: cannot be read"),
         ]:
             with self.subTest(runs):

@@ -236,7 +236,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     if (fs::equivalent(run, out, not_there))
       throw InputError(fmt::format("{}: both to be read and to be written; expected another OUT", out.string()));
     parts.emplace_back(run);
-    expect_same_programs(parts.front(), parts.back());
+    for (const Part& part : parts) expect_same_programs(part, parts.back());  // the first may lack what two others have
   }
   Json all = parts.front().json();
   for (const Part& part : parts) all = united(std::move(all), parts.front(), part);
