@@ -312,6 +312,16 @@ class Shards(Case):
             (self.dir / "first/run.json").read_text())["settings"])
         self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")
 
+    def test_two_rows_of_one_name_are_refused(self):
+        """Each is alone of its method in its run, and so named by the method."""
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference"]
+        for epochs in ("1", "2"):
+            self.call(*one, "--methods", f"gcbc_seg+epochs={epochs}", "--out", epochs)
+        said = self.call("merge", "both", "1", "2", expect=2).stderr
+        self.assertRegex(said, r"[12]/cells/\w+ and [12]/cells/\w+ both are gcbc_seg heart continuous \w+ n=10 seed=0, and "
+                               r"differ in method \(epochs\): .*--methods gcbc_seg\+epochs=1,gcbc_seg\+epochs=2, ")
+        self.assertFalse((self.dir / "both").exists())
+
     def test_one_without_cells_says_so(self):
         said = self.call("run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10",
                          "--seeds", "0", "--plugin-path", FIXTURES / "good", "--no-reference", "--shard", "2/2", "--out", "out")

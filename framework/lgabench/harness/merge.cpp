@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -172,6 +173,34 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
   return failed;
 }
 
+// Runs name their rows apart: two that a run has alone of their method have its id, whatever their options.
+void expect_one_of_each(const std::map<std::string, fs::path>& chosen, const Json& settings) {
+  const auto read = [](const fs::path& directory) {
+    const fs::path file = directory / "cell.json";
+    return read_cell(read_json(file, Links::refused), file.string());
+  };
+  std::map<std::string, fs::path> measured;  // by kind and title
+  for (const auto& item : chosen) {
+    const Cell cell = read(item.second);
+    const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), item.second);
+    if (is_new) continue;
+    const Json there = to_json(read(before->second)), here = to_json(cell);
+    std::vector<std::string> members, options;
+    for (const auto& [member, value] : here.items())
+      if (there.value(member, Json()) != value) members.push_back(member);
+    for (const auto& [option, value] : cell.method.options.items())
+      if (there["method"]["options"].value(option, Json()) != value) options.push_back(option);
+    std::string say = fmt::format("{} and {} both are {}, and differ in {}", before->second.string(),
+                                  item.second.string(), cell.title(), fmt::join(members, ", "));
+    if (!options.empty())
+      say += fmt::format(
+          " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
+          "--methods {}, whose names tell them apart",
+          fmt::join(options, ", "), fmt::join(settings.at("methods").get<std::vector<std::string>>(), ","));
+    throw InputError(say);
+  }
+}
+
 bool asks_live(const Part& part) {
   const Json request = part.json().value("request", Json::object());
   return request.is_object() && request.contains("answers") && request["answers"].is_string() &&
@@ -244,6 +273,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   std::map<std::string, fs::path> chosen;
   for (const std::string& key : all.at("cells").get<std::vector<std::string>>())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
+  if (all.at("cells") != parts.front().json().at("cells")) expect_one_of_each(chosen, all.at("request"));
 
   const Part& replies = with_all_replies(parts);
   const Json answers = replies.json().value("answers", Json());

@@ -18,7 +18,7 @@ struct MergeOutcome {
 /// stderr, as are differing processors. Runs may have other methods, scenarios, layouts, engines, numbers of
 /// demonstrations and seeds: `out` then has the cells of all.
 /// @throws InputError with nothing written: naming what differs, where the runs have other settings or programs;
-/// naming the cell, where two of them hold other results of one.
+/// naming the cell, where two of them hold other results of one, or two cells that a table has one place for.
 MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, const std::string& command);
 
 }  // namespace lgabench
