@@ -251,6 +251,9 @@ class Shards(Case):
         said = self.call("merge", "one", "part1", expect=3)
         self.assertRegex(said.stderr, rf"{torn.parent.name}.*episodes.jsonl does not have the bytes.*left out")
         self.assertIn(f"{self.CELLS // 2 + 1} in none of the runs", said.stderr)
+        self.call("merge", "one", "part1", "part2", expect=3)  # once the other is there
+        merged = json.loads((self.dir / "one/run.json").read_text())["merged"]
+        self.assertEqual([part["command"].split()[-1] for part in merged], ["1/2", "2/2"])
 
     def test_what_is_no_part_is_refused(self):
         one = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10", "--seeds", "0",

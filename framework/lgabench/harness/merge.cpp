@@ -234,6 +234,7 @@ Json merged_json(Json json, const std::vector<Part>& parts, const Json& answers,
     Json own = Json::object();
     for (const char* member : {"command", "machine", "started"}) own[member] = part.json().at(member);
     json["started"] = std::min(json["started"], own["started"]);
+    if (is_unconfined(part.path())) json["confinement"] = unconfined_run;
     merged.push_back(own);
     const Json &processor = own["machine"]["processor"], &first = json["machine"]["processor"];
     if (processor != first)
@@ -277,7 +278,12 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
 
   const Part& replies = with_all_replies(parts);
   const Json answers = replies.json().value("answers", Json());
-  const RunDirectory directory(out, merged_json(std::move(all), parts, answers, command), Existing::resume);
+  const Json record = merged_json(std::move(all), parts, answers, command);
+  const bool unconfined = is_unconfined(out);  // cells of an earlier merge stay
+  const RunDirectory directory(out, record, Existing::resume);
+  for (const char* member : {"command", "started", "answers", "merged", "confinement"})
+    directory.amend(member, record.value(member, Json()));
+  if (unconfined) directory.amend("confinement", unconfined_run);
   for (const Part& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;

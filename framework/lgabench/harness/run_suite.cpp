@@ -110,7 +110,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"version", LGABENCH_VERSION},
           {"program", plan.program},
           {"command", plan.command},
-          {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
+          {"confinement", plan.confined ? confinement_text() : unconfined_run},
           {"answers", answers_json(plan.answers)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",
@@ -262,12 +262,15 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
 }
 
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
+  const bool unconfined = plan.existing != Existing::fresh && is_unconfined(plan.out);
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
+  if (unconfined) directory.amend("confinement", unconfined_run);
   directory.amend("shard", shard_json(plan));
   keep_answers(plan.answers, plan.out);
   const bool asks = plan.live && plan.live->asks;
   if (asks) expect_replies_of(plan);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
+  if (!plan.confined && !missing.empty()) directory.amend("confinement", unconfined_run);
   RunOutcome outcome;
   outcome.reused = complete.size();
   Schedule schedule(missing);
