@@ -114,6 +114,11 @@ class PythonMethods(Case):
         again = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "again")
         self.assert_same_results("out", "again")
         self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
+        # An option that the method has no more is what it was to the recorded cells.
+        (self.dir / "mine.py").write_text(METHOD.replace('options = {"how":', 'options = {"what":'))
+        said = self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
+        self.assertIn("build: method mine", said.stdout)
+        (self.dir / "mine.py").write_text(METHOD)
         (self.dir / "helper.py").write_text("x = 2\n")
         said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
         self.assertIn("python differs", said.stderr)

@@ -91,8 +91,10 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     name(catalogue.find("engine", cell.engine));
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
-      for (const auto& [option, value] : cell.method.options.items())
-        if (value != method->options.at(option).at("default")) settings[cell.method.name][option] = value;
+      for (const auto& [option, value] : cell.method.options.items()) {
+        const auto known = method->options.find(option);  // none: of a plugin that had it when its run was recorded
+        if (known == method->options.end() || value != known->at("default")) settings[cell.method.name][option] = value;
+      }
     }
     programs = build_of(cell, catalogue);
   }
