@@ -75,6 +75,8 @@ class Policy:
             return [float("nan")] * 12
         if self.how == "short":
             return [0.5]
+        if self.how == "huge":
+            return [1e300] + list(self.label[1:])
         return self.label
 '''
 
@@ -135,8 +137,8 @@ class PythonMethods(Case):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
                    "curve_name": "a curve's name", "read": "PermissionError"}
-        found, _ = self.how("", "nan", "short", *reasons, expect=3)
-        for how in ("nan", "short"):
+        found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)
+        for how in ("nan", "short", "huge"):
             episodes = [json.loads(line) for line in (found[how][0] / "episodes.jsonl").read_text().splitlines()]
             self.assertEqual({e["failure"] for e in episodes}, {"method_error"}, how)
         for how, reason in reasons.items():
