@@ -448,6 +448,20 @@ std::vector<Cell> cells_to_play() {
   return cells;
 }
 
+TEST(Workers, ThatCannotBeStartedEndTheirOwnTaskAlone) {
+  std::vector<std::string> reasons;
+  const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
+                          [&](std::size_t, const WorkerEnd& end) { reasons.push_back(end.complaint->reason); }, [] {}};
+  const auto make = [](std::size_t i) -> WorkerTask {
+    if (i == 0) throw InputError("no file");
+    throw fs::filesystem_error("no directory", std::make_error_code(std::errc::no_space_on_device));
+  };
+  EXPECT_TRUE(run_workers(2, make, {}, events));
+  ASSERT_EQ(reasons.size(), 2u);
+  EXPECT_EQ(reasons[0], "no file");
+  EXPECT_SAYS(reasons[1], "no directory");
+}
+
 TEST(Shards, ArePartsWithAShareOfEachKindOfCell) {
   const std::vector<Cell> cells = cells_to_play();
   for (const int count : {1, 2, 3, 5, 20}) {
