@@ -125,6 +125,19 @@ class PythonMethods(Case):
         said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
         self.assertIn("python differs", said.stderr)
 
+    def test_a_package_beside_the_file_is_part_of_the_build(self):
+        (self.dir / "pack").mkdir()
+        (self.dir / "pack/__init__.py").write_text("from pack.inner import x\n")
+        (self.dir / "pack/inner.py").write_text("x = 1\n")
+        (self.dir / "pack/unused.py").write_text("no Python\n")
+        (self.dir / "mine.py").write_text(METHOD.replace("import helper", "import pack"))
+        run = [*RUN, "--methods", "mine.py:Mine", "--out", "out"]
+        self.call(*run)
+        (_, status), = self.cells("out").values()
+        self.assertLessEqual({"pack/__init__.py", "pack/inner.py"}, set(json.loads(status["build"]["python"])))
+        (self.dir / "pack/inner.py").write_text("x = 2\n")
+        self.assertIn("python differs", self.call(*run, expect=2).stderr)
+
     def test_who_says_where_a_selection_comes_from(self):
         found, _ = self.how("", "rule", "edit")
         provenance = {}
