@@ -265,6 +265,12 @@ class Recorded(Case):
                           self.call(*run, source, expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
+    def test_select_refuses_options_of_a_server_without_one(self):
+        self.assertIn("--model: expected --answers openai or cassette:FILE with it, not recorded",
+                      self.call("select", "heart", "--model", "m", expect=2).stderr)
+        self.assertIn("--max-queries: expected --answers openai with it",
+                      self.call("select", "heart", "--max-queries", "5", expect=2).stderr)
+
     def test_a_scenario_without_answers_is_played_by_methods_that_ask_no_model(self):
         run = ["run", "q1", "--scenarios", "stack_small_block_on_hexagon", "--demos", "10", "--seeds", "0", "--episodes", "2",
                "--set", "*.epochs=2", "--out"]
