@@ -185,18 +185,20 @@ void expect_one_of_each(const std::map<std::string, fs::path>& chosen, const Jso
     const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), item.second);
     if (is_new) continue;
     const Json there = to_json(read(before->second)), here = to_json(cell);
-    std::vector<std::string> members, options;
-    for (const auto& [member, value] : here.items())
-      if (there.value(member, Json()) != value) members.push_back(member);
-    for (const auto& [option, value] : cell.method.options.items())
-      if (there["method"]["options"].value(option, Json()) != value) options.push_back(option);
+    const auto differing = [](const Json& a, const Json& b) {
+      std::vector<std::string> members;
+      for (const auto& [member, value] : b.items())
+        if (!a.is_object() || a.value(member, Json()) != value) members.push_back(member);
+      return members;
+    };
+    const std::vector<std::string> options = differing(there["method"]["options"], cell.method.options);
     std::string say = fmt::format("{} and {} both are {}, and differ in {}", before->second.string(),
-                                  item.second.string(), cell.title(), fmt::join(members, ", "));
+                                  item.second.string(), cell.title(), fmt::join(differing(there, here), ", "));
     if (!options.empty())
       say += fmt::format(
           " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
           "--methods {}, whose names tell them apart",
-          fmt::join(options, ", "), fmt::join(settings.at("methods").get<std::vector<std::string>>(), ","));
+          fmt::join(options, ", "), fmt::join(JsonReader(settings, "run.json: /request").at("methods").strings(), ","));
     throw InputError(say);
   }
 }
