@@ -138,6 +138,15 @@ class PythonMethods(Case):
         (self.dir / "pack/inner.py").write_text("x = 2\n")
         self.assertIn("python differs", self.call(*run, expect=2).stderr)
 
+    def test_runs_of_other_modules_are_not_merged(self):
+        for seed in ("0", "1"):
+            (self.dir / "helper.py").write_text(f"x = {seed}\n")
+            self.call(*with_options(RUN, "--seeds", seed), "--methods", "mine.py:Mine", "--out", "of" + seed)
+        said = self.call("merge", "both", "of0", "of1", expect=2).stderr
+        self.assertRegex(said, r"of[01]/cells/\w+ and of[01]/cells/\w+: other builds of method mine: their interpreter, ")
+        self.assertFalse((self.dir / "both").exists())
+        self.call("merge", "one", "of0")
+
     def test_who_says_where_a_selection_comes_from(self):
         found, _ = self.how("", "rule", "edit")
         provenance = {}

@@ -203,6 +203,24 @@ void expect_one_of_each(const std::map<std::string, fs::path>& chosen, const Jso
   }
 }
 
+// What a method in Python is made of beside its file (interpreter, packages, modules) stands with its cells alone.
+void expect_one_python(const std::map<std::string, fs::path>& chosen) {
+  std::map<std::string, std::pair<std::string, fs::path>> known;  // by method: what, and where
+  for (const auto& item : chosen) {
+    const fs::path file = item.second / "status.json", cell_file = item.second / "cell.json";
+    const Json status = read_json(file, Links::refused);
+    const JsonReader reader(status, file.string());
+    if (reader.at("state").string() != "ok" || !reader.at("build").has("python")) continue;
+    const std::string python = reader.at("build").at("python").string();
+    const Cell cell = read_cell(read_json(cell_file, Links::refused), cell_file.string());
+    const auto [first, is_new] = known.try_emplace(cell.method.id, python, item.second);
+    if (!is_new && first->second.first != python)
+      throw InputError(
+          fmt::format("{} and {}: other builds of method {}: their interpreter, packages or modules differ",
+                      first->second.second.string(), item.second.string(), cell.method.id));
+  }
+}
+
 bool asks_live(const Part& part) {
   const Json request = part.json().value("request", Json::object());
   return request.is_object() && request.contains("answers") && request["answers"].is_string() &&
@@ -276,6 +294,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   std::map<std::string, fs::path> chosen;
   for (const std::string& key : all.at("cells").get<std::vector<std::string>>())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
+  expect_one_python(chosen);
   if (all.at("cells") != parts.front().json().at("cells")) expect_one_of_each(chosen, all.at("request"));
 
   const Part& replies = with_all_replies(parts);
