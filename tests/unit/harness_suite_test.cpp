@@ -271,6 +271,14 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
   EXPECT_THROW(rows({"c+epochs=5"}), PluginError);
 }
 
+TEST(Variants, RefuseTheIdOfAReferenceRow) {
+  Catalogue named = catalogue();
+  named.plugins[0].id = "oracle";
+  const Grid grid{{"heart"}, {"cells"}, {"e"}, {"oracle"}, {10}, {0}, 5, 7, false};
+  EXPECT_SAYS(message_of<InputError>([&] { expand(load_suite("q1"), grid, {}, named); }),
+              "methods: \"oracle\" is a reference row; expected a method of another id");
+}
+
 TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
   for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"}) {
