@@ -13,8 +13,8 @@ struct MergeOutcome {
 };
 
 /// Puts the cells of `runs` into `out`, a new directory or that of an earlier merge: of each cell a finished one,
-/// where there is none a failed one. run.json is the first run's, with `command`, the earliest start, the confinement of
-/// a run that was let out of it, and what the parts say of themselves under "merged". A cell that is damaged or of
+/// where there is none a failed one. run.json is the first run's, with `command`, the earliest start, the confinement
+/// of a run that was let out of it, and what the parts say of themselves under "merged". A cell that is damaged or of
 /// another build is left out, and that is said on stderr, as are differing processors. Runs may have other methods,
 /// scenarios, layouts, engines, numbers of demonstrations and seeds: `out` then has the cells of all.
 /// @throws InputError with nothing written: naming what differs, where the runs have other settings or programs;
