@@ -50,8 +50,8 @@ SceneObject sample_target(const Scenario& scenario, const FeatureSet& meant, con
   std::copy_if(meant.object_types.begin(), meant.object_types.end(), std::back_inserter(types),
                [&](const std::string& type) { return natural_textures().count(type) > 0; });
   if (types.empty() || meant.textures.empty())
-    throw InputError(fmt::format("scenario \"{}\": expected a distribution with a target that can be shown, got {}",
-                                 scenario.id, canonical(to_json(meant))));
+    throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a target that can be shown, got {}",
+                                    scenario.id, canonical(to_json(meant))));
   if (first && types.size() > 1) types.erase(std::remove(types.begin(), types.end(), first->type), types.end());
   const std::string type = any_of(types, random);
   return {type, natural_texture(type, meant.textures, random), role::target, {}, 0, 0};

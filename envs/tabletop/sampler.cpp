@@ -35,7 +35,7 @@ Features sample_features(const Scenario& scenario, const Layout& layout, const F
   std::copy_if(distribution.object_types.begin(), distribution.object_types.end(), std::back_inserter(types),
                [&](const std::string& type) { return can_show(type, widest_m); });
   if (types.empty() || distribution.textures.empty())
-    throw InputError(
+    throw NothingToShow(
         fmt::format("scenario \"{}\", layout {}: expected a distribution with {} that can be shown, got {}",
                     scenario.id, layout.id, whom, canonical(to_json(distribution))));
   const std::string& type = any_of(types, random);
@@ -135,6 +135,8 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
 // docs/protocol.md, section 4 (q3): all types of the choice, in random order, but a target first.
 std::vector<SceneObject> sample_choice(const Request& request, RandomStream random) {
   const auto second = request.task.second();
+  if (second && !request.meant.second)
+    throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a second set", request.scenario.id));
   const FeatureSet& right = second ? *request.meant.second : request.meant.target;
   const Role if_right = second ? second->in_scenes : role::target;
   std::vector<SceneObject> objects;

@@ -51,17 +51,27 @@ def _versions(tree):
     return versions
 
 
-def _siblings(file, tree, seen):
-    """Modules beside the file that it, or one of them, imports: their hashes are part of what a cell depends on."""
+def _files(folder, module):
+    """What a module of that name in the folder is made of: one file, or all of a package's."""
+    file = folder / f"{module}.py"
+    return [file] if file.is_file() else sorted((folder / module).rglob("*.py"))
+
+
+def _siblings(folder, tree, seen):
+    """Modules in the method's folder that it, or one of them, imports: their hashes are part of what a cell depends on."""
     hashes = {}
     for module in sorted(_imports(tree)):
-        beside = file.parent / f"{module}.py"
-        if module in seen or not beside.is_file() or beside.resolve() == file.resolve():
-            continue
-        seen.add(module)
-        source = beside.read_bytes()
-        hashes[beside.name] = hashlib.sha256(source).hexdigest()
-        hashes.update(_siblings(beside, ast.parse(source, str(beside)), seen))
+        for file in _files(folder, module):
+            if file.resolve() in seen:
+                continue
+            seen.add(file.resolve())
+            source = file.read_bytes()
+            hashes[file.relative_to(folder).as_posix()] = hashlib.sha256(source).hexdigest()
+            try:
+                own = ast.parse(source, str(file))
+            except (SyntaxError, ValueError):
+                continue  # whoever imports it is told where
+            hashes.update(_siblings(folder, own, seen))
     return hashes
 
 
@@ -101,5 +111,5 @@ def describe(written):
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
-            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file, tree, set())},
+            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file.parent, tree, {file.resolve()})},
             "interpreter": sys.executable, "reads": sorted(paths)}

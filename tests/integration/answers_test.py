@@ -265,6 +265,12 @@ class Recorded(Case):
                           self.call(*run, source, expect=2).stderr)
         self.assertFalse((self.dir / "out").exists())
 
+    def test_select_refuses_options_of_a_server_without_one(self):
+        self.assertIn("--model: expected --answers openai or cassette:FILE with it, not recorded",
+                      self.call("select", "heart", "--model", "m", expect=2).stderr)
+        self.assertIn("--max-queries: expected --answers openai with it",
+                      self.call("select", "heart", "--max-queries", "5", expect=2).stderr)
+
     def test_a_scenario_without_answers_is_played_by_methods_that_ask_no_model(self):
         run = ["run", "q1", "--scenarios", "stack_small_block_on_hexagon", "--demos", "10", "--seeds", "0", "--episodes", "2",
                "--set", "*.epochs=2", "--out"]
@@ -410,6 +416,21 @@ class Humans(Case):
         self.assertRegex(one, r"Human .*‡")  # a scenario is missing from the mean
         refused = self.call(*self.RUN[:2], "--scenarios", "letter", *self.RUN[4:], "--out", "none", "--humans", "people", expect=2)
         self.assertIn("--humans: expected answers for lga_hill in a scenario of this run", refused.stderr)
+
+    def test_what_no_layout_shows_is_an_empty_answer(self):
+        """The pallet is the goal; a second one is never shown."""
+        answers = json.loads((self.dir / "people/made-up-1.json").read_text())["answers"]
+        for answer in answers:
+            answer["specified"]["selection"]["target"]["object_types"] = ["pallet"]
+        self.write("made-up-1", answers=answers)
+        self.call(*self.RUN, "--out", "out", "--humans", "people", "--no-reference")
+        own = [key for key, (cell, _) in self.cells("out").items()
+               if (cell["method"]["id"], cell.get("participant", {}).get("id")) == ("human", "made-up-1")]
+        self.assertEqual(len(own), 2)
+        for key in own:
+            episodes = [json.loads(line) for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines()]
+            self.assertEqual({(e["failure"], e["attribution"]) for e in episodes}, {("abstraction_empty", "abstraction")})
+        self.assert_matches_schemas("out")
 
     def test_what_was_edited_must_be_what_is_proposed(self):
         proposal = self.proposals["red_heart"][1]

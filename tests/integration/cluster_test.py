@@ -67,7 +67,10 @@ class Elements(Case):
     def test_what_is_wrong_is_said_before_anything_is_written(self):
         for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
                               (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),
-                              (("--elements", "2", "--time", "2h"), "--time 2h: expected HH:MM:SS")]:
+                              (("--elements", "2", "--time", "2h"), "--time 2h: expected HH:MM:SS"),
+                              (("--elements", "2", "--fresh"), "--fresh: of run alone"),
+                              (("--elements", "2", "--dry-run"), "--dry-run: of run alone"),
+                              (("--elements", "2", "--debug", "0"), "--debug: of run alone")]:
             with self.subTest(words):
                 done = self.call("cluster", *with_options(RUN + ("--time", "00:30:00", "--out", "out"), *words), expect=2)
                 self.assertIn(reason, done.stderr)

@@ -9,7 +9,7 @@ import shutil
 import socket
 import unittest
 
-from case import BUILD, Case, FIXTURES
+from case import BUILD, Case, FIXTURES, with_options
 
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference"]
 IN_CI = os.environ.get("CI") == "true"
@@ -133,6 +133,37 @@ class Confinement(Case):
         found = self.probes([f"read+path={BUILD}/share/lgabench/scenarios/heart.json"], "--unconfined")
         self.assertEqual(list(found.values()), ["reached"])
         self.assertEqual(self.parts, "none, by --unconfined")
+
+    def test_a_run_with_one_unconfined_cell_is_unconfined(self):
+        def confinement(run):
+            return json.loads((self.dir / run / "run.json").read_text())["confinement"]
+
+        def play(out, *words):
+            self.call(*with_options(RUN, "--seeds", "0:2"), "--plugin-path", FIXTURES / "good", "--methods", "fixture_constant",
+                      "--out", out, *words)
+        play("out")
+        kept = confinement("out")
+        self.assertNotRegex(kept, "^none")
+        play("out", "--unconfined")  # computes nothing
+        self.assertEqual(confinement("out"), kept)
+        shutil.copytree(self.dir / "out", self.dir / "confined")
+        shutil.rmtree(next((self.dir / "out/cells").iterdir()))
+        play("out", "--unconfined")
+        self.assertEqual(confinement("out"), "none, by --unconfined")
+        # Taken up with another build: the cell stays, and what is said of it.
+        run = json.loads((self.dir / "out/run.json").read_text())
+        run["build"]["lgabench-worker"] = "0" * 64
+        (self.dir / "out/run.json").write_text(json.dumps(run))
+        play("out", "--resume")
+        self.assertNotIn("0" * 64, (self.dir / "out/run.json").read_text())
+        self.assertEqual(confinement("out"), "none, by --unconfined")
+        self.call("merge", "merged", "confined")
+        self.assertEqual(confinement("merged"), kept)
+        for parts in (["confined", "out"], ["confined"]):  # into the earlier merge's directory, whose cells stay
+            self.call("merge", "merged", *parts)
+            self.assertEqual(confinement("merged"), "none, by --unconfined")
+        play("out", "--fresh")
+        self.assertEqual(confinement("out"), kept)
 
 
 if __name__ == "__main__":

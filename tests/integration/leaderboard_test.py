@@ -168,8 +168,15 @@ class Submissions(Board):
         failed = [line for line in lines if "failed" in line]
         self.assertEqual([line["outcomes"] for line in failed], [{"test": "!!!!"}])
 
+    def test_outside_of_a_checkout_a_board_is_asked_for(self):
+        for action in (["check"], ["build"], ["verify", "--by", "B. Reader"], ["withdraw", "x", "--reason", "y"]):
+            self.assertRegex(self.call("leaderboard", *action, expect=2).stderr,
+                             "results/leaderboard: no leaderboard is there; give --board DIR, or call it where")
+        self.assertFalse((self.dir / "results").exists())
+
     def test_an_archive_has_what_checks_it_and_the_same_bytes_each_time(self):
         self.take_run()
+        (self.dir / "board").mkdir()
         self.assertIn("no entry to pack", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
         self.add()
         self.leaderboard("build", "--archive", "one.tar.gz")

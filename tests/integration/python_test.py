@@ -75,6 +75,8 @@ class Policy:
             return [float("nan")] * 12
         if self.how == "short":
             return [0.5]
+        if self.how == "huge":
+            return [1e300] + list(self.label[1:])
         return self.label
 '''
 
@@ -114,9 +116,36 @@ class PythonMethods(Case):
         again = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "again")
         self.assert_same_results("out", "again")
         self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
+        # An option that the method has no more is what it was to the recorded cells.
+        (self.dir / "mine.py").write_text(METHOD.replace('options = {"how":', 'options = {"what":'))
+        said = self.call("verify", "out", "--all", "--methods", "mine.py:Mine", "--python", PYTHON)
+        self.assertIn("build: method mine", said.stdout)
+        (self.dir / "mine.py").write_text(METHOD)
         (self.dir / "helper.py").write_text("x = 2\n")
         said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
         self.assertIn("python differs", said.stderr)
+
+    def test_a_package_beside_the_file_is_part_of_the_build(self):
+        (self.dir / "pack").mkdir()
+        (self.dir / "pack/__init__.py").write_text("from pack.inner import x\n")
+        (self.dir / "pack/inner.py").write_text("x = 1\n")
+        (self.dir / "pack/unused.py").write_text("no Python\n")
+        (self.dir / "mine.py").write_text(METHOD.replace("import helper", "import pack"))
+        run = [*RUN, "--methods", "mine.py:Mine", "--out", "out"]
+        self.call(*run)
+        (_, status), = self.cells("out").values()
+        self.assertLessEqual({"pack/__init__.py", "pack/inner.py"}, set(json.loads(status["build"]["python"])))
+        (self.dir / "pack/inner.py").write_text("x = 2\n")
+        self.assertIn("python differs", self.call(*run, expect=2).stderr)
+
+    def test_runs_of_other_modules_are_not_merged(self):
+        for seed in ("0", "1"):
+            (self.dir / "helper.py").write_text(f"x = {seed}\n")
+            self.call(*with_options(RUN, "--seeds", seed), "--methods", "mine.py:Mine", "--out", "of" + seed)
+        said = self.call("merge", "both", "of0", "of1", expect=2).stderr
+        self.assertRegex(said, r"of[01]/cells/\w+ and of[01]/cells/\w+: other builds of method mine: their interpreter, ")
+        self.assertFalse((self.dir / "both").exists())
+        self.call("merge", "one", "of0")
 
     def test_who_says_where_a_selection_comes_from(self):
         found, _ = self.how("", "rule", "edit")
@@ -130,8 +159,8 @@ class PythonMethods(Case):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
                    "curve_name": "a curve's name", "read": "PermissionError"}
-        found, _ = self.how("", "nan", "short", *reasons, expect=3)
-        for how in ("nan", "short"):
+        found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)
+        for how in ("nan", "short", "huge"):
             episodes = [json.loads(line) for line in (found[how][0] / "episodes.jsonl").read_text().splitlines()]
             self.assertEqual({e["failure"] for e in episodes}, {"method_error"}, how)
         for how, reason in reasons.items():

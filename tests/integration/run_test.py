@@ -251,6 +251,9 @@ class Shards(Case):
         said = self.call("merge", "one", "part1", expect=3)
         self.assertRegex(said.stderr, rf"{torn.parent.name}.*episodes.jsonl does not have the bytes.*left out")
         self.assertIn(f"{self.CELLS // 2 + 1} in none of the runs", said.stderr)
+        self.call("merge", "one", "part1", "part2", expect=3)  # once the other is there
+        merged = json.loads((self.dir / "one/run.json").read_text())["merged"]
+        self.assertEqual([part["command"].split()[-1] for part in merged], ["1/2", "2/2"])
 
     def test_what_is_no_part_is_refused(self):
         one = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10", "--seeds", "0",
@@ -268,10 +271,22 @@ class Shards(Case):
         run = json.loads(record.read_text())
         run["build"]["lgabench-worker"] = "0" * 64
         record.write_text(json.dumps(run))
+        for copy in ("without_plugin", "other_plugin"):
+            shutil.copytree(self.dir / "a", self.dir / copy)
+            record = self.dir / copy / "run.json"
+            run = json.loads(record.read_text())
+            plugin, = [plugin for plugin in run["plugins"] if plugin["kind"] == "method"]
+            if copy == "without_plugin":
+                run["plugins"].remove(plugin)
+            else:
+                plugin["sha256"] = "0" * 64
+            record.write_text(json.dumps(run))
         for runs, says in [
             (["a", "b"], r"a and b are not parts of one run: other cells: episodes 2 there, 3 wanted"),
             (["a", "forged"], rf"a/cells/{cell.name} and forged/cells/{cell.name}: other results of one cell: episodes"),
             (["a", "rebuilt"], r"a and rebuilt are not parts of one run: other builds of lgabench-worker"),
+            (["without_plugin", "a", "other_plugin"],
+             r"a and other_plugin are not parts of one run: other builds of method fixture_constant"),
             (["a", "none"], r"none/run.json: cannot be read"),
         ]:
             with self.subTest(runs):
@@ -299,6 +314,16 @@ class Shards(Case):
         self.assertEqual(run["settings"], {"gcbc_seg": {"epochs": 1}} | json.loads(
             (self.dir / "first/run.json").read_text())["settings"])
         self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")
+
+    def test_two_rows_of_one_name_are_refused(self):
+        """Each is alone of its method in its run, and so named by the method."""
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "2", "--no-reference"]
+        for epochs in ("1", "2"):
+            self.call(*one, "--methods", f"gcbc_seg+epochs={epochs}", "--out", epochs)
+        said = self.call("merge", "both", "1", "2", expect=2).stderr
+        self.assertRegex(said, r"[12]/cells/\w+ and [12]/cells/\w+ both are gcbc_seg heart continuous \w+ n=10 seed=0, and "
+                               r"differ in method \(epochs\): .*--methods gcbc_seg\+epochs=1,gcbc_seg\+epochs=2, ")
+        self.assertFalse((self.dir / "both").exists())
 
     def test_one_without_cells_says_so(self):
         said = self.call("run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", "--demos", "10",

@@ -344,6 +344,11 @@ TEST(Action, RefusesWhatCannotBeCarriedOut) {
   EXPECT_SAYS(refusal(bad), "pose0.qx: expected a rotation of norm 1e-6 or more, got 1e-07");
   bad.pose0.rotation.x = std::numeric_limits<double>::infinity();
   EXPECT_SAYS(refusal(bad), "pose0.qx: expected a finite number");
+  bad = good;
+  bad.pose1.position_m.x = 1e39;  // whose record would be infinite, which is no JSON
+  EXPECT_SAYS(refusal(bad), "pose1.x: expected a number that a float can hold, got 1e+39");
+  bad.pose1.position_m.x = -std::numeric_limits<float>::max();
+  EXPECT_NO_THROW(executable(two_poses(), bad));
   EXPECT_SAYS(refusal({.5, 0}), "action: expected 12 numbers, got 2");
 }
 

@@ -271,6 +271,14 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
   EXPECT_THROW(rows({"c+epochs=5"}), PluginError);
 }
 
+TEST(Variants, RefuseTheIdOfAReferenceRow) {
+  Catalogue named = catalogue();
+  named.plugins[0].id = "oracle";
+  const Grid grid{{"heart"}, {"cells"}, {"e"}, {"oracle"}, {10}, {0}, 5, 7, false};
+  EXPECT_SAYS(message_of<InputError>([&] { expand(load_suite("q1"), grid, {}, named); }),
+              "methods: \"oracle\" is a reference row; expected a method of another id");
+}
+
 TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
   for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"}) {
@@ -446,6 +454,20 @@ std::vector<Cell> cells_to_play() {
         cells.push_back(cell);
       }
   return cells;
+}
+
+TEST(Workers, ThatCannotBeStartedEndTheirOwnTaskAlone) {
+  std::vector<std::string> reasons;
+  const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
+                          [&](std::size_t, const WorkerEnd& end) { reasons.push_back(end.complaint->reason); }, [] {}};
+  const auto make = [](std::size_t i) -> WorkerTask {
+    if (i == 0) throw InputError("no file");
+    throw fs::filesystem_error("no directory", std::make_error_code(std::errc::no_space_on_device));
+  };
+  EXPECT_TRUE(run_workers(2, make, {}, events));
+  ASSERT_EQ(reasons.size(), 2u);
+  EXPECT_EQ(reasons[0], "no file");
+  EXPECT_SAYS(reasons[1], "no directory");
 }
 
 TEST(Shards, ArePartsWithAShareOfEachKindOfCell) {

@@ -31,6 +31,21 @@ TEST(Board, WhatIsBuiltIsCurrentAndAnEditIsNot) {
   EXPECT_SAYS(all(check(board.path).problems), "leaderboard.csv: not what lgabench leaderboard build makes");
 }
 
+TEST(Board, ARowSaysWhatTheKernelCouldNotConfine) {
+  const TemporaryDirectory board;
+  for (const auto& [name, confinement] : {std::pair("a", "Landlock 6, seccomp"),
+                                          {"b", "Landlock 2 (without: truncation, TCP, signals), seccomp"},
+                                          {"c", "no Landlock (files), seccomp"}}) {
+    Entry entry = made_entry(small_setting(), name, .5);
+    entry.evidence[0]["confinement"] = confinement;
+    write_entry(board.path, entry);
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "README.md");
+  EXPECT_SAYS(page, "recomputed; partly confined");
+  EXPECT_SAYS(page, "recomputed; unconfined");
+}
+
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {
   std::string text = read_file(file);
   ASSERT_NE(text.find(old), text.npos) << old << " in " << file;

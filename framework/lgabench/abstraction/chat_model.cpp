@@ -84,7 +84,8 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests) {
   for (std::size_t i = working; i > 0; --i) threads.emplace_back(work);
   {
     std::unique_lock lock(mutex);
-    for (std::size_t told = 0; working > 0;) {
+    std::size_t told = 0;
+    while (working > 0) {
       const bool quiet = changed.wait_for(lock, std::chrono::seconds(10)) == std::cv_status::timeout;
       if ((finished == told && !quiet) || !options_.progress) continue;
       told = finished;

@@ -16,7 +16,7 @@ namespace lgabench {
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
 
 /// Scene `index` to demonstrate. Where the scenario leaves it to the method, targets are drawn from `selections`, one a
-/// command; empty: the truth. @throws InputError where the layout is unknown or can show nothing of the distribution.
+/// command; empty: the truth. @throws as EnvironmentType::sample().
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index);
 

@@ -95,6 +95,20 @@ Row row_of(const Method* method, const Selected& selected, const Scenario& scena
   return nothing ? Row::abstraction_empty : Row::learns;
 }
 
+// What is shown. Where the layout can show nothing of what was selected, the row's abstraction is empty.
+std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, const Selected& selected, Row& row) {
+  if (row != Row::learns) return {};
+  try {
+    return sample(scenario, cell.layout, selected, cell.training_seed, scenario.training_scenes(cell.demonstrations));
+  } catch (const NothingToShow&) {
+    Selected truth;  // throws again where the scenario is at fault
+    truth.needs.targets = Needs::Targets::truth;
+    sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(1));
+    row = Row::abstraction_empty;
+    return {};
+  }
+}
+
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests) {
@@ -186,12 +200,11 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
                     answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
-  const Row row = row_of(method.get(), selected, scenario);
+  Row row = row_of(method.get(), selected, scenario);
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
   phases.begin("sample");
-  const int wanted = row == Row::learns ? scenario.training_scenes(cell.demonstrations) : 0;
-  const std::vector<Scene> scenes = sample(scenario, cell.layout, selected, cell.training_seed, wanted);
+  const std::vector<Scene> scenes = training_scenes(scenario, cell, selected, row);
 
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");

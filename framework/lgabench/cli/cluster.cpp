@@ -122,7 +122,15 @@ std::string submit_script(const fs::path& out) {
       joined({out.string()}));
 }
 
+// Options of one call, which an element would obey each time it is submitted or requeued.
+void expect_repeatable(const RunArguments& run) {
+  for (const auto& [given, option] :
+       {std::pair{run.fresh, "--fresh"}, {run.dry_run, "--dry-run"}, {!run.debug.empty(), "--debug"}})
+    if (given) throw InputError(fmt::format("{}: of run alone; an element goes on where it stopped", option));
+}
+
 int write_scripts(Arguments a) {
+  expect_repeatable(a.run);
   const double limit_s = seconds_of(a.time);
   const fs::path out = fs::absolute(a.run.out.empty() ? "runs/" + a.run.suite + "-cluster" : a.run.out);
   a.run.out = out.string();
@@ -169,7 +177,7 @@ void add_cluster(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\n"
       "Writes array.sbatch, merge.sbatch (after it: the parts together, and their report) and submit into --out; all\n"
-      "other options are those of run. It submits nothing.");
+      "other options are those of run, without --fresh, --dry-run and --debug. It submits nothing.");
   verb->callback([a, &exit] { exit = write_scripts(*a); });
 }
 

@@ -45,6 +45,14 @@ int add(const Arguments& a) {
   return ok;
 }
 
+// What `add` makes and all else needs.
+void expect_board(const fs::path& board) {
+  if (!fs::is_directory(board))
+    throw InputError(fmt::format(
+        "{}: no leaderboard is there; give --board DIR, or call it where lgabench's sources are checked out",
+        board.string()));
+}
+
 // One line for each entry; a verification is recorded, whatever it says.
 int verify(Arguments a) {
   if (a.replay.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
@@ -150,6 +158,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "Exit 1: refused, different, or a problem.");
   verb->callback([a, &app, &exit] {
     a->replay.program = app.version();
+    if (a->action != "add") expect_board(a->board);
     exit = a->action == "verify"  ? verify(*a)
            : a->action == "add"   ? add(*a)
            : a->action == "build" ? build(*a)

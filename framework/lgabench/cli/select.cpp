@@ -49,6 +49,9 @@ Answerer make_answerer(const Arguments& a) {
   const std::string file = live ? a.cassette : cassette_of(a.answers);
   if (live && file.empty()) throw InputError("--answers openai: expected --cassette FILE too");
   if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
+  if (file.empty() && !a.model.empty())
+    throw InputError(fmt::format("--model: expected --answers openai or cassette:FILE with it, not {}", a.answers));
+  if (!live && a.max_queries >= 0) throw InputError("--max-queries: expected --answers openai with it");
   if (file.empty()) return answerer;
   answerer.cassette = std::make_unique<Cassette>(file);
   ChatOptions options{a.model, a.concurrency, a.max_queries, {}};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lgabench {
 namespace {
@@ -59,6 +60,8 @@ Action executable(const ActionSpace& space, const Action& action) {
   for (std::size_t i = 0; i < done.size(); ++i) {
     const auto& [name, unit, low, high] = space.numbers[i];
     if (!std::isfinite(done[i])) throw MethodError(fmt::format("{}: expected a finite number, got {}", name, done[i]));
+    if (std::abs(done[i]) > std::numeric_limits<float>::max())  // as it is recorded
+      throw MethodError(fmt::format("{}: expected a number that a float can hold, got {}", name, done[i]));
     done[i] = std::clamp(done[i], low, high);
   }
   for (const auto& rotation : space.rotations) {

@@ -43,7 +43,7 @@ Json to_json(const ActionSpace& space);
 ActionSpace read_action_space(const JsonReader& reader);
 
 /// The action that is carried out: numbers clipped to their bounds, rotations normalised.
-/// @throws MethodError for another number of them, one that is not finite, or a rotation of norm below 1e-6.
+/// @throws MethodError for another number of them, one that is not finite as a float, or a rotation of norm below 1e-6.
 Action executable(const ActionSpace& space, const Action& action);
 
 /// As files, labels and learners have it: rounded to float, quaternions with w >= 0, since q and -q turn alike and a

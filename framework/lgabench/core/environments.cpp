@@ -39,6 +39,8 @@ void append_new(std::vector<std::string>& words, const std::vector<std::string>&
 
 }  // namespace
 
+NothingToShow::~NothingToShow() = default;
+
 std::vector<std::string> environment_ids() {
   static const std::vector<std::string> ids = [] {
     std::vector<std::string> found;

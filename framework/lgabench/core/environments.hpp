@@ -9,6 +9,7 @@
 
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/environment.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -40,6 +41,13 @@ struct SceneRequest {
 /// An observation with the errors that a perception makes, drawn from the stream.
 using Perceive = std::function<Observation(Observation, RandomStream)>;
 
+/// A distribution of which a layout can show nothing.
+class NothingToShow : public InputError {
+ public:
+  using InputError::InputError;
+  ~NothingToShow() override;
+};
+
 /// A kind of environment: one object, constant, for as long as the program runs. Any thread, but draw().
 class EnvironmentType {
  public:
@@ -68,8 +76,8 @@ class EnvironmentType {
   virtual std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
                                                            const JsonReader* scenes, bool training) const = 0;
 
-  /// Scene number `index`. @throws InputError where layout, split or arm is unknown, or the distribution holds nothing
-  /// that the layout can show.
+  /// Scene number `index`. @throws InputError where layout, split or arm is unknown; NothingToShow where a Selection or
+  /// the truth holds no target, or nothing of the second set, that the layout can show.
   virtual Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const = 0;
   /// How scenes of that kind are perceived, beside the noise that every environment's arms may ask for (scenario.hpp):
   /// null where nothing errs, as it is unless an environment says otherwise.

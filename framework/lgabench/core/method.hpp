@@ -97,8 +97,8 @@ class Method {
   virtual Needs needs(const Json& options) const = 0;
   /// Feature abstraction (paper, section 3.1): which object types and textures of `space` could the command mean? A
   /// method that selects nothing returns a Selection of provenance none. Names outside the space fail the cell; an
-  /// empty Selection is an answer, and fails it as abstraction_empty if targets are drawn from it. A run says itself,
-  /// from what was asked, where the Selection comes from and what it cost.
+  /// empty Selection, or one of which no layout shows anything, is an answer, and fails it as abstraction_empty if
+  /// targets are drawn from it. A run says itself, from what was asked, where it comes from and what it cost.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
   /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
   /// scenes. The policy must not refer to them afterwards. @returns never null.

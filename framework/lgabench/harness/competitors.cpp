@@ -65,8 +65,12 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
   std::vector<Competitor> methods;
   std::map<std::string, Json> usual;                  // id -> options of its row without options of its own
   std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
-  for (const std::string& written : grid.methods)
-    infos.push_back(&catalogue.find("method", row_words(written).front()));
+  for (const std::string& written : grid.methods) {
+    const std::string id = row_words(written).front();
+    if (id == "constant_action" || id == "random_object" || id == "oracle")  // tables find a row by its name
+      throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
+    infos.push_back(&catalogue.find("method", id));
+  }
   check_layer(grid.options, suite.file, grid.options_place, infos, catalogue);
   check_layer(settings, "--set", "", infos, catalogue);
   for (std::size_t i = 0; i < infos.size(); ++i) {

@@ -15,7 +15,8 @@ namespace lgabench {
 /// followed by "+option=value" (sorted) for each option in which the grid's rows of that id differ and it has another
 /// value than without options of its own.
 /// @throws PluginError for an unknown method, InputError for an unknown option, for a method that is not written
-/// ID+OPTION=VALUE+..., for two that name one row, and for settings of a method that is not on the grid.
+/// ID+OPTION=VALUE+..., for two that name one row, for the id of a reference row, and for settings of a method that is
+/// not on the grid.
 std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const Json& settings,
                                     const Catalogue& catalogue);
 

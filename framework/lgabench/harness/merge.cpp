@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -172,6 +173,54 @@ fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutco
   return failed;
 }
 
+// Runs name their rows apart: two that a run has alone of their method have its id, whatever their options.
+void expect_one_of_each(const std::map<std::string, fs::path>& chosen, const Json& settings) {
+  const auto read = [](const fs::path& directory) {
+    const fs::path file = directory / "cell.json";
+    return read_cell(read_json(file, Links::refused), file.string());
+  };
+  std::map<std::string, fs::path> measured;  // by kind and title
+  for (const auto& item : chosen) {
+    const Cell cell = read(item.second);
+    const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), item.second);
+    if (is_new) continue;
+    const Json there = to_json(read(before->second)), here = to_json(cell);
+    const auto differing = [](const Json& a, const Json& b) {
+      std::vector<std::string> members;
+      for (const auto& [member, value] : b.items())
+        if (!a.is_object() || a.value(member, Json()) != value) members.push_back(member);
+      return members;
+    };
+    const std::vector<std::string> options = differing(there["method"]["options"], cell.method.options);
+    std::string say = fmt::format("{} and {} both are {}, and differ in {}", before->second.string(),
+                                  item.second.string(), cell.title(), fmt::join(differing(there, here), ", "));
+    if (!options.empty())
+      say += fmt::format(
+          " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
+          "--methods {}, whose names tell them apart",
+          fmt::join(options, ", "), fmt::join(JsonReader(settings, "run.json: /request").at("methods").strings(), ","));
+    throw InputError(say);
+  }
+}
+
+// What a method in Python is made of beside its file (interpreter, packages, modules) stands with its cells alone.
+void expect_one_python(const std::map<std::string, fs::path>& chosen) {
+  std::map<std::string, std::pair<std::string, fs::path>> known;  // by method: what, and where
+  for (const auto& item : chosen) {
+    const fs::path file = item.second / "status.json", cell_file = item.second / "cell.json";
+    const Json status = read_json(file, Links::refused);
+    const JsonReader reader(status, file.string());
+    if (reader.at("state").string() != "ok" || !reader.at("build").has("python")) continue;
+    const std::string python = reader.at("build").at("python").string();
+    const Cell cell = read_cell(read_json(cell_file, Links::refused), cell_file.string());
+    const auto [first, is_new] = known.try_emplace(cell.method.id, python, item.second);
+    if (!is_new && first->second.first != python)
+      throw InputError(
+          fmt::format("{} and {}: other builds of method {}: their interpreter, packages or modules differ",
+                      first->second.second.string(), item.second.string(), cell.method.id));
+  }
+}
+
 bool asks_live(const Part& part) {
   const Json request = part.json().value("request", Json::object());
   return request.is_object() && request.contains("answers") && request["answers"].is_string() &&
@@ -205,6 +254,7 @@ Json merged_json(Json json, const std::vector<Part>& parts, const Json& answers,
     Json own = Json::object();
     for (const char* member : {"command", "machine", "started"}) own[member] = part.json().at(member);
     json["started"] = std::min(json["started"], own["started"]);
+    if (is_unconfined(part.path())) json["confinement"] = unconfined_run;
     merged.push_back(own);
     const Json &processor = own["machine"]["processor"], &first = json["machine"]["processor"];
     if (processor != first)
@@ -236,7 +286,7 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     if (fs::equivalent(run, out, not_there))
       throw InputError(fmt::format("{}: both to be read and to be written; expected another OUT", out.string()));
     parts.emplace_back(run);
-    expect_same_programs(parts.front(), parts.back());
+    for (const Part& part : parts) expect_same_programs(part, parts.back());  // the first may lack what two others have
   }
   Json all = parts.front().json();
   for (const Part& part : parts) all = united(std::move(all), parts.front(), part);
@@ -244,10 +294,17 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   std::map<std::string, fs::path> chosen;
   for (const std::string& key : all.at("cells").get<std::vector<std::string>>())
     if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
+  expect_one_python(chosen);
+  if (all.at("cells") != parts.front().json().at("cells")) expect_one_of_each(chosen, all.at("request"));
 
   const Part& replies = with_all_replies(parts);
   const Json answers = replies.json().value("answers", Json());
-  const RunDirectory directory(out, merged_json(std::move(all), parts, answers, command), Existing::resume);
+  const Json record = merged_json(std::move(all), parts, answers, command);
+  const bool unconfined = is_unconfined(out);  // cells of an earlier merge stay
+  const RunDirectory directory(out, record, Existing::resume);
+  for (const char* member : {"command", "started", "answers", "merged", "confinement"})
+    directory.amend(member, record.value(member, Json()));
+  if (unconfined) directory.amend("confinement", unconfined_run);
   for (const Part& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;

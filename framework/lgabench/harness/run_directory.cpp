@@ -113,6 +113,13 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   return build;
 }
 
+bool is_unconfined(const fs::path& run) {
+  const fs::path record = run / "run.json";
+  if (!fs::exists(record)) return false;
+  const Json json = read_json(record, Links::refused);
+  return json.is_object() && json.value("confinement", Json()) == unconfined_run;
+}
+
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request) {
   constexpr std::size_t hash = 8;
   const std::string name = wanted.filename().string(), prefix = name.substr(0, name.size() - suffix.size() - hash);

@@ -36,6 +36,11 @@ bool same_cells(const std::string& version, const std::string& other);
 /// before `suffix` alone: another build's. "" if there is none.
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);
 
+/// "confinement" of a run in which methods were let out of it, for good: whatever cells of it are computed later.
+constexpr const char* unconfined_run = "none, by --unconfined";
+/// Whether the run in that directory is one; false where there is none. @throws InputError for a run.json that is none.
+bool is_unconfined(const fs::path& run);
+
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other

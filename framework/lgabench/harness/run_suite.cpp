@@ -91,8 +91,10 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
     name(catalogue.find("engine", cell.engine));
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
-      for (const auto& [option, value] : cell.method.options.items())
-        if (value != method->options.at(option).at("default")) settings[cell.method.name][option] = value;
+      for (const auto& [option, value] : cell.method.options.items()) {
+        const auto known = method->options.find(option);  // none: of a plugin that had it when its run was recorded
+        if (known == method->options.end() || value != known->at("default")) settings[cell.method.name][option] = value;
+      }
     }
     programs = build_of(cell, catalogue);
   }
@@ -110,7 +112,7 @@ Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
           {"version", LGABENCH_VERSION},
           {"program", plan.program},
           {"command", plan.command},
-          {"confinement", plan.confined ? confinement_text() : "none, by --unconfined"},
+          {"confinement", plan.confined ? confinement_text() : unconfined_run},
           {"answers", answers_json(plan.answers)},
           {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
           {"machine",
@@ -262,12 +264,15 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
 }
 
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
+  const bool unconfined = plan.existing != Existing::fresh && is_unconfined(plan.out);
   const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
+  if (unconfined) directory.amend("confinement", unconfined_run);
   directory.amend("shard", shard_json(plan));
   keep_answers(plan.answers, plan.out);
   const bool asks = plan.live && plan.live->asks;
   if (asks) expect_replies_of(plan);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
+  if (!plan.confined && !missing.empty()) directory.amend("confinement", unconfined_run);
   RunOutcome outcome;
   outcome.reused = complete.size();
   Schedule schedule(missing);

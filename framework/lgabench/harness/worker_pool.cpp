@@ -218,7 +218,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
       WorkerEnd not_begun;
       try {
         crew.workers.push_back(start(next, make(next), options, signals));
-      } catch (const InputError& e) {  // no process, or no place on the disk
+      } catch (const std::exception& e) {  // no process, or no place on the disk
         not_begun.complaint = Complaint{e.what()};
       }
       events.started(next);

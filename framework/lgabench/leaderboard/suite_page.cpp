@@ -80,7 +80,10 @@ std::string tier_and_marks(const Standing& s) {
   std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
   const std::string confined = s.entry->evidence.front().at("confinement");
-  if (confined.find("no ") != std::string::npos || confined == "unknown") words.emplace_back("unconfined");
+  if (confined.find("no ") != std::string::npos || confined == "unknown")
+    words.emplace_back("unconfined");
+  else if (confined.find("without") != std::string::npos)
+    words.emplace_back("partly confined");
   if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
   if (s.entry->fresh() > 0) words.emplace_back("fresh");
   return fmt::format("{}", fmt::join(words, "; "));
