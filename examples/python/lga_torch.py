@@ -2,7 +2,7 @@
 
     lgabench run q1 --methods lga+network=plain+batches=shuffled,examples/python/lga_torch.py:Lga
 
-First weights and the order of samples are drawn by PyTorch: success is the plugin's on the mean, not scene by scene.
+PyTorch draws the initial weights and the order of samples: success equals the plugin's on average, not scene by scene.
 """
 import numpy
 import torch
@@ -27,7 +27,7 @@ class Lga:
 
     def learn(self, demonstrations, services):
         torch.set_num_threads(1)
-        torch.set_flush_denormal(True)  # Adam's moments fade to numbers that are slow
+        torch.set_flush_denormal(True)  # Adam's moments decay to subnormal numbers, which are slow
         torch.manual_seed(services.seed)
         steps = [(step, demonstration.instruction) for demonstration in demonstrations for step in demonstration.steps]
         masks = numpy.stack([small_mask(step.observation, instruction) for step, instruction in steps])
@@ -48,13 +48,13 @@ def small_mask(observation, instruction):
 
 
 def make_network(numbers):
-    """Three convolutions with ReLU, and a linear layer to the numbers of an action; PyTorch's first weights."""
+    """Three convolutions with ReLU, and a linear layer to the numbers of an action; PyTorch's initial weights."""
     return nn.Sequential(nn.Conv2d(1, 32, 8, stride=4), nn.ReLU(), nn.Conv2d(32, 64, 4, stride=2), nn.ReLU(),
                          nn.Conv2d(64, 32, 3), nn.ReLU(), nn.Flatten(), nn.Linear(160, numbers))
 
 
 def train(network, masks, labels, services):
-    """Adam on the L2 norm of the error; each sample once a pass, but for a rest that fills no batch."""
+    """Adam on the L2 norm of the error; each sample once per pass, without a last incomplete batch."""
     options = services.options
     rows = len(masks)
     batch = min(options["batch_size"], rows)
