@@ -18,7 +18,7 @@ class Lga:
     summary = "LGA in PyTorch: behaviour cloning on a goal mask that a language model selected"
     options = {
         "epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},
-        "batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "docs/protocol.md, section 5"},
+        "batch_size": {"default": 10, "min": 1, "help": "samples per step", "source": "docs/protocol.md, section 5"},
         "learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},
     }
 
