@@ -1,5 +1,5 @@
-// The smallest engine that keeps the contract (docs/add-an-engine.md walks through it). Nothing has speed or weight:
-// suction carries exactly, the blade moves what it meets just out of its way, and what is let go of lies on what is
+// The smallest engine that fulfils the contract (docs/add-an-engine.md walks through it). Nothing has speed or weight:
+// suction carries exactly, the blade moves what it meets just out of its way, and a released body lies on what is
 // below it. Bodies never tilt, and each convex piece counts as an upright prism.
 #include <algorithm>
 #include <cmath>
@@ -41,7 +41,7 @@ Polygon convex_hull(const std::vector<Vec3>& points) {
   return hull;
 }
 
-/// What two prisms have of each other: an outline, and the heights between which it stands.
+/// An upright prism: an outline seen from above, and the heights of its bottom and top.
 struct Prism {
   Polygon outline;
   double bottom = 0, top = 0;
@@ -189,7 +189,7 @@ class KinematicWorld final : public PhysicsWorld {
 
   Pose pose(int body) const override { return bodies_[index_of(body)].pose; }
 
-  // Of those alone that were moved since reset(): the others rest.
+  // Only of bodies that moved since reset(): the others rest.
   std::vector<Contact> contacts() const override {
     std::vector<Contact> found;
     const auto touching = [](const std::vector<Prism>& a, const std::vector<Prism>& b) {
@@ -283,8 +283,8 @@ class KinematicWorld final : public PhysicsWorld {
                   spatula_->pose);
   }
 
-  /// Moves what overlaps `pusher` along `way` until it does not, and what that meets likewise. The one that pushes,
-  /// what is held and what is fixed stay.
+  /// Moves bodies that overlap `pusher` along `way` until they do not, and then what they meet. The pushing body,
+  /// held bodies and fixed ones stay.
   void push_aside(const std::vector<Prism>& pusher, Vec2 way, std::size_t pushed_by) {
     const Vec2 unit = 1 / norm(way) * way;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -301,7 +301,7 @@ class KinematicWorld final : public PhysicsWorld {
     }
   }
 
-  /// On the highest thing under it that is not above `height_m`, with a little room for what it was pressed into.
+  /// Lays the body on the highest thing under it that is not above `height_m`, plus a tolerance for bodies pressed in.
   void lay_down(std::size_t i, double height_m) {
     constexpr double pressed_m = 1e-3;
     Body& body = bodies_[i];

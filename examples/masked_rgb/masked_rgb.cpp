@@ -1,5 +1,5 @@
-// LGA in colour: the policy sees the picture, black where the goal mask is 0. Shows `prepare`, a picture of the
-// method's own; network and training are lgabench's.
+// LGA in colour: the policy sees the picture, black where the goal mask is 0. Shows `prepare`, which computes the
+// policy's input; network and training are lgabench's.
 #include <algorithm>
 
 #include <lgabench/abstraction/select_features.hpp>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace lgabench;
 
-// In training as in a test; refers to no method, which is gone when the policy acts.
+// The same in training and tests; refers to no method, which is destroyed before the policy acts.
 Observation masked(const Observation& observation, const Selection& selection, Phase) {
   Observation shown = observation;
   const std::vector<std::uint8_t> mask = goal_mask(observation, selection);

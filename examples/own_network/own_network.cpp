@@ -1,5 +1,5 @@
-// A network of one's own, in LibTorch: two linear layers on the goal mask. lgabench makes the rows that it sees, trains
-// it, logs that and plays the episodes. Shows a Learner, an option, a size of picture, and how LibTorch is kept
+// A network of your own, in LibTorch: two linear layers on the goal mask. lgabench makes its inputs, trains it in
+// batches, logs the loss and plays the episodes. Shows a Learner, an option, the input's size, and how to keep LibTorch
 // reproducible.
 #include <torch/torch.h>
 
@@ -15,7 +15,7 @@ class TwoLayers : public Learner {
  public:
   TwoLayers(const SampleShape& shape, int hidden, std::uint64_t seed)
       : numbers_(shape.pictures[0].numbers()), actions_(static_cast<int>(shape.actions.size())) {
-    torch::set_num_threads(1);  // a sum that is split among threads has another last bit
+    torch::set_num_threads(1);  // a sum that is split among threads may differ in its last bit
     torch::manual_seed(seed);   // of the initial weights
     network_ = torch::nn::Sequential(torch::nn::Linear(numbers_, hidden), torch::nn::ReLU(),
                                      torch::nn::Linear(hidden, actions_));
@@ -51,7 +51,7 @@ class TwoLayers : public Learner {
   }
 
  private:
-  // A view of `values`, so many a row.
+  // A view of `values` as rows of `a_row` numbers each.
   static torch::Tensor tensor(const std::vector<float>& values, std::int64_t a_row) {
     const auto rows = static_cast<std::int64_t>(values.size()) / a_row;
     return torch::from_blob(const_cast<float*>(values.data()), {rows, a_row});

@@ -1,4 +1,4 @@
-"""A random forest of scikit-learn on the moments of the goal mask: how large it is, where it lies, how it is stretched.
+"""A random forest of scikit-learn on the moments of the goal mask: its area, centre and covariances.
 
     lgabench run q1 --methods lga,examples/python/forest_sklearn.py:Forest
 """
@@ -12,7 +12,7 @@ class Forest:
     version = "0.1"
     summary = "a random forest on the moments of the goal mask"
     options = {
-        "trees": {"default": 100, "min": 1, "help": "of the forest", "source": "scikit-learn"},
+        "trees": {"default": 100, "min": 1, "help": "trees of the forest", "source": "scikit-learn"},
     }
 
     def select(self, command, space, services):

@@ -2,7 +2,7 @@
 
     lgabench run q1 --methods lga+network=plain+batches=shuffled,examples/python/lga_torch.py:Lga
 
-First weights and the order of samples are drawn by PyTorch: success is the plugin's on the mean, not scene by scene.
+PyTorch draws the initial weights and the order of samples: success equals the plugin's on average, not scene by scene.
 """
 import numpy
 import torch
@@ -18,7 +18,7 @@ class Lga:
     summary = "LGA in PyTorch: behaviour cloning on a goal mask that a language model selected"
     options = {
         "epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},
-        "batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "docs/protocol.md, section 5"},
+        "batch_size": {"default": 10, "min": 1, "help": "samples per step", "source": "docs/protocol.md, section 5"},
         "learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},
     }
 
@@ -27,7 +27,7 @@ class Lga:
 
     def learn(self, demonstrations, services):
         torch.set_num_threads(1)
-        torch.set_flush_denormal(True)  # Adam's moments fade to numbers that are slow
+        torch.set_flush_denormal(True)  # Adam's moments decay to subnormal numbers, which are slow
         torch.manual_seed(services.seed)
         steps = [(step, demonstration.instruction) for demonstration in demonstrations for step in demonstration.steps]
         masks = numpy.stack([small_mask(step.observation, instruction) for step, instruction in steps])
@@ -48,13 +48,13 @@ def small_mask(observation, instruction):
 
 
 def make_network(numbers):
-    """Three convolutions with ReLU, and a linear layer to the numbers of an action; PyTorch's first weights."""
+    """Three convolutions with ReLU, and a linear layer to the numbers of an action; PyTorch's initial weights."""
     return nn.Sequential(nn.Conv2d(1, 32, 8, stride=4), nn.ReLU(), nn.Conv2d(32, 64, 4, stride=2), nn.ReLU(),
                          nn.Conv2d(64, 32, 3), nn.ReLU(), nn.Flatten(), nn.Linear(160, numbers))
 
 
 def train(network, masks, labels, services):
-    """Adam on the L2 norm of the error; each sample once a pass, but for a rest that fills no batch."""
+    """Adam on the L2 norm of the error; each sample once per pass, without a last incomplete batch."""
     options = services.options
     rows = len(masks)
     batch = min(options["batch_size"], rows)

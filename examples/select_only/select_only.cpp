@@ -1,10 +1,10 @@
-// The least that a method is: it says which features matter. Demonstrations, network and training are lgabench's.
+// The smallest method: it only says which features matter. Demonstrations, network and training are lgabench's.
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
 
 using namespace lgabench;
 
-// A feature matters if a word of the command begins with its first; where that is true of none, all matter.
+// A feature matters if a word of the command begins with the feature's first word; if none does, all matter.
 std::vector<std::string> named(const Command& command, const std::vector<std::string>& features) {
   std::vector<std::string> found;
   for (const std::string& feature : features)

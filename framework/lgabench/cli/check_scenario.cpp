@@ -132,10 +132,9 @@ void add_check_scenario(CLI::App& app, int& exit) {
   verb->add_option("--scenes", a->scenes, "How many of each arm and layout")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->add_option("--layout", a->layouts, "One of the task's, several with commas; its first two if not given")
+  verb->add_option("--layout", a->layouts, "One of the task's, several with commas (default: its first two)")
       ->delimiter(',')
-      ->check(one_of("layout", installed_layouts()))
-      ->capture_default_str();
+      ->check(one_of("layout", installed_layouts()));
   verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
   verb->add_option("--out", a->out, "The picture's file; SCENARIO.png if not given");
   add_plugin_path(*verb, a->plugin_path);

@@ -8,7 +8,7 @@ namespace {
 constexpr const char* surroundings =
     "Environment\n"
     "  LGABENCH_CACHE            where demonstrations are kept; else ~/.cache/lgabench\n"
-    "  LGABENCH_PLUGIN_PATH      directories of more plugins, with colons between them\n"
+    "  LGABENCH_PLUGIN_PATH      directories of more plugins, separated by colons\n"
     "  LGABENCH_SCENARIO_PATH    directories of more scenarios, likewise\n"
     "  LGABENCH_DATA             scenarios, suites and answers to use instead of the installed ones\n"
     "  LGABENCH_ENCODER          the folder of the sentence encoder's weights\n"
@@ -18,13 +18,13 @@ constexpr const char* surroundings =
     "\n"
     "Exit status\n"
     "  0    all went well\n"
-    "  1    a regression: worse in `compare`, different in `verify`, reversed in `report --claims`;\n"
-    "       refused by `leaderboard`\n"
-    "  2    a command line, a file or a directory is not as expected; nothing was overwritten\n"
+    "  1    worse in `compare`, different in `verify`, reversed in `report --claims`, refused by\n"
+    "       `leaderboard`, a problem in `check-plugin` or `check-scenario`\n"
+    "  2    an error in the command line, a file or a directory; nothing was overwritten\n"
     "  3    a cell failed\n"
     "  4    a plugin is missing or was refused\n"
-    "  5    `verify`: other bytes, of another build, processor or data, no more different than chance\n"
-    "       allows\n"
+    "  5    `verify`: bytes differ and the record names another build, processor or data; outcomes\n"
+    "       differ no more than chance allows\n"
     "  130  interrupted; what was finished is kept\n"
     "\n"
     "Examples\n"
@@ -58,12 +58,12 @@ void add_commands(CLI::App& app, int& exit) {
 
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
-      {"To look at what there is", {"list", "info", "select", "render", "demos", "replay"}},
+      {"To look around", {"list", "info", "select", "render", "demos", "replay"}},
       {"To run and to compare", {"run", "report", "compare", "verify"}},
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
-      {"To ask people", {"study"}},
+      {"To run a user study", {"study"}},
       {"To clean up", {"cache"}}};
   for (const auto& [title, names] : titles)
     for (const char* name : names)

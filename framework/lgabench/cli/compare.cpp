@@ -20,8 +20,9 @@ void add_compare(CLI::App& app, int& exit) {
       "compare",
       "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
   verb->add_option("A", options->a, "A run's directory")->required();
-  verb->add_option("B", options->b,
-                   "Another's, of the same suite and number of episodes; with --rows it may be left out: A again");
+  verb->add_option(
+      "B", options->b,
+      "Another run's, of the same suite and number of episodes; with --rows it may be left out, and is then A");
   verb->add_option("--rows", options->rows, "Compare a row of A with a row of B, whatever their methods and options")
       ->delimiter(',')
       ->expected(2);
@@ -31,9 +32,9 @@ void add_compare(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench compare runs/before runs/after\n"
       "         lgabench compare runs/paper runs/mine --rows lga,my_method\n"
-      "The verdict comes first: is a row worse, or a cell of A's gone, beyond chance?\n"
-      "Rows are paired by method and options, whatever they are named, also with those of a run of 0.1. Cells that "
-      "played other scenes are named and not compared.");
+      "The verdict comes first: is a row worse beyond chance, or does a cell of A's fail in B?\n"
+      "Rows are paired by method and options, not by name, also with those of a run of 0.1. Cells that played other "
+      "scenes are listed and not compared.");
   verb->callback([options, &exit] {
     std::optional<report::RowPair> rows;
     if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};

@@ -82,7 +82,7 @@ void add_demos(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--selection", a->selection,
-                   "Draw targets from what a method selected, a cell's selection.json, instead");
+                   "Draw targets from what a method selected instead: a cell's selection.json");
   verb->add_option("--layout", a->layout, "How objects are placed; the scenario's first layout if not given")
       ->check(one_of("layout", installed_layouts()));
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
@@ -91,7 +91,7 @@ void add_demos(CLI::App& app, int&) {
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   verb->add_option("--noise", a->noise,
-                   "DART: standard deviation of the noise in the last of these; it grows up to there")
+                   "DART: standard deviation of the noise in the last rollout, up to which it grows evenly")
       ->check(within(0, 10))
       ->capture_default_str();
   verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
@@ -113,7 +113,7 @@ void add_demos(CLI::App& app, int&) {
   arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
   verb->footer(
       "Example: lgabench demos heart --n 10 --out heart.hdf5\n"
-      "What a method of a run was shown: lgabench demos heart --selection runs/NAME/cells/KEY/selection.json --out "
+      "As a method of a run saw them: lgabench demos heart --selection runs/NAME/cells/KEY/selection.json --out "
       "lga.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
 }

@@ -183,7 +183,8 @@ void add_info(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("info", "Everything known of a method, engine, suite, scenario or environment");
+  CLI::App* verb =
+      app.add_subcommand("info", "Show everything known about a method, engine, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
   verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout; an array where several things have the name");

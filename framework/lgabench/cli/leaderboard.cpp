@@ -118,8 +118,9 @@ void add_leaderboard(CLI::App& app, int& exit) {
       ->check(one_of("action", {"add", "verify", "build", "check", "withdraw"}));
   verb->add_option("WHAT", a->what, "add: a run's directory; verify (else all), withdraw: an entry's, or its id");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
-  verb->add_option("--entry", a->about, "add: who sends it, from which source (docs/leaderboard.md)");
-  verb->add_option("--rows", a->rows, "add: these rows of the run alone")->delimiter(',');
+  verb->add_option("--entry", a->about,
+                   "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
+  verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
   verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -134,7 +135,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
-  verb->add_option("--documents", a->documents, "build, check: documents that have tables of the board between markers")
+  verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
@@ -153,7 +154,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
           {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}});
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
-      "add refuses what is not the board's preset, whole and on its scenes, and says what is missing, line by line.\n"
+      "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"
       "verify plays cells again, confined and without a cache, and records what it finds. check reads files alone.\n"
       "Exit 1: refused, different, or a problem.");
   verb->callback([a, &app, &exit] {

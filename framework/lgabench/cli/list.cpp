@@ -91,8 +91,8 @@ void add_list(CLI::App& app, int& exit) {
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb =
-      app.add_subcommand("list", "Methods, engines, environments, suites and scenarios; what was refused, and why");
+  CLI::App* verb = app.add_subcommand(
+      "list", "List methods, engines, environments, suites and scenarios, and plugins that were refused");
   verb->footer("Example: lgabench list --plugin-path my/build");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
   add_plugin_path(*verb, arguments->directories);

@@ -70,12 +70,12 @@ void new_plugin(const Arguments& a) {
 
 void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("new-plugin", "Write the project of a new plugin: it builds, and you change it");
+  CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project of a new plugin, for you to change");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
   verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")
       ->check(one_of("kind", {"method", "engine", "python"}))
       ->capture_default_str();
-  verb->add_option("--directory", a->directory, "Where; by default ./NAME, which must not be there yet");
+  verb->add_option("--directory", a->directory, "Where to write it; by default ./NAME, which must not exist yet");
   arrange(*verb, "", {{"--kind", "method|engine|python"}, {"--directory", "DIR"}});
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {

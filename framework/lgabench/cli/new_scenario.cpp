@@ -112,7 +112,7 @@ void add_new_scenario(CLI::App& app, int& exit) {
   list("--textures", a->textures, "Their textures, or ALL");
   list("--other-types", a->other_types, "Object types of the task's other objects: what a sweep must not touch");
   list("--other-textures", a->other_textures, "Their textures, or ALL");
-  verb->add_option("--space", a->space, "The words there are (lgabench render --gallery objects)")
+  verb->add_option("--space", a->space, "The feature space: which words there are (lgabench render --gallery objects)")
       ->check(one_of("space", {"tabletop", "household"}))
       ->capture_default_str();
   verb->add_option("--task", a->task, "What is done with it")

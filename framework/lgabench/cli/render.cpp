@@ -96,18 +96,18 @@ void add_render(CLI::App& app, int&) {
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
   verb->add_option(
           "--gallery", arguments->gallery,
-          "Every object, texture or scenario's scene on one sheet instead; an environment: scenes of its scenarios")
+          "Draw one sheet instead: all objects, all textures, or a scene of each scenario, of one environment if named")
       ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
-                   "With --gallery: a file that says as JSON where each picture lies; nothing is printed")
+                   "With --gallery: write the place of each picture on the sheet as JSON, and print nothing")
       ->excludes(scenario);
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
   verb->add_option("--layout", arguments->layout, "How objects are placed; the scenario's first layout if not given")
       ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--split", arguments->split, "Whose scenes")
+  verb->add_option("--split", arguments->split, "Which of the separate sets of scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
       ->capture_default_str();
   verb->add_option("--arm", arguments->arm,

@@ -158,8 +158,9 @@ void add_replay(CLI::App& app, int&) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
   verb->add_option("run", a->run, "The run's directory")->required();
-  verb->add_option("episode", a->episode,
-                   "The cell's key or its beginning, the arm, the scene's number; without an arm, the scenario's first")
+  verb->add_option(
+          "episode", a->episode,
+          "The cell's key or its first digits, the arm, the scene's number; without an arm, the scenario's first")
       ->required();
   verb->add_option("--out", a->out, "An animation, FILE.gif, or a film strip, FILE.png")->required();
   add_plugin_path(*verb, a->plugin_path);

@@ -76,11 +76,11 @@ void add_report(CLI::App& app, int& exit) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
-      "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
-  verb->add_option("RUN", options->runs, "The run's directory; several, as runs/*, get a page over all of them too")
+      "report", "Make a run's tables, figures and report.html again from its cells, and print the tables");
+  verb->add_option("RUN", options->runs,
+                   "The run's directory; of several, such as runs/*, also a page that compares them")
       ->required();
-  verb->add_option("--index", options->index,
-                   "That page (default: index.html beside the first run; other directories are left out)");
+  verb->add_option("--index", options->index, "Where that page is written (default: index.html beside the first run)");
   verb->add_option("--format", options->format, "What to print: text, md, latex (every table), json or csv")
       ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
@@ -94,11 +94,11 @@ void add_report(CLI::App& app, int& exit) {
   arrange(*verb, "",
           {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|latex|json|csv"}, {"--difference", "A,B"}});
   verb->footer(
-      "Writes RUN/report.html (one page to look at, with everything inside it), report.md, summary.json, summary.csv,\n"
+      "Writes RUN/report.html (one page that needs no other file), report.md, summary.json, summary.csv,\n"
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
       "Example: lgabench report runs/q1-smoke --format csv > table.csv\n"
       "         xdg-open runs/q1-smoke/report.html\n"
-      "All runs, with a page over them: lgabench report runs/*\n"
+      "All runs, and a page that compares them: lgabench report runs/*\n"
       "The paper's claims: lgabench report runs/q2 --claims\n"
       "Two rows: lgabench report runs/q1 --difference lga,my_method");
   verb->callback([options, &exit] {

@@ -86,8 +86,8 @@ void add_run(CLI::App& app, int& exit) {
       "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
       "With a model asked now: lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl\n"
       "  (the server named by OPENAI_BASE_URL, any that follows its API, with the key in OPENAI_API_KEY)\n"
-      "Rows are named by id; of several rows of one id those that set options are named by what they set otherwise, "
-      "as lga+loss=squared here. The report's head has every option that differs from a plugin's default.\n"
+      "A row is named by its method's id; of several rows of one id, those that set options also by these, as "
+      "lga+loss=squared here. The report's head lists every option that differs from a plugin's default.\n"
       "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &app, &exit] {
     a->program = app.version();

@@ -211,27 +211,26 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
   verb.add_option("--cache", a.cache,
                   "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
-  auto* resume =
-      verb.add_flag("--resume", a.resume,
-                    "Go on with the run in --out, else with that of the same command; cells of another build "
-                    "are computed again");
-  verb.add_flag("--fresh", a.fresh, "Drop the run that is in --out")->excludes(resume);
+  auto* resume = verb.add_flag("--resume", a.resume,
+                               "Continue the run in --out, or without --out that of the same command; cells of another "
+                               "build are computed again");
+  verb.add_flag("--fresh", a.fresh, "Delete the run in --out first")->excludes(resume);
   verb.add_option("--limit", a.limit, "Only the first N cells; not for the leaderboard")->check(CLI::Range(1, 1 << 30));
   verb.add_option("--set", a.settings,
-                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; goes before the "
-                  "preset's options, after a row's own; may be given again")
+                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the "
+                  "preset's options, but not a row's own; may be given again")
       ->take_all();
   verb.add_option("--answers", a.answers,
-                  "Which language model answered; recorded: each scenario's own (lgabench info SCENARIO); "
-                  "gpt4_released, gpt4_study, claude: that one alone; cassette:FILE: the replies of a server's model, "
-                  "as lgabench select --suite keeps them; openai: a server's model, asked by the cells as they run; "
-                  "none: nobody, for methods that ask no language model")
+                  "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
+                  "gpt4_released, gpt4_study, claude: only that source; cassette:FILE: a server's replies, as "
+                  "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
+                  "methods that ask no language model")
       ->check([](const std::string& word) { return answers_complaint(word, {no_answers}); })
       ->capture_default_str();
   verb.add_option("--model", a.model, "With --answers openai: the server's model");
   verb.add_option("--cassette", a.cassette,
-                  "With --answers openai: file of its replies, which grows; runs may share it, and no question that it "
-                  "answers is asked again");
+                  "With --answers openai: file to which its replies are added; runs may share it, and no question that "
+                  "it answers is asked again");
   verb.add_option("--max-queries", a.max_queries,
                   "With --answers openai: questions that a cell may ask the server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
@@ -241,20 +240,22 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "in its appendix, where they differ")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
-  verb.add_option("--humans", a.humans,
-                  "A directory of participants' .json files: methods that ask people then have a cell for each");
+  verb.add_option(
+      "--humans", a.humans,
+      "A directory of participants' .json files: methods that ask people then have a cell for each of them");
   verb.add_flag("--rehearsal", a.rehearsal,
-                "With --humans: take files of a rehearsal or of simulated people; run, tables and claims are marked, "
-                "and it is not for the leaderboard");
+                "With --humans: accept files of a rehearsal or of simulated people; run, tables and claims are "
+                "marked, and the run is not for the leaderboard");
   verb.add_flag("--unconfined", a.unconfined,
-                "Let the processes of methods reach what you may (docs/trust.md); not for a leaderboard");
+                "Let methods access all that you may access (docs/trust.md); not for the leaderboard");
   verb.add_option("--debug", a.debug,
-                  "Play one cell of the run, named by the first digits of its directory's name in cells/, in the "
-                  "foreground and unconfined: a plugin under gdb, Python where breakpoint() works. Nothing is kept")
+                  "Compute one cell, named by the first digits of its KEY (list prints all keys), in the foreground "
+                  "and unconfined: a plugin under gdb, Python where breakpoint() works. Its results are not kept")
       ->type_name("KEY");
-  verb.add_flag("--no-reference", a.no_reference, "Without the rows constant_action, random_object and oracle");
+  verb.add_flag("--no-reference", a.no_reference, "Leave out the rows constant_action, random_object and oracle");
   verb.add_flag("--json", a.json, "Print summary.json instead of the table");
-  verb.add_flag("--dry-run", a.dry_run, "Compute nothing: say how many cells there are, how long they take, and disk");
+  verb.add_flag("--dry-run", a.dry_run,
+                "Compute nothing: print how many cells there are, how long they would take, and how much disk");
   arrange(verb, "", {{"suite", "SUITE"}});
   arrange(verb, "What is computed",
           {{"--preset", "PRESET"},

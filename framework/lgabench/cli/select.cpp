@@ -174,26 +174,25 @@ void add_select(CLI::App& app, int&) {
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
   verb->add_option("--answers", arguments->answers,
-                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude: theirs; openai: ask a server now; "
-                   "cassette:FILE: what it said before")
+                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude: only that source; openai: ask a "
+                   "server now; cassette:FILE: a server's recorded replies")
       ->check([](const std::string& word) { return answers_complaint(word); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
-                   "What the Selection is compared with, where released and printed differ")
+                   "The true distribution to compare with, where released and printed differ")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
-  verb->add_option("--task", arguments->task, "The task, where the command is not one of a scenario")
+  verb->add_option("--task", arguments->task, "The task, for a command in quotes")
       ->check(one_of("task", installed_task_ids()))
       ->capture_default_str();
-  verb->add_option("--space", arguments->space, "The feature space, where the command is not one of a scenario")
-      ->capture_default_str();
+  verb->add_option("--space", arguments->space, "The feature space, for a command in quotes")->capture_default_str();
   verb->add_option("--cassette", arguments->cassette,
-                   "With --answers openai: file of the server's replies, which grows");
+                   "With --answers openai: file to which the server's replies are added");
   verb->add_option("--model", arguments->model, "The server's model; of a cassette, by default its only one");
-  verb->add_option("--concurrency", arguments->concurrency, "Questions under way at once")
+  verb->add_option("--concurrency", arguments->concurrency, "Questions asked at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option("--max-queries", arguments->max_queries, "Ask a server no more than so many questions; -1: no limit")
+  verb->add_option("--max-queries", arguments->max_queries, "Most questions to ask a server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   add_scenario_path(*verb);
@@ -214,7 +213,7 @@ void add_select(CLI::App& app, int&) {
            {"--max-queries", "N"}});
   verb->footer(
       "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one "
-      "question for each object type and texture. What was interrupted goes on from the cassette.\n"
+      "question for each object type and texture. An interrupted command continues from the cassette.\n"
       "Example: lgabench select red_heart\n"
       "For lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai --model M --cassette "
       "M.jsonl\n"

@@ -135,13 +135,13 @@ void add_status(CLI::App& app, int& exit) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("status", "Say how far the parts of a run are, and which are to be run again");
+  CLI::App* verb = app.add_subcommand("status", "Show the progress of a run's parts, and which of them to run again");
   verb->add_option("DIR", options->directories, "Runs, or directories whose subdirectories are runs")->required();
   verb->add_flag("--json", options->json, "Print JSON instead of a table");
   arrange(*verb, "", {{"DIR", "DIR"}});
   verb->footer(
       "Example: lgabench status runs/q1\n"
-      "Exit 0: all parts are complete, or running. Exit 3: some are to be run again, as --array lists.");
+      "Exit 0: all parts are complete, or running. Exit 3: some must be run again; --array lists them.");
   verb->callback([options, &exit] { exit = print_status(options->directories, options->json); });
 }
 

@@ -151,25 +151,26 @@ int carry_out(const Arguments& a) {
 
 void add_study(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = app.add_subcommand("study", "Ask people: a study in a browser, for the rows Human and LGA-HILL");
+  CLI::App* verb = app.add_subcommand("study", "Run a user study in a browser, for the rows Human and LGA-HILL");
   verb->add_option("what", a->what,
-                   "new: write a protocol to fill into DIR; check: what is missing; serve: show the pages of DIR's "
-                   "protocol; rehearse: let simulated people take part; report: what came out")
+                   "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: show the pages "
+                   "of DIR's protocol; rehearse: let simulated people take part; report: show the results")
       ->required()
       ->check(one_of("action", {"new", "check", "serve", "rehearse", "report"}));
   verb->add_option("path", a->path, "The study's directory, or its protocol; for report, what serve wrote")->required();
-  verb->add_option("--out", a->out, "serve, rehearse: where answers go; a study that is there goes on");
+  verb->add_option("--out", a->out,
+                   "serve, rehearse: where answers are stored; a study in that directory is continued");
   verb->add_option("--protocol", a->protocol, "new: the paper's study, or one where nobody sees a command twice")
       ->check(one_of("protocol", {"paper", "crossover"}))
       ->capture_default_str();
   verb->add_flag("--pin", a->pin,
-                 "check: write down the hashes of what is not to change any more, beside the protocol");
+                 "check: fix the protocol, by writing the hashes of what must no longer change beside it");
   verb->add_option("--bind", a->bind, "serve: the address to listen on")->capture_default_str();
   verb->add_option("--port", a->port, "serve: the port; 0: any that is free")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: a server with TLS stands before this one");
-  verb->add_option("--host", a->host, "serve: the name (and port) by which that server is reached");
+  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: a proxy with TLS is in front of this server");
+  verb->add_option("--host", a->host, "serve: the name (and port) by which that proxy is reached");
   verb->add_option("--people", a->people, "rehearse: how many simulated people take part")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

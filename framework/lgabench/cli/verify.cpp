@@ -293,9 +293,9 @@ void add_verify(CLI::App& app, int& exit) {
   auto* sample = verb->add_option("--sample", a->sample, "How many cells, drawn at random")
                      ->check(CLI::Range(1, 1 << 30))
                      ->capture_default_str();
-  verb->add_option("--seed", a->seed, "Of the draw (default: another each time; it is printed)");
+  verb->add_option("--seed", a->seed, "Seed of that draw (default: a new one each time, which is printed)");
   verb->add_flag("--all", a->all, "Every finished cell")->excludes(sample);
-  verb->add_flag("--strict", a->strict, "Exit 1 where it would be 5: the same bytes, whatever build the record names");
+  verb->add_flag("--strict", a->strict, "Exit 1 instead of 5: demand the same bytes, whatever build the record names");
   verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
   verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
       ->check(within(1, 1e7))
@@ -310,11 +310,11 @@ void add_verify(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\n"
       "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
-      "differs. With the recorded build, processor and data the same bytes are owed. Where the record names others,\n"
-      "the changed episodes of all cells of a row are tested together.\n"
-      "Exit 0: every cell is bit-identical. Exit 1: a cell or a row differs, or was edited. Exit 5: no more different\n"
-      "than chance allows, and only the record's own word that another build, processor or data made the other bytes.\n"
-      "A run of another version (0.1 for 0.2) is refused: it says which one to verify it with.");
+      "differs. With the recorded build, processor and data the bytes must be the same. Where the record names\n"
+      "others, the changed episodes of all cells of a row are tested together.\n"
+      "Exit 0: every cell is bit-identical. Exit 1: a cell or a row differs, or was edited. Exit 5: bytes\n"
+      "differ, outcomes no more than chance allows, and the record names another build, processor or data.\n"
+      "A run of another version (0.1 for 0.2) is refused, with the version to verify it with.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

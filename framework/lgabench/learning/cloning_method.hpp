@@ -9,12 +9,12 @@
 
 /// Members of a descriptor's options that every cloning method has: LGABENCH_METHOD(..., "{" LGABENCH_TRAINING_OPTIONS
 /// "}").
-#define LGABENCH_TRAINING_OPTIONS                                                                                  \
-  R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)" \
-  R"("batch_size": {"default": 10, "min": 1, "help": "samples a step", "source": "docs/protocol.md, section 5"},)" \
-  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},)"  \
-  R"("batches": {"default": "drawn", "values": ["drawn", "shuffled"],)"                                            \
-  R"("help": "each batch drawn with replacement, or each sample once a pass",)"                                    \
+#define LGABENCH_TRAINING_OPTIONS                                                                                    \
+  R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)"   \
+  R"("batch_size": {"default": 10, "min": 1, "help": "samples per step", "source": "docs/protocol.md, section 5"},)" \
+  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},)"    \
+  R"("batches": {"default": "drawn", "values": ["drawn", "shuffled"],)"                                              \
+  R"("help": "each batch drawn with replacement, or each sample once per pass",)"                                    \
   R"("source": "drawn: released code"})"
 
 /// Those of one that trains the paper's network, which reads all of them.
@@ -34,23 +34,23 @@
   R"("source": "rgb: paper, appendix"})"
 
 /// Those of a method whose policy sees a goal mask, beside the former.
-#define LGABENCH_MASK_OPTIONS                                                                                     \
-  R"("instances": {"default": "all", "values": ["all", "first"], )"                                               \
-  R"("help": "of several visible instances that match one role: all in the mask, or the first, row by row",)"     \
-  R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'"},)"            \
-  R"("mask": {"default": "binary", "values": ["binary", "signed"], )"                                             \
-  R"("help": "1 on all that matters, or -1 on what is to be avoided and not the target",)"                        \
-  R"("source": "signed: paper, footnote on cost maps", "needs": {"signed": {"policy": ["regression"]}}},)"        \
-  R"("policy": {"default": "regression", "values": ["regression", "centroid", "heat_map"], )"                     \
-  R"("help": "regression: the network; heat_map: one that keeps places; centroid: untrained, the middle of the )" \
-  R"(target. The latter two see target and avoid set apart, and have no use for options of the training",)"       \
+#define LGABENCH_MASK_OPTIONS                                                                                    \
+  R"("instances": {"default": "all", "values": ["all", "first"], )"                                              \
+  R"("help": "if several visible instances match one role: all are in the mask, or the first, row by row",)"     \
+  R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'"},)"           \
+  R"("mask": {"default": "binary", "values": ["binary", "signed"], )"                                            \
+  R"("help": "1 on all that matters; signed: -1 on what is to be avoided and is not the target",)"               \
+  R"("source": "signed: paper, footnote on cost maps", "needs": {"signed": {"policy": ["regression"]}}},)"       \
+  R"("policy": {"default": "regression", "values": ["regression", "centroid", "heat_map"], )"                    \
+  R"("help": "regression: the network; heat_map: one that keeps spatial positions; centroid: no training, the )" \
+  R"(middle of the target. The latter two see target and avoid set apart, and ignore options of the training",)" \
   R"("source": "regression: paper; the others: not the paper's"})"
 
 /// Those of a method whose policy sees none, in their place: it says why it lacks them.
 #define LGABENCH_NO_MASK_OPTIONS                                                              \
   R"("policy": {"default": "regression", "values": ["regression", "heat_map"], )"             \
-  R"("help": "regression: the network; heat_map: one that keeps places, which has no )"       \
-  R"(use for options of the training. centroid needs a goal mask, which this method lacks",)" \
+  R"("help": "regression: the network; heat_map: one that keeps spatial positions, and )"     \
+  R"(ignores options of the training. centroid needs a goal mask, which this method lacks",)" \
   R"("source": "regression: paper; heat_map: not the paper's"})"
 
 namespace lgabench {
