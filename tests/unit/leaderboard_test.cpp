@@ -201,6 +201,19 @@ TEST(Standings, EpisodesOfAFailedCellAreLost) {
   EXPECT_EQ(standing.episodes, 6 * 40 + 6 * 80);
 }
 
+TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
+  Entry entry = made_entry(small_setting(), "a", 1);
+  PlayedCell& cell = entry.cells[0];
+  cell.failed = "signal 11";
+  cell.outcomes["test"] = std::string(40, failed_cell_letter);
+  cell.lm_queries = cell.learn_s = 0;  // as played_cell() writes it
+  const Standing standing = standings({&entry}).front();
+  EXPECT_NEAR(standing.lm_queries, 112, 1e-9);
+  EXPECT_NEAR(standing.learn_s, 4, 1e-9);
+  for (PlayedCell& each : entry.cells) each.failed = "signal 11";
+  EXPECT_EQ(standings({&entry}).front().lm_queries, 0);
+}
+
 TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {
   Entry entry = made_entry(small_setting(), "a", 1);
   entry.identity.row.asks = "truth";
