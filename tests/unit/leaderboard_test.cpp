@@ -123,6 +123,18 @@ TEST(LeaderboardEntry, AVerificationPlaysTheCellsThatItsNonceChooses) {
               "the cells that the nonce chooses");
 }
 
+TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  write_entry(board.path, entry);
+  Json empty = replay_of(entry, "b", "another");
+  empty["cells"] = Json::array();
+  empty["bit_identical"] = empty["episodes"] = 0;
+  add_verification(board.path, entry, empty);
+  EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
+              "/cells: expected a cell or more");
+}
+
 TEST(LeaderboardEntry, TiersFollowFromVerifications) {
   Entry entry = made_entry(small_setting(), "a", .5);
   EXPECT_EQ(entry.tier(), Tier::recomputed);
