@@ -57,16 +57,17 @@ Chart seconds_chart(const StudyResults& results) {
   const auto paper = published();
   for (const Condition condition : both) {
     const double x = condition == Condition::human ? .3 : .7;
-    const Spread& s = results.seconds[index(condition)];
     chart.ticks.push_back({x, name(condition)});
-    const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s.mean), seconds(s.se));
-    chart.series.push_back({Series::measured,
-                            name(condition),
-                            styles(to_string(condition)),
-                            false,
-                            {{x, s.mean, s.mean - s.se, s.mean + s.se, words, {}}}});
-    chart.alternative += " " + words + ";";
-    highest = std::max(highest, s.mean + s.se);
+    if (const auto& s = results.seconds[index(condition)]) {
+      const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s->mean), seconds(s->se));
+      chart.series.push_back({Series::measured,
+                              name(condition),
+                              styles(to_string(condition)),
+                              false,
+                              {{x, s->mean, s->mean - s->se, s->mean + s->se, words, {}}}});
+      chart.alternative += " " + words + ";";
+      highest = std::max(highest, s->mean + s->se);
+    }
     if (const auto found = paper.find(name(condition)); found != paper.end()) {
       const auto& [mean, error] = found->second;
       chart.series.push_back({Series::published,
@@ -108,19 +109,16 @@ Grid by_condition(const std::string& name_of_table, const std::string& caption, 
 Section seconds_section(const StudyResults& results) {
   Section section{"seconds", "Seconds a command"};
   const auto paper = published();
-  section.add(everywhere,
-              by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
-                           {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
-                             const Spread &raw = results.seconds[index(condition)],
-                                          &active = results.active_s[index(condition)];
-                             const auto& [mean, error] = paper.at(name(condition));
-                             return std::vector{std::to_string(results.used()),
-                                                seconds(raw.mean),
-                                                seconds(raw.sd),
-                                                seconds(raw.se),
-                                                seconds(active.mean),
-                                                fmt::format("{} ± {}", mean, error)};
-                           }));
+  section.add(
+      everywhere,
+      by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
+                   {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
+                     const auto &raw = results.seconds[index(condition)], &active = results.active_s[index(condition)];
+                     const auto& [mean, error] = paper.at(name(condition));
+                     return std::vector{std::to_string(results.used()),       raw ? seconds(raw->mean) : "–",
+                                        raw ? seconds(raw->sd) : "–",         raw ? seconds(raw->se) : "–",
+                                        active ? seconds(active->mean) : "–", fmt::format("{} ± {}", mean, error)};
+                   }));
   List tests;
   if (results.primary)
     tests.items.push_back(
@@ -245,15 +243,19 @@ std::string headline(const StudyResults& results) {
   if (!results.primary) return begin + "fewer than two people can be compared.";
   return fmt::format(
       "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
-      begin, results.used(), seconds(results.seconds[0].mean), name(Condition::human), seconds(results.seconds[1].mean),
-      name(Condition::lga_hill), change_words(*results.primary, " s"), p_words(results.primary->p));
+      begin, results.used(), seconds(results.seconds[0]->mean), name(Condition::human),
+      seconds(results.seconds[1]->mean), name(Condition::lga_hill), change_words(*results.primary, " s"),
+      p_words(results.primary->p));
 }
 
 Json change_json(const std::optional<Change>& c) {
   if (!c) return nullptr;
   return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
 }
-Json spread_json(const Spread& s) { return {{"mean", s.mean}, {"sd", s.sd}, {"se", s.se}}; }
+Json spread_json(const std::optional<Spread>& s) {
+  if (!s) return nullptr;
+  return {{"mean", s->mean}, {"sd", s->sd}, {"se", s->se}};
+}
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json quality_json(const PhiQuality& q) {
   const auto of = [](const PhiQuality::Of& one) {
