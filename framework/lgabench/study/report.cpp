@@ -7,6 +7,7 @@
 #include <map>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
@@ -21,18 +22,19 @@ constexpr const char* simulated_words = "rehearsal, not people";
 
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
-std::string seconds(double s) { return fmt::format("{:.1f}", s); }
-std::string p_cell(double p) { return p < .001 ? "< 0.001" : fmt::format("{:.3f}", p); }
+std::string seconds(double s) { return fixed(s, 1); }
+std::string p_cell(double p) { return p < .001 ? "< 0.001" : fixed(p, 3); }
 std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
 std::string change_words(const Change& c, const char* unit) {
-  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", c.difference, unit, c.interval.low, c.interval.high);
+  return fmt::format("{}{} [{}, {}]", signed_text(c.difference, 1), unit, signed_text(c.interval.low, 1),
+                     signed_text(c.interval.high, 1));
 }
 // An effect on log seconds as a ratio of seconds.
 std::string ratio_words(const Change& c) {
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", std::exp(c.difference), std::exp(c.interval.low),
-                     std::exp(c.interval.high));
+  return fmt::format("{} [{}, {}]", fixed(std::exp(c.difference)), fixed(std::exp(c.interval.low)),
+                     fixed(std::exp(c.interval.high)));
 }
-std::string share(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "–"; }
+std::string share(const std::optional<double>& value) { return value ? fixed(*value) : "–"; }
 
 // Mean and error bar of the paper's figure 3b, by method's name.
 std::map<std::string, std::pair<double, double>> published() {
@@ -132,8 +134,8 @@ Section seconds_section(const StudyResults& results) {
                      idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
   for (const Condition condition : both)
     if (const auto& first = results.by_first[index(condition)])
-      tests.items.push_back(
-          {fmt::format("Who began with {}: {:+.1f} s (sd {:.1f})", name(condition), first->mean, first->sd)});
+      tests.items.push_back({fmt::format("Who began with {}: {} s (sd {})", name(condition),
+                                         signed_text(first->mean, 1), seconds(first->sd))});
   section.add(everywhere, std::move(tests));
   section.add(reading, Charts{{seconds_chart(results)}});
   return section;
