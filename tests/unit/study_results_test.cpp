@@ -122,6 +122,9 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   EXPECT_NEAR(*results.phi[0].object_types.precision, 3 / 9., 1e-12);
   EXPECT_NEAR(*results.phi[0].object_types.recall, (1 + 1 + 1 / 29.) / 9, 1e-12);
 
+  EXPECT_TRUE(fs::exists(data / "participants/p03.json"));
+  EXPECT_FALSE(fs::exists(data / "participants/p05.json")) << "left out of every test, those of a run's claims too";
+
   write_report(data);
   const std::string text = read_file(data / "report.md");
   EXPECT_SAYS(text, "p05 is left out: 0 trials of human count");

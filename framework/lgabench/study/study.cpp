@@ -219,7 +219,20 @@ bool counts(const Protocol& protocol, const Trial& trial) {
          (!protocol.longest_s || trial.raw_s <= *protocol.longest_s);
 }
 
+std::string why_left_out(const Protocol& protocol, const Session& session) {
+  if (!session.answered()) return "did not finish";
+  for (const Condition condition : {Condition::human, Condition::lga_hill}) {
+    const auto n = std::count_if(session.all().begin(), session.all().end(), [&](const Trial& trial) {
+      return trial.condition == condition && counts(protocol, trial);
+    });
+    if (n < protocol.fewest_trials)
+      return fmt::format("{} trials of {} count, {} needed", n, to_string(condition), protocol.fewest_trials);
+  }
+  return "";
+}
+
 Json participant_json(const Protocol& protocol, Kind kind, const Session& session) {
+  if (!why_left_out(protocol, session).empty()) return nullptr;
   std::map<std::string, Json> answers;  // by scenario
   for (const Trial& trial : session.all()) {
     if (!counts(protocol, trial)) continue;
@@ -237,7 +250,6 @@ Json participant_json(const Protocol& protocol, Kind kind, const Session& sessio
     made["proposed_by"] = item.proposed_by;
     answer["edited"] = std::move(made);
   }
-  if (answers.empty()) return nullptr;
   Json json{{"participant", pseudonym(session.slot())},
             {"study", fmt::format("{} (protocol {})", protocol.title, protocol.sha256.substr(0, 16))},
             {"consent",
