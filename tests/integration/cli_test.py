@@ -85,6 +85,11 @@ class Mistakes(Case):
             (["demos", "hart", "--out", "x"], r'no scenario "hart" \(did you mean "heart"\?\)'),
             (["report", "x", "--format", "yaml"], r'--format: no format "yaml", expected one of: text, md, latex, json, csv'),
             (["select", "Bring me the unicorn."], r"expected some for .*; a model is asked with --answers openai \(docs/language-models.md\)$"),
+            (["leaderboard", "build", "--cells", "3"], r"^lgabench: leaderboard build: --cells is an option of verify$"),
+            (["leaderboard", "add", "x", "--documents", "y"], r"leaderboard add: --documents is an option of build, check$"),
+            (["leaderboard", "check", "x"], r'leaderboard check: "x" is a word too many$'),
+            (["leaderboard", "verify", "--fresh", "--cells", "3"], r"excludes"),
+            (["study", "report", "x", "--out", "y"], r"study report: --out is an option of serve, rehearse$"),
             (["report", "nope"], r"^lgabench: nope: not the directory of a run \(no run.json\)$"),
         ]:
             with self.subTest(words):

@@ -122,6 +122,18 @@ class PageInABrowser(BesideOneRun):
                 return new Promise((then) => setTimeout(() => then(saved), 100));""", ending)
             self.assertTrue(text[0].endswith(ending.lower()), text[0])
             self.assertTrue(text[1].startswith(begun), text[1][:100])
+        self.script("[...document.querySelector('.frame tbody').rows[0].cells].forEach((cell, i) => {"
+                    " cell.textContent = ['-0.25', '+1', '=SUM(A1)', '-0.2 [-1, 0]'][i % 4]; })")
+        self.assertIn(",-0.25,+1,'=SUM(A1)", self.script("return csvOf(document.querySelector('.frame'))"))
+
+    def test_a_column_is_sorted_by_its_numbers(self):
+        self.open()
+        texts = self.script("""const table = document.querySelector("table.sortable"), body = table.tBodies[0];
+            const texts = ["0.5", "< 0.001", "–", "0.02", "-0.1"];
+            [...body.rows].forEach((row, i) => { row.cells[1].textContent = texts[i] || "words"; });
+            table.querySelector("thead th:nth-child(2) button").click();
+            return [...body.rows].map((row) => row.cells[1].textContent);""")
+        self.assertEqual(texts[:4], ["-0.1", "< 0.001", "0.02", "0.5"])
 
     def test_a_number_leads_to_its_episodes_and_these_to_one(self):
         self.open()

@@ -213,6 +213,7 @@ class Compare(Case):
         said = self.call("report", "a", "--difference", "gcbc_dart,lga").stdout
         self.assertRegex(said, r"Two rows, paired\n(.*\n)+.*test +10 +GCBC-DART − LGA +\+1.00 \[.* held ")
         self.call("report", "a", "--difference", "lga,gcbc_dart", expect=1)
+        self.assertIn("excludes", self.call("report", "a", "--claims", "--difference", "gcbc_dart,lga", expect=2).stderr)
         self.assertIn("no row nobody, the run has: gcbc_dart, lga",
                       self.call("report", "a", "--difference", "lga,nobody", expect=2).stderr)
 

@@ -6,6 +6,7 @@
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/suite_page.hpp>
 
 #include "leaderboard_board.hpp"
 
@@ -99,6 +100,13 @@ TEST(Board, DocumentsHaveTheTablesOfReadme) {
     EXPECT_THROW(build(board, {document}), InputError);
     EXPECT_EQ(read_file(document), broken);
   }
+}
+
+TEST(Board, RoundsAsReportsDo) {
+  Standing standing;
+  standing.score = .0625;  // a half of the third decimal
+  standing.interval = {.0005, .4375};
+  EXPECT_EQ(score_text(standing), "0.063 [0.001, 0.438]");
 }
 
 TEST(Board, EntriesOfOneTablePlayedTheSameScenes) {

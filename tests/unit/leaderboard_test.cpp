@@ -123,6 +123,18 @@ TEST(LeaderboardEntry, AVerificationPlaysTheCellsThatItsNonceChooses) {
               "the cells that the nonce chooses");
 }
 
+TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  write_entry(board.path, entry);
+  Json empty = replay_of(entry, "b", "another");
+  empty["cells"] = Json::array();
+  empty["bit_identical"] = empty["episodes"] = 0;
+  add_verification(board.path, entry, empty);
+  EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
+              "/cells: expected a cell or more");
+}
+
 TEST(LeaderboardEntry, TiersFollowFromVerifications) {
   Entry entry = made_entry(small_setting(), "a", .5);
   EXPECT_EQ(entry.tier(), Tier::recomputed);
@@ -199,6 +211,19 @@ TEST(Standings, EpisodesOfAFailedCellAreLost) {
   EXPECT_EQ(standing.failed_cells, 1);
   EXPECT_NEAR(standing.score, 1 - .5 / 6, 1e-9);
   EXPECT_EQ(standing.episodes, 6 * 40 + 6 * 80);
+}
+
+TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
+  Entry entry = made_entry(small_setting(), "a", 1);
+  PlayedCell& cell = entry.cells[0];
+  cell.failed = "signal 11";
+  cell.outcomes["test"] = std::string(40, failed_cell_letter);
+  cell.lm_queries = cell.learn_s = 0;  // as played_cell() writes it
+  const Standing standing = standings({&entry}).front();
+  EXPECT_NEAR(standing.lm_queries, 112, 1e-9);
+  EXPECT_NEAR(standing.learn_s, 4, 1e-9);
+  for (PlayedCell& each : entry.cells) each.failed = "signal 11";
+  EXPECT_EQ(standings({&entry}).front().lm_queries, 0);
 }
 
 TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {

@@ -79,6 +79,17 @@ TEST(Inputs, RefusePicturesOfAnotherSize) {
   EXPECT_THROW(shrink_rgb(std::vector<std::uint8_t>(rows * columns), native_size, input_size, out.data()), InputError);
 }
 
+TEST(Inputs, AreMadeByTheThreadThatAsks) {
+  const auto threads = [] {
+    return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
+  };
+  const auto before = threads();
+  const std::vector<std::uint8_t> rgb(rows * columns * 3, 100);
+  std::vector<float> small(3 * input_pixels);
+  for (int i = 0; i < 100; ++i) shrink_rgb(rgb, native_size, input_size, small.data());
+  EXPECT_EQ(threads(), before) << "other cells have the other cores";
+}
+
 TEST(Losses, HaveTheGradientOfFiniteDifferences) {
   RandomStream random("loss");
   std::vector<float> output(12), label(12), gradient(12), unused(12);

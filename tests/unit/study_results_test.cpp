@@ -106,9 +106,9 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   EXPECT_EQ(results.people[3].excluded, "did not finish");
   EXPECT_EQ(results.people[4].excluded, "0 trials of human count, 5 needed");
   EXPECT_EQ(results.too_long, 9);
-  EXPECT_NEAR(results.seconds[0].mean, 160, 1e-9);
-  EXPECT_NEAR(results.seconds[0].sd, 10, 1e-9);
-  EXPECT_NEAR(results.seconds[0].se, 10 / std::sqrt(3.), 1e-9);
+  EXPECT_NEAR(results.seconds[0]->mean, 160, 1e-9);
+  EXPECT_NEAR(results.seconds[0]->sd, 10, 1e-9);
+  EXPECT_NEAR(results.seconds[0]->se, 10 / std::sqrt(3.), 1e-9);
   // Differences 100, 101, 99: mean 100, s = 1; t_.975 = 4.3027 of 2 degrees of freedom.
   ASSERT_TRUE(results.primary.has_value());
   EXPECT_NEAR(results.primary->difference, 100, 1e-9);
@@ -121,6 +121,9 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   // {heart} x {red}, mean over nine truths: types of two of the nine and of "tiger", textures of all but two.
   EXPECT_NEAR(*results.phi[0].object_types.precision, 3 / 9., 1e-12);
   EXPECT_NEAR(*results.phi[0].object_types.recall, (1 + 1 + 1 / 29.) / 9, 1e-12);
+
+  EXPECT_TRUE(fs::exists(data / "participants/p03.json"));
+  EXPECT_FALSE(fs::exists(data / "participants/p05.json")) << "left out of every test, those of a run's claims too";
 
   write_report(data);
   const std::string text = read_file(data / "report.md");
@@ -139,6 +142,21 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   EXPECT_EQ(read_json(data / "results.json").at("used"), 3);
   EXPECT_EQ(complaints("study_results", read_json(data / "results.json")), std::vector<std::string>());
   EXPECT_SAYS(read_file(data / "trials.csv"), "\np01,,");
+}
+
+TEST_F(StudyResultsTest, NobodyTookNoTime) {
+  {
+    const fs::path file = ready_protocol(path, "paper");
+    Study study(data, read_protocol(file), file, Kind::people);
+    person(study, "a", 150, 50, 1);  // left
+  }
+  write_report(data);
+  const Json json = read_json(data / "results.json");
+  EXPECT_EQ(json.at("used"), 0);
+  EXPECT_EQ(json.at("/conditions/human/seconds"_json_pointer), nullptr);
+  EXPECT_EQ(json.at("/conditions/lga_hill/active_seconds"_json_pointer), nullptr);
+  EXPECT_EQ(complaints("study_results", json), std::vector<std::string>());
+  EXPECT_SAYS(read_file(data / "tables/seconds.csv"), "Human,0,–,–,–,–,");
 }
 
 TEST_F(StudyResultsTest, ARehearsalSaysSo) {

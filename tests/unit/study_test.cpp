@@ -3,6 +3,7 @@
 
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/study/report.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 #include "../schemas.hpp"
@@ -143,8 +144,12 @@ TEST_F(StudyDirectory, WhoWithdrawsLeavesASlotAndNothingElse) {
   std::string typed = withdrawal_code(id);
   std::transform(typed.begin(), typed.end(), typed.begin(),
                  [](unsigned char c) { return c == '-' ? ' ' : std::tolower(c); });
+  write_report(data);
+  EXPECT_TRUE(holds("p01,"));
   EXPECT_TRUE(study->withdraw(typed));
   EXPECT_FALSE(holds(id));
+  EXPECT_FALSE(holds("p01,")) << "a report's lines";
+  EXPECT_FALSE(fs::exists(data / "report.html"));
   EXPECT_FALSE(fs::exists(data / "participants/p01.json"));
   EXPECT_TRUE(fs::exists(data / "participants/p02.json"));
   Page page;
@@ -162,9 +167,11 @@ TEST_F(StudyDirectory, AKillInTheMiddleOfAWithdrawalIsCarriedOutLater) {
   const std::string id = agree();
   take_part(id);
   study.reset();
+  write_report(data);
   EventLog(data / "study.events").append({{"kind", "withdrawn"}, {"slot", 0}});
   open();
   EXPECT_FALSE(holds(id));
+  EXPECT_FALSE(holds("p01,"));
   EXPECT_FALSE(fs::exists(data / "participants/p01.json"));
 }
 

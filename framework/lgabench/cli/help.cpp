@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <lgabench/core/error.hpp>
+
 namespace lgabench::cli {
 namespace {
 
@@ -62,6 +64,21 @@ void arrange(CLI::App& verb, const char* title, std::initializer_list<std::pair<
     CLI::Option* option = verb.get_option(name);
     if (*title) option->group(title);
     if (*takes) option->type_name(takes);
+  }
+}
+
+void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions) {
+  const auto is_action = [&](const std::string& word) {
+    return std::find(actions.begin(), actions.end(), word) != actions.end();
+  };
+  for (const CLI::Option* option : verb.get_options()) {
+    if (option->count() == 0 || !option->nonpositional()) continue;
+    const std::string text = option->get_description(), begin = text.substr(0, text.find(':'));
+    std::vector<std::string> words = CLI::detail::split(begin, ',');
+    for (std::string& word : words) CLI::detail::trim(word);
+    if (std::all_of(words.begin(), words.end(), is_action) &&
+        std::find(words.begin(), words.end(), action) == words.end())
+      throw InputError(fmt::format("{} {}: {} is an option of {}", verb.get_name(), action, option->get_name(), begin));
   }
 }
 

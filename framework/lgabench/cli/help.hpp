@@ -26,6 +26,10 @@ struct OptionGroup {
 /// them where they are.
 void arrange(CLI::App& verb, const char* title, std::initializer_list<std::pair<const char*, const char*>> options);
 
+/// Options of a command with several actions whose help begins with some of these ("build, check: documents that ...")
+/// belong to them alone. @throws InputError for one that was given beside another `action`.
+void expect_options_of(const CLI::App& verb, const std::string& action, const std::vector<std::string>& actions);
+
 /// In the order in which they are shown; options that nobody arranged come last.
 std::vector<OptionGroup> option_groups(const CLI::App& app);
 

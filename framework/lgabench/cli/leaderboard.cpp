@@ -113,18 +113,20 @@ int build(const Arguments& a) {
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
+  const Words actions{"add", "verify", "build", "check", "withdraw"};
   verb->add_option("ACTION", a->action, "add, verify, build, check or withdraw")
       ->required()
-      ->check(one_of("action", {"add", "verify", "build", "check", "withdraw"}));
+      ->check(one_of("action", actions));
   verb->add_option("WHAT", a->what, "add: a run's directory; verify (else all), withdraw: an entry's, or its id");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
                    "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
   verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
-  verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  verb->add_flag("--fresh", a->replay.fresh, "verify: play on other test scenes, and compare success");
+  CLI::Option* const cells =
+      verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
+          ->check(CLI::Range(1, 1000000))
+          ->capture_default_str();
+  verb->add_flag("--fresh", a->replay.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
   verb->add_option("--by", a->replay.by, "verify: who verifies");
   verb->add_option("--jobs", a->jobs, "verify: cells computed at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
@@ -134,7 +136,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--methods", a->methods, "verify: FILE.py:Class of methods in Python")->delimiter(',');
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
-  verb->add_option("--against", a->against, "check: a revision of git, whose outcomes must not have changed");
+  verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
   verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
@@ -157,7 +159,10 @@ void add_leaderboard(CLI::App& app, int& exit) {
       "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"
       "verify plays cells again, confined and without a cache, and records what it finds. check reads files alone.\n"
       "Exit 1: refused, different, or a problem.");
-  verb->callback([a, &app, &exit] {
+  verb->callback([a, actions, verb, &app, &exit] {
+    expect_options_of(*verb, a->action, actions);
+    if (!a->what.empty() && (a->action == "build" || a->action == "check"))
+      throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->what));
     a->replay.program = app.version();
     if (a->action != "add") expect_board(a->board);
     exit = a->action == "verify"  ? verify(*a)

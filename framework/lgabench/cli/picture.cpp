@@ -20,10 +20,12 @@ Picture::Picture(int width, int height)
 
 void Picture::paste(int left, int top, int columns, int rows, int zoom,
                     const std::function<Rgb(int column, int row)>& colour) {
-  for (int y = 0; y < rows * zoom; ++y)
-    for (int x = 0; x < columns * zoom; ++x) {
-      const Rgb c = colour(x / zoom, y / zoom);
-      std::copy(c.begin(), c.end(), rgb_.begin() + 3 * ((top + y) * width_ + left + x));
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const Rgb c = colour(column, row);
+      for (int y = top + row * zoom; y < top + (row + 1) * zoom; ++y)
+        for (int x = left + column * zoom; x < left + (column + 1) * zoom; ++x)
+          std::copy(c.begin(), c.end(), rgb_.begin() + 3 * (y * width_ + x));
     }
 }
 

@@ -84,13 +84,15 @@ void add_report(CLI::App& app, int& exit) {
   verb->add_option("--format", options->format, "What to print: text, md, latex (every table), json or csv")
       ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
-  verb->add_flag("--claims", options->claims,
-                 "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
+  CLI::Option* const claims =
+      verb->add_flag("--claims", options->claims,
+                     "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
   verb->add_option("--difference", options->difference,
                    "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
                    "above A beyond chance")
       ->delimiter(',')
-      ->expected(2);
+      ->expected(2)
+      ->excludes(claims);
   arrange(*verb, "",
           {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|latex|json|csv"}, {"--difference", "A,B"}});
   verb->footer(

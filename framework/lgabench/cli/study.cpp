@@ -151,12 +151,13 @@ int carry_out(const Arguments& a) {
 
 void add_study(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
+  const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
   CLI::App* verb = app.add_subcommand("study", "Run a user study in a browser, for the rows Human and LGA-HILL");
   verb->add_option("what", a->what,
                    "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: show the pages "
                    "of DIR's protocol; rehearse: let simulated people take part; report: show the results")
       ->required()
-      ->check(one_of("action", {"new", "check", "serve", "rehearse", "report"}));
+      ->check(one_of("action", actions));
   verb->add_option("path", a->path, "The study's directory, or its protocol; for report, what serve wrote")->required();
   verb->add_option("--out", a->out,
                    "serve, rehearse: where answers are stored; a study in that directory is continued");
@@ -186,7 +187,10 @@ void add_study(CLI::App& app, int& exit) {
       "docs/study.md says how, from nothing to a first participant.\n"
       "Example: lgabench study new my_study\n"
       "         lgabench study serve my_study/protocol.json --out my_study/data");
-  verb->callback([a, &exit] { exit = carry_out(*a); });
+  verb->callback([a, actions, verb, &exit] {
+    expect_options_of(*verb, a->what, actions);
+    exit = carry_out(*a);
+  });
 }
 
 }  // namespace lgabench::cli

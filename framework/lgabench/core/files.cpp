@@ -75,9 +75,9 @@ std::string read_file(const fs::path& file, Links links, std::uintmax_t most) {
 void expect_plain_entries(const fs::path& directory) {
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(directory, none_there)) {
-    const fs::file_type type = entry.symlink_status().type();
-    if (type == fs::file_type::symlink) refuse_link(entry.path());
-    if (type != fs::file_type::regular && type != fs::file_type::directory)
+    // As the directory tells them: symlink_status() would ask the file system again.
+    if (entry.is_symlink()) refuse_link(entry.path());
+    if (!entry.is_regular_file() && !entry.is_directory())
       throw InputError(fmt::format("{}: expected a regular file or a directory", entry.path().string()));
   }
 }

@@ -63,7 +63,7 @@ struct Entry {
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
   Tier tier() const;
-  /// Whether the last verification of its kind on fresh scenes agreed, or none was made: 0 none, 1 agreed, -1 differs.
+  /// What verifications on fresh scenes found: 1 where all agreed, -1 where one differs, 0 where none was made.
   int fresh() const;
   /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
   std::string spec() const;

@@ -92,8 +92,9 @@ std::optional<double> quality(const Entry& entry, const char* member) {
 
 void add_costs(Standing& standing) {
   const Entry& entry = *standing.entry;
-  const auto cells = static_cast<double>(entry.cells.size());
+  const auto cells = static_cast<double>(entry.cells.size()) - standing.failed_cells;
   for (const PlayedCell& cell : entry.cells) {
+    if (!cell.failed.empty()) continue;  // what it cost is not known
     standing.lm_queries += cell.lm_queries / cells;
     standing.lm_tokens += cell.lm_tokens / cells;
     standing.learn_s += cell.learn_s / cells;

@@ -22,7 +22,7 @@ struct Standing {
   std::map<std::string, double> in_arm, in_scenario;
   int episodes = 0, failed_cells = 0;
   std::optional<double> precision, recall;            // of its Selections, mean over commands and kinds of features
-  double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell, on average
+  double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
 };
 
 /// Why an entry has no place among the ranked: "" for one that has.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -30,9 +31,11 @@ using report::Span;
 constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
 constexpr std::size_t curves = 8;                 // more would hide each other
 
-std::string rate_text(double rate) { return fmt::format("{:.2f}", rate); }
-std::string amount(double value) {
-  return value == 0 ? "–" : value < 10 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
+constexpr int score_digits = 3;
+
+std::string amount(double value) { return value == 0 ? "–" : fixed(value, value < 10 ? 1 : 0); }
+std::string interval_text(const Standing& s) {
+  return fmt::format(" [{}, {}]", fixed(s.interval.low, score_digits), fixed(s.interval.high, score_digits));
 }
 
 // Names of a method's rows: its id and the options in which they differ; then what else tells them apart.
@@ -69,9 +72,8 @@ Cell rate_button(const std::string& text, double rate, std::size_t row) {
 
 // Success, its interval small beside it.
 Cell score_button(const Standing& s, std::size_t row) {
-  Cell cell = rate_button(fmt::format("{:.3f}", s.score), s.score, row);
-  cell.spans.push_back(
-      Span::number(fmt::format(" [{:.3f}, {:.3f}]", s.interval.low, s.interval.high), "", report::Emphasis::detail));
+  Cell cell = rate_button(fixed(s.score, score_digits), s.score, row);
+  cell.spans.push_back(Span::number(interval_text(s), "", report::Emphasis::detail));
   return cell;
 }
 
@@ -115,12 +117,11 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
         {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
     for (const int n : setting.demonstrations) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
-      row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(rate_text(at->second))));
+      row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(fixed(at->second))));
     }
     if (arms.size() > 1)
-      for (const std::string& arm : arms) row.cells.emplace_back(Span::number(rate_text(s.in_arm.at(arm))));
-    for (const auto& part : {s.precision, s.recall})
-      row.cells.emplace_back(Span::number(part ? rate_text(*part) : "–"));
+      for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
+    for (const auto& part : {s.precision, s.recall}) row.cells.emplace_back(Span::number(part ? fixed(*part) : "–"));
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
       row.cells.emplace_back(Span::number(amount(value)));
     row.cells.emplace_back(tier_and_marks(s));
@@ -155,7 +156,7 @@ Chart curve_chart(const NamedTable& table) {
       if (const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0); at != s.at.end()) {
         const double rate = at->second;
         series.points.push_back(
-            {static_cast<double>(n), rate, rate, rate, fmt::format("{} at {}: {}", name, n, rate_text(rate))});
+            {static_cast<double>(n), rate, rate, rate, fmt::format("{} at {}: {}", name, n, fixed(rate))});
       }
     chart.series.push_back(std::move(series));
   }
@@ -179,7 +180,7 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
     Grid::Row row{{}, {Cell(Span(display_name(table.names[i])))}, s.entry->identity.row.is_reference()};
     for (std::size_t k = 0; k < table.setting.scenarios.size(); ++k) {
       const double rate = s.in_scenario.at(table.setting.scenarios[k].id);
-      row.cells.push_back(rate_button(rate_text(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));
+      row.cells.push_back(rate_button(fixed(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));
     }
     grid.rows.push_back(std::move(row));
   }
@@ -241,7 +242,7 @@ std::string what_was_played(const Setting& setting) {
 std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
 
 std::string score_text(const Standing& standing) {
-  return fmt::format("{:.3f} [{:.3f}, {:.3f}]", standing.score, standing.interval.low, standing.interval.high);
+  return fixed(standing.score, score_digits) + interval_text(standing);
 }
 
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <opencv2/core/utility.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include <lgabench/abstraction/goal_mask.hpp>
@@ -19,6 +20,8 @@ void expect_size(const char* what, std::size_t size, std::size_t expected) {
 }  // namespace
 
 void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize native, PictureSize size, float* out) {
+  // A small picture gains nothing by OpenCV's pool of threads, and other cells have the other cores.
+  [[maybe_unused]] static const bool one_thread = (cv::setNumThreads(0), true);
   expect_size("rgb", rgb.size(), native.pixels() * 3);
   // In floating point: OpenCV would round the means of bytes to bytes.
   cv::Mat shares, small(size.rows, size.columns, CV_32FC3, out);

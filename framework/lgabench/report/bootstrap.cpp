@@ -28,13 +28,18 @@ int times_drawn(RandomStream& random) {
   return times;
 }
 
-double crossed_mean(const Outcomes::Sample& sample, RandomStream& random, std::vector<double>& sums) {
+// Both lists are room to work in.
+double crossed_mean(const Outcomes::Sample& sample, RandomStream& random, std::vector<std::uint32_t>& drawn,
+                    std::vector<double>& sums) {
   const auto units = static_cast<std::uint32_t>(sample.units.size()),
              scenes = static_cast<std::uint32_t>(sample.scenes);
-  sums.assign(units, 0);
-  for (std::uint32_t j = 0; j < scenes; ++j) {
-    const std::uint32_t scene = random.below(scenes);
-    for (std::uint32_t i = 0; i < units; ++i) sums[i] += sample.units[i][scene];
+  drawn.resize(scenes);
+  for (std::uint32_t& scene : drawn) scene = random.below(scenes);
+  sums.clear();
+  for (const std::vector<double>& unit : sample.units) {  // one at a time: its sum stays in a register
+    double sum = 0;
+    for (const std::uint32_t scene : drawn) sum += unit[scene];
+    sums.push_back(sum);
   }
   double sum = 0;
   for (std::uint32_t i = 0; i < units; ++i) sum += sums[random.below(units)];
@@ -60,10 +65,11 @@ std::vector<double> resampled_means(const Samples& scenarios, double other_side,
   RandomStream random(name);
   const double scenes = distinct_scenes(scenarios);
   std::vector<double> means(static_cast<std::size_t>(resamples)), sums;
+  std::vector<std::uint32_t> drawn;
   for (double& resampled : means) {
     double sum = 0;
     for (const Outcomes::Sample& sample : scenarios)
-      sum += sample.shared ? crossed_mean(sample, random, sums) : nested_mean(sample, random);
+      sum += sample.shared ? crossed_mean(sample, random, drawn, sums) : nested_mean(sample, random);
     const int one = times_drawn(random), other = times_drawn(random);
     resampled =
         (sum / static_cast<double>(scenarios.size()) * scenes + one + other_side * other) / (scenes + one + other);

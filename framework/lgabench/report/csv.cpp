@@ -1,5 +1,6 @@
 // Tables as CSV (RFC 4180).
 #include <cstdlib>
+#include <string_view>
 
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/writers.hpp>
@@ -14,8 +15,9 @@ bool is_number(const std::string& text) {
 }
 
 std::string quoted(const std::string& words) {
+  constexpr std::string_view formula = "=+-@";
   std::string text = one_line(words);
-  if (!is_number(text) && text.find_first_of("=+-@") == 0)
+  if (!text.empty() && formula.find(text.front()) != formula.npos && !is_number(text))
     text.insert(0, 1, '\'');  // no spreadsheet takes it for a formula
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');

@@ -26,8 +26,12 @@ const std::optional<FeatureSpace>& space_of(const std::string& id) {
 // Whether a set, as JSON writes it, holds the name; what is no such set holds none.
 bool holds(const Json& set, const char* group, const std::string& name) {
   if (!set.is_object() || !set.contains(group)) return false;
+  const auto is = [](const Json& text, const std::string& word) {  // without a Json made of the word to compare with
+    return text.is_string() && text.get_ref<const std::string&>() == word;
+  };
   const Json& names = set.at(group);
-  return names == "ALL" || (names.is_array() && std::find(names.begin(), names.end(), Json(name)) != names.end());
+  return is(names, "ALL") ||
+         (names.is_array() && std::any_of(names.begin(), names.end(), [&](const Json& one) { return is(one, name); }));
 }
 
 }  // namespace

@@ -46,8 +46,11 @@ void read_episodes(const fs::path& file, CellResult& cell) {
         blamed.fail(fmt::format("{} on a method's failure, or null", fmt::join(attributions, ", ")));
     }
     if (const JsonReader action = reader.at("action"); !action.json().is_null()) {
-      for (const JsonReader& number : action.elements()) e.action.push_back(number.number());
-      if (e.action.empty()) action.fail("the numbers of an action, or null");
+      if (!action.json().is_array() || action.json().empty()) action.fail("the numbers of an action, or null");
+      for (const Json& number : action.json()) {  // a reader for each would cost more than the numbers
+        if (!number.is_number()) action.elements().at(e.action.size()).fail("a number");
+        e.action.push_back(number.get<double>());
+      }
     }
     if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
     const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
@@ -21,18 +22,19 @@ constexpr const char* simulated_words = "rehearsal, not people";
 
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
-std::string seconds(double s) { return fmt::format("{:.1f}", s); }
-std::string p_cell(double p) { return p < .001 ? "< 0.001" : fmt::format("{:.3f}", p); }
+std::string seconds(double s) { return fixed(s, 1); }
+std::string p_cell(double p) { return p < .001 ? "< 0.001" : fixed(p, 3); }
 std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
 std::string change_words(const Change& c, const char* unit) {
-  return fmt::format("{:+.1f}{} [{:+.1f}, {:+.1f}]", c.difference, unit, c.interval.low, c.interval.high);
+  return fmt::format("{}{} [{}, {}]", signed_text(c.difference, 1), unit, signed_text(c.interval.low, 1),
+                     signed_text(c.interval.high, 1));
 }
 // An effect on log seconds as a ratio of seconds.
 std::string ratio_words(const Change& c) {
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", std::exp(c.difference), std::exp(c.interval.low),
-                     std::exp(c.interval.high));
+  return fmt::format("{} [{}, {}]", fixed(std::exp(c.difference)), fixed(std::exp(c.interval.low)),
+                     fixed(std::exp(c.interval.high)));
 }
-std::string share(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "–"; }
+std::string share(const std::optional<double>& value) { return value ? fixed(*value) : "–"; }
 
 // Mean and error bar of the paper's figure 3b, by method's name.
 std::map<std::string, std::pair<double, double>> published() {
@@ -57,16 +59,17 @@ Chart seconds_chart(const StudyResults& results) {
   const auto paper = published();
   for (const Condition condition : both) {
     const double x = condition == Condition::human ? .3 : .7;
-    const Spread& s = results.seconds[index(condition)];
     chart.ticks.push_back({x, name(condition)});
-    const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s.mean), seconds(s.se));
-    chart.series.push_back({Series::measured,
-                            name(condition),
-                            styles(to_string(condition)),
-                            false,
-                            {{x, s.mean, s.mean - s.se, s.mean + s.se, words, {}}}});
-    chart.alternative += " " + words + ";";
-    highest = std::max(highest, s.mean + s.se);
+    if (const auto& s = results.seconds[index(condition)]) {
+      const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s->mean), seconds(s->se));
+      chart.series.push_back({Series::measured,
+                              name(condition),
+                              styles(to_string(condition)),
+                              false,
+                              {{x, s->mean, s->mean - s->se, s->mean + s->se, words, {}}}});
+      chart.alternative += " " + words + ";";
+      highest = std::max(highest, s->mean + s->se);
+    }
     if (const auto found = paper.find(name(condition)); found != paper.end()) {
       const auto& [mean, error] = found->second;
       chart.series.push_back({Series::published,
@@ -108,19 +111,16 @@ Grid by_condition(const std::string& name_of_table, const std::string& caption, 
 Section seconds_section(const StudyResults& results) {
   Section section{"seconds", "Seconds a command"};
   const auto paper = published();
-  section.add(everywhere,
-              by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
-                           {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
-                             const Spread &raw = results.seconds[index(condition)],
-                                          &active = results.active_s[index(condition)];
-                             const auto& [mean, error] = paper.at(name(condition));
-                             return std::vector{std::to_string(results.used()),
-                                                seconds(raw.mean),
-                                                seconds(raw.sd),
-                                                seconds(raw.se),
-                                                seconds(active.mean),
-                                                fmt::format("{} ± {}", mean, error)};
-                           }));
+  section.add(
+      everywhere,
+      by_condition("seconds", "Seconds a command: over people, each with the mean of their trials",
+                   {"people", "mean", "sd", "se", "mean active", "the paper"}, [&](Condition condition) {
+                     const auto &raw = results.seconds[index(condition)], &active = results.active_s[index(condition)];
+                     const auto& [mean, error] = paper.at(name(condition));
+                     return std::vector{std::to_string(results.used()),       raw ? seconds(raw->mean) : "–",
+                                        raw ? seconds(raw->sd) : "–",         raw ? seconds(raw->se) : "–",
+                                        active ? seconds(active->mean) : "–", fmt::format("{} ± {}", mean, error)};
+                   }));
   List tests;
   if (results.primary)
     tests.items.push_back(
@@ -134,8 +134,8 @@ Section seconds_section(const StudyResults& results) {
                      idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
   for (const Condition condition : both)
     if (const auto& first = results.by_first[index(condition)])
-      tests.items.push_back(
-          {fmt::format("Who began with {}: {:+.1f} s (sd {:.1f})", name(condition), first->mean, first->sd)});
+      tests.items.push_back({fmt::format("Who began with {}: {} s (sd {})", name(condition),
+                                         signed_text(first->mean, 1), seconds(first->sd))});
   section.add(everywhere, std::move(tests));
   section.add(reading, Charts{{seconds_chart(results)}});
   return section;
@@ -245,15 +245,19 @@ std::string headline(const StudyResults& results) {
   if (!results.primary) return begin + "fewer than two people can be compared.";
   return fmt::format(
       "{}{} people took {} s a command from empty lists ({}), {} s with a model's answer filled in ({}): {}, {}.",
-      begin, results.used(), seconds(results.seconds[0].mean), name(Condition::human), seconds(results.seconds[1].mean),
-      name(Condition::lga_hill), change_words(*results.primary, " s"), p_words(results.primary->p));
+      begin, results.used(), seconds(results.seconds[0]->mean), name(Condition::human),
+      seconds(results.seconds[1]->mean), name(Condition::lga_hill), change_words(*results.primary, " s"),
+      p_words(results.primary->p));
 }
 
 Json change_json(const std::optional<Change>& c) {
   if (!c) return nullptr;
   return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
 }
-Json spread_json(const Spread& s) { return {{"mean", s.mean}, {"sd", s.sd}, {"se", s.se}}; }
+Json spread_json(const std::optional<Spread>& s) {
+  if (!s) return nullptr;
+  return {{"mean", s->mean}, {"sd", s->sd}, {"se", s->se}};
+}
 Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json quality_json(const PhiQuality& q) {
   const auto of = [](const PhiQuality::Of& one) {

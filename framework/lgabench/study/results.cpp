@@ -1,7 +1,5 @@
 #include <lgabench/study/results.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -12,15 +10,6 @@ namespace {
 
 constexpr std::array both{Condition::human, Condition::lga_hill};
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
-
-std::string why_excluded(const Protocol& protocol, const PersonResult& person) {
-  if (!person.session->answered()) return "did not finish";
-  for (const Condition condition : both)
-    if (person.counted[index(condition)].size() < static_cast<std::size_t>(protocol.fewest_trials))
-      return fmt::format("{} trials of {} count, {} needed", person.counted[index(condition)].size(),
-                         to_string(condition), protocol.fewest_trials);
-  return "";
-}
 
 class MeanOf {
  public:
@@ -178,7 +167,7 @@ StudyResults results_of(const Record& record) {
     person.session = &session;
     for (const Trial& trial : session.all())
       if (counts(*record.protocol, trial)) person.counted[index(trial.condition)].push_back(&trial);
-    person.excluded = why_excluded(*record.protocol, person);
+    person.excluded = why_left_out(*record.protocol, session);
     count_trials(results, person);
     results.people.push_back(std::move(person));
   }

@@ -38,9 +38,9 @@ struct CommandResult {
 
 struct StudyResults {
   const Record* record = nullptr;
-  std::vector<PersonResult> people;                 // all, by slot
-  std::array<report::Spread, 2> seconds, active_s;  // of people's means, by condition
-  std::optional<report::Change> primary, active;    // paired t, human minus lga_hill; none with fewer than two people
+  std::vector<PersonResult> people;                                // all, by slot
+  std::array<std::optional<report::Spread>, 2> seconds, active_s;  // of people's means, by condition; none of nobody
+  std::optional<report::Change> primary, active;  // paired t, human minus lga_hill; none with fewer than two people
   /// Crossover: effects on log seconds of condition (human over lga_hill), period (first over second) and set (the
   /// first over the second): each person's difference of periods on three columns. Empty where it has no solution.
   std::vector<report::Change> log_model;

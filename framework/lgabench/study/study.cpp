@@ -42,6 +42,14 @@ fs::path export_of(const fs::path& directory, int slot) {
   return directory / "participants" / (pseudonym(slot) + ".json");
 }
 
+// Deletes what is of one person: their export, what a report says of them (study report makes it anew) and, last, as a
+// restart finds them by these, their events.
+void forget(const fs::path& directory, const std::string& id, int slot) {
+  for (const char* said : {"trials.csv", "report.md", "report.html"}) fs::remove(directory / said);
+  fs::remove(export_of(directory, slot));
+  fs::remove(events_of(directory, id));
+}
+
 // Slots that the log says were given, and withdrawn.
 struct Slots {
   std::set<int> given, withdrawn;
@@ -116,8 +124,7 @@ void Study::open_people() {
     }
     auto session = std::make_unique<Session>(protocol_, std::move(log));
     if (slots.withdrawn.count(session->slot()) != 0) {
-      fs::remove(export_of(directory_, session->slot()));
-      fs::remove(events_of(directory_, id));
+      forget(directory_, id, session->slot());
       continue;
     }
     if (slots.given.insert(session->slot()).second) log_->append(assigned(*session));
@@ -179,8 +186,7 @@ bool Study::withdraw(const std::string& code) {
   log_->append({{"kind", "withdrawn"}, {"slot", slot}});  // from here on it is done, whatever happens
   const std::string id = found->first;
   people_.erase(found);
-  fs::remove(export_of(directory_, slot));
-  fs::remove(events_of(directory_, id));
+  forget(directory_, id, slot);
   sync_directory(people_of(directory_));
   return true;
 }
@@ -213,7 +219,20 @@ bool counts(const Protocol& protocol, const Trial& trial) {
          (!protocol.longest_s || trial.raw_s <= *protocol.longest_s);
 }
 
+std::string why_left_out(const Protocol& protocol, const Session& session) {
+  if (!session.answered()) return "did not finish";
+  for (const Condition condition : {Condition::human, Condition::lga_hill}) {
+    const auto n = std::count_if(session.all().begin(), session.all().end(), [&](const Trial& trial) {
+      return trial.condition == condition && counts(protocol, trial);
+    });
+    if (n < protocol.fewest_trials)
+      return fmt::format("{} trials of {} count, {} needed", n, to_string(condition), protocol.fewest_trials);
+  }
+  return "";
+}
+
 Json participant_json(const Protocol& protocol, Kind kind, const Session& session) {
+  if (!why_left_out(protocol, session).empty()) return nullptr;
   std::map<std::string, Json> answers;  // by scenario
   for (const Trial& trial : session.all()) {
     if (!counts(protocol, trial)) continue;
@@ -231,7 +250,6 @@ Json participant_json(const Protocol& protocol, Kind kind, const Session& sessio
     made["proposed_by"] = item.proposed_by;
     answer["edited"] = std::move(made);
   }
-  if (answers.empty()) return nullptr;
   Json json{{"participant", pseudonym(session.slot())},
             {"study", fmt::format("{} (protocol {})", protocol.title, protocol.sha256.substr(0, 16))},
             {"consent",

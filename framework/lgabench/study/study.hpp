@@ -66,8 +66,9 @@ Record read_study(const fs::path& directory);
 
 /// "p07", of a slot.
 std::string pseudonym(int slot);
-/// What `lgabench run --humans` reads of a person (docs/formats: a participant's file); null where no trial was
-/// finished.
+/// Why the protocol leaves the person out of every test; "" for one whom it does not.
+std::string why_left_out(const Protocol& protocol, const Session& session);
+/// What `lgabench run --humans` reads of a person (docs/formats: a participant's file); null of one who is left out.
 Json participant_json(const Protocol& protocol, Kind kind, const Session& session);
 /// Whether the trial counts: finished, not practice, not longer than the protocol allows.
 bool counts(const Protocol& protocol, const Trial& trial);

@@ -20,7 +20,8 @@ $("contents").hidden = false;
 $("contents").innerHTML = [...document.querySelectorAll("main section")]
   .map((section) => `<a href="#${section.id}">${section.querySelector("h2").textContent}</a>`).join("");
 
-// Numbers sort as numbers, what has none goes last; each group by itself.
+// Numbers sort as numbers ("< 0.001" among them), what has none goes last; each group by itself.
+const numberOf = (text) => parseFloat(text.replace(/^< /, ""));
 for (const table of document.querySelectorAll("table.sortable")) {
   const heads = [...table.querySelectorAll("thead th")];
   heads.forEach((head, column) => {
@@ -33,7 +34,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
       for (const body of table.tBodies) {
         const rows = [...body.rows].filter((row) => row.className !== "group");
         rows.sort((a, b) => {
-          const [x, y] = [key(a), key(b)], [m, n] = [parseFloat(x), parseFloat(y)];
+          const [x, y] = [key(a), key(b)], [m, n] = [numberOf(x), numberOf(y)];
           if (isNaN(m) !== isNaN(n)) return isNaN(m) ? 1 : -1;
           return (isNaN(m) ? x.localeCompare(y) : m - n) * (descending ? -1 : 1);
         });
@@ -115,7 +116,8 @@ for (const box of document.querySelectorAll("main table, svg.chart")) {
 // Figures and tables to take away; figures/ and tables/ beside the page have them as PDF and LaTeX too.
 const quoted = (text) => /[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 function csvOf(frame) {
-  const text = (cell) => quoted(cell.textContent.trim().replace(/^(?=[=+@-])/, "'"));
+  const plain = (text) => /^[=+@-]/.test(text) && isNaN(text) ? "'" + text : text;  // a number is no formula
+  const text = (cell) => quoted(plain(cell.textContent.trim()));
   let group = "";
   const lines = [["group", ...[...frame.querySelectorAll("thead th")].map(text)]];
   for (const row of frame.querySelectorAll("tbody tr"))
