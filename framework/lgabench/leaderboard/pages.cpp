@@ -37,7 +37,7 @@ Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board
     const Standing& s = table.standings[i];
     grid.rows.push_back({{},
                          {Span::number(rank_text(s)), Span(display_name(table.names[i])), Span::number(score_text(s)),
-                          Span(to_string(s.entry->tier())), Span(s.entry->about.at("by").get<std::string>()),
+                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
                           Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
                          s.entry->identity.row.is_reference()});
   }

@@ -77,20 +77,6 @@ Cell score_button(const Standing& s, std::size_t row) {
   return cell;
 }
 
-// "replayed; fresh"
-std::string tier_and_marks(const Standing& s) {
-  std::vector<std::string> words{to_string(s.entry->tier())};
-  if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
-  const std::string confined = s.entry->evidence.front().at("confinement");
-  if (confined.find("no ") != std::string::npos || confined == "unknown")
-    words.emplace_back("unconfined");
-  else if (confined.find("without") != std::string::npos)
-    words.emplace_back("partly confined");
-  if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
-  if (s.entry->fresh() > 0) words.emplace_back("fresh");
-  return fmt::format("{}", fmt::join(words, "; "));
-}
-
 // The table, with a column for each number of demonstrations, and for each arm where there are several.
 Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   const Setting& setting = table.setting;
@@ -240,6 +226,19 @@ std::string what_was_played(const Setting& setting) {
 }
 
 std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
+
+std::string tier_and_marks(const Standing& s) {
+  std::vector<std::string> words{to_string(s.entry->tier())};
+  if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
+  const std::string confined = s.entry->evidence.front().at("confinement");
+  if (confined.find("no ") != std::string::npos || confined == "unknown")
+    words.emplace_back("unconfined");
+  else if (confined.find("without") != std::string::npos)
+    words.emplace_back("partly confined");
+  if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
+  if (s.entry->fresh() > 0) words.emplace_back("fresh");
+  return fmt::format("{}", fmt::join(words, "; "));
+}
 
 std::string score_text(const Standing& standing) {
   return fixed(standing.score, score_digits) + interval_text(standing);

@@ -23,8 +23,10 @@ std::string title_of(const Setting& setting);
 std::string what_was_played(const Setting& setting);
 /// "3", or why there is none.
 std::string rank_text(const Standing& standing);
-/// ".57 [.52, .61]"
+/// "0.516 [0.443, 0.582]"
 std::string score_text(const Standing& standing);
+/// "replayed; fresh", "recomputed; partly confined; 2 cells failed"
+std::string tier_and_marks(const Standing& standing);
 
 /// A page for the tables of one suite.
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);
