@@ -13,8 +13,13 @@ void append(std::vector<std::string>& names, std::vector<std::string> more) {
   names.insert(names.end(), more.begin(), more.end());
 }
 
-void read_choice(const JsonReader& reader, const FeatureSpace& space, Content& content) {
+// `second`: the id of the task's second set, of which the choice then is; "" where the choice is of targets.
+void read_choice(const JsonReader& scenes, const std::string& second, const FeatureSpace& space, Content& content) {
   constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
+  for (const std::string& drawn : {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
+                                   std::string("later_letters"), second.empty() ? std::string("target") : second})
+    if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
+  const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
   if (content.choice.size() > most) reader.fail(fmt::format("at most {} object types", most));
   for (const JsonReader& type : reader.elements())
@@ -37,7 +42,7 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
   if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
   if (reader.has("hard")) content.hard = reader.at("hard").boolean();
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
-  if (reader.has("choice")) read_choice(reader.at("choice"), space, content);
+  if (reader.has("choice")) read_choice(reader, scenario.second ? scenario.second->id : "", space, content);
 }
 
 }  // namespace

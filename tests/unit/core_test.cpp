@@ -285,6 +285,21 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice/1: expected an object type");
   json["tests"][1]["choice"] = std::vector<std::string>(6, "heart");
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice: expected at most 5 object types");
+  const Json set = json["commands"][0]["truth"]["target"];
+  for (const auto& [member, value] : {std::pair<const char*, Json>{"target", set},
+                                      {"distractors", {1, 1}},
+                                      {"hard", true},
+                                      {"later_letters", true},
+                                      {"outside_all_commands", true}}) {
+    json["tests"][1] = {{"arm", "second"}, {"choice", {"heart", "star"}}, {member, value}};
+    EXPECT_SAYS(refusal(json), std::string("mine.json: /tests/1/") + member + ": expected no such member beside");
+  }
+  Json sweep = load_scenario("sweep_block_without_touching_pan").json;  // its choice is of what is to be avoided
+  const Json truth = sweep["commands"][0]["truth"];
+  sweep["tests"][0] = {{"arm", "test"}, {"choice", {"pan", "bowl"}}, {"target", truth["target"]}};
+  EXPECT_NO_THROW(read_scenario(sweep, "mine.json"));
+  sweep["tests"][0]["avoid"] = truth["avoid"];
+  EXPECT_SAYS(refusal(sweep), "mine.json: /tests/0/avoid: expected no such member beside \"choice\"");
   json["tests"][1] = {{"arm", "train"}};
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected another name");
   json = heart();
@@ -305,7 +320,9 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /direction: expected clockwise or counter_clockwise, got \"left\"");
   json["direction"] = "clockwise";
   json["angle_deg"] = -120;
-  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 0, at most 180, got -120");
+  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 15, at most 180, got -120");
+  json["angle_deg"] = 15;  // within the tolerance of no turn at all
+  EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 15, at most 180, got 15");
   EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }),
               "no scenario \"hart\" (did you mean \"heart\"?), expected one of: ");
 }

@@ -240,10 +240,10 @@ TEST(HeatMap, IsAFunctionOfItsSeed) {
   EXPECT_NE(trained(2), first);
 }
 
-TEST(HeatMap, TakesThreeHundredStepsHoweverManySamplesThereAre) {
+TEST(HeatMap, TakesThreeHundredStepsInWholePasses) {
   const HeatMap policy(one_mask, 1);
-  for (const auto& [samples, epochs] :
-       {std::pair(1, 300), std::pair(10, 300), std::pair(50, 100), std::pair(4800, 1)}) {
+  for (const auto& [samples, epochs] : {std::pair(1, 300), std::pair(10, 300), std::pair(50, 100), std::pair(300, 17),
+                                        std::pair(4800, 1), std::pair(12000, 1)}) {
     const TrainingOptions options = policy.schedule({}, samples);
     EXPECT_EQ(options.epochs, epochs);
     EXPECT_TRUE(options.cosine);

@@ -48,6 +48,9 @@ TEST(MobileEpisode, FailsAsThePlanDoes) {
   for (const char* id : ids) {
     EXPECT_EQ(failure_of(id, [](Plan&) {}), failure::none);
     EXPECT_EQ(failure_of(id, [](Plan& p) { p.u = 0, p.v = 1; }), failure::missed_object) << "the floor";
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.u = .016, p.v = 350. / 480; }), failure::missed_object)
+        << "the table's top";
+    EXPECT_EQ(failure_of(id, [](Plan& p) { p.u = .016, p.v = 362. / 480; }), failure::wrong_object) << "its front";
     EXPECT_EQ(failure_of(id, [](Plan& p) { p.waypoint_m = {2, 0}; }), failure::blocked_way) << "through the table";
     EXPECT_EQ(failure_of(id, [](Plan& p) { p.cosine = -p.cosine, p.sine = -p.sine; }), failure::out_of_reach);
     EXPECT_EQ(failure_of(id, [](Plan& p) { p.waypoint_m = {}; }), failure::out_of_reach);

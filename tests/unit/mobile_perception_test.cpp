@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <vector>
 
 #include <mobile/perception.hpp>
 #include <mobile/renderer.hpp>
@@ -61,9 +62,9 @@ TEST(MobilePerception, ErrsInNestedWaysAndAlike) {
 }
 
 TEST(MobilePerception, LeavesAWholeTable) {
-  int merged = 0, missed = 0, moved = 0;
+  int merged = 0, shorter = 0, moved = 0;
   for (const Observation& seen : scenes(80)) {
-    const Observation perceived = perceive(seen, .3, stream(merged + missed + moved));
+    const Observation perceived = perceive(seen, .3, stream(merged + shorter + moved));
     for (const Instance& instance : perceived.instances) {
       EXPECT_EQ(instance.pixels, std::count(perceived.ids.begin(), perceived.ids.end(), instance.id));
       const auto was = std::find_if(seen.instances.begin(), seen.instances.end(),
@@ -78,11 +79,84 @@ TEST(MobilePerception, LeavesAWholeTable) {
                               [&](const Instance& instance) { return instance.id == id; }));
       merged += seen.ids[i] != 0;
     }
-    missed += perceived.instances.size() < seen.instances.size();
+    shorter += perceived.instances.size() < seen.instances.size();
   }
   EXPECT_GT(merged, 0);
-  EXPECT_GT(missed, 0);
+  EXPECT_GT(shorter, 0);
   EXPECT_GT(moved, 100);
+}
+
+struct Rectangle {
+  const char* type;
+  int row, column, height, width;
+};
+
+// Instances 1, 2, ... on an empty picture.
+Observation picture(const std::vector<Rectangle>& rectangles) {
+  Observation seen;
+  seen.size = {60, 100};
+  seen.ids.resize(seen.size.pixels());
+  for (const auto& [type, row, column, height, width] : rectangles) {
+    const auto id = static_cast<std::uint8_t>(seen.instances.size() + 1);
+    seen.instances.push_back({id, type, "red", height * width});
+    for (int r = row; r < row + height; ++r)
+      std::fill_n(seen.ids.begin() + std::ptrdiff_t{r} * seen.size.columns + column, width, id);
+  }
+  return seen;
+}
+
+constexpr int trials = 4000;  // standard errors of a share: .8 % and less
+
+TEST(MobilePerception, MissesByPixelsAndMovesBordersByUpToTwo) {
+  const Observation seen =
+      picture({{"apple", 10, 10, 20, 20}, {"lemon", 10, 50, 10, 10}, {"fork", 40, 50, 2, 10}});  // far apart
+  int missed[3] = {0, 0, 0};
+  std::map<int, int> sizes;  // of the apple
+  for (int i = 0; i < trials; ++i) {
+    const Observation perceived = perceive(seen, 0, stream(i));
+    for (const Instance& was : seen.instances) {
+      const auto is = std::find_if(perceived.instances.begin(), perceived.instances.end(),
+                                   [&](const Instance& instance) { return instance.id == was.id; });
+      const auto pixels = std::count(perceived.ids.begin(), perceived.ids.end(), was.id);
+      if (is == perceived.instances.end()) {
+        ++missed[was.id - 1];
+        EXPECT_EQ(pixels, 0);
+      } else if (was.id == 1) {
+        ++sizes[static_cast<int>(pixels)];
+      }
+    }
+  }
+  EXPECT_NEAR(missed[0], .1 * trials, .03 * trials) << "40 of 400 pixels";
+  EXPECT_NEAR(missed[1], .4 * trials, .04 * trials) << "40 of 100 pixels";
+  EXPECT_NEAR(missed[2], .5 * trials, .04 * trials) << "never more than half";
+  const int left = trials - missed[0];
+  EXPECT_EQ(sizes.size(), 5u);
+  for (const int pixels : {16 * 16, 18 * 18, 400, 400 + 4 * 20, 400 + 4 * 40 + 4})  // -2, -1, 0, 1, 2
+    EXPECT_NEAR(sizes[pixels], .2 * left, .035 * left) << pixels;
+}
+
+TEST(MobilePerception, MergesWhatSharesAnEdgeUnderTheLargersCaption) {
+  // The lemon touches the apple, the fork only a corner of it.
+  const Observation seen = picture({{"lemon", 20, 40, 20, 12}, {"apple", 20, 20, 20, 20}, {"fork", 40, 10, 12, 10}});
+  const std::size_t in_lemon = 30 * 100 + 46;  // farther from its border than that moves
+  int merged = 0, shown = 0;
+  for (int i = 0; i < trials; ++i) {
+    const Observation perceived = perceive(seen, 0, stream(i));
+    const auto said = captions(perceived);
+    for (const auto& [id, caption] : said) EXPECT_EQ(caption, captions(seen).at(id));
+    if (said.count(2) == 0) continue;  // the apple is missed
+    ++shown;
+    if (perceived.ids[in_lemon] == 2) {
+      ++merged;
+      EXPECT_EQ(said.count(1), 0u);
+    }
+    if (said.count(3) != 0) {
+      EXPECT_EQ(perceived.ids[46 * 100 + 15], 3) << "a corner is no edge";
+    }
+  }
+  // Of the larger segment less is missed.
+  const double together = .1 * (1 - 40. / 640), apart = .9 * (1 - 40. / 400);
+  EXPECT_NEAR(merged, together / (together + apart) * shown, .025 * shown);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Rotate: turn the target in its place, by the scenario's angle.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include <common/objects.hpp>
@@ -28,7 +30,8 @@ class Rotate final : public Task {
   std::vector<std::string> scenario_members() const override { return {angle, direction}; }
   void read(const JsonReader& file, const JsonReader*, Content& content) const override {
     const double angle_deg = file.at(angle).number();
-    if (!(angle_deg > 0 && angle_deg <= 180)) file.at(angle).fail("above 0, at most 180");
+    if (!(angle_deg > angle_tolerance_deg && angle_deg <= 180))  // else what is not turned would be right
+      file.at(angle).fail(fmt::format("above {:g}, at most 180", angle_tolerance_deg));
     const std::string to = file.has(direction) ? file.at(direction).string() : "counter_clockwise";
     if (to != "clockwise" && to != "counter_clockwise") file.at(direction).fail("clockwise or counter_clockwise");
     content.numbers[angle] = {to == "clockwise" ? -angle_deg : angle_deg};

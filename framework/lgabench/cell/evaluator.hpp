@@ -36,7 +36,7 @@ struct TestScene {
   bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
 };
 
-/// The arm's: its noise, and what the environment adds (EnvironmentType::perceive()); null where neither errs. Draws
+/// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
 /// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. @pre the scenario
 /// outlives it.
 Perception perception_of(const Scenario& scenario, const Arm& arm);

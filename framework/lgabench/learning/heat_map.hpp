@@ -20,7 +20,8 @@ namespace lgabench {
 /// Motion's: in one group where the demonstrations' later places vary by at most .05 m in their frames, else in groups
 /// by direction of push, the likeliest of which the network names.
 ///
-/// 300 steps of 16 samples however many there are, learning rate .003 falling as a cosine. Adam.
+/// 300 steps of 16 samples (of all where there are fewer), rounded up to whole passes, so one pass of more than 4800.
+/// Adam, learning rate .003 falling as a cosine.
 class HeatMap : public Learner {
  public:
   static constexpr PictureSize rgb_size{32, 64};
