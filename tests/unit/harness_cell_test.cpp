@@ -399,6 +399,23 @@ TEST_F(Play, APolicyIsGivenTheCommandOfItsScene) {
   }
 }
 
+// Errors that all training seeds shared would be drawn once for all of them, and counted as if they were not.
+TEST_F(Play, ATrainingSeedWithItsOwnScenesHasItsOwnErrors) {
+  Arm arm = scenario->tests.front();
+  arm.label_noise = .5;
+  const auto types_with = [&](std::optional<std::uint64_t> seed) {
+    std::vector<std::string> types;
+    for (const TestScene& test : tests(*scenario, 10)) {
+      const Observation seen = perception_of(*scenario, arm, seed)(environment->reset(test.scene), test.scene);
+      for (const Instance& instance : seen.instances) types.push_back(instance.object_type);
+    }
+    return types;
+  };
+  EXPECT_EQ(types_with(0), types_with(0));
+  EXPECT_NE(types_with(0), types_with(1));
+  EXPECT_NE(types_with(std::nullopt), types_with(0));
+}
+
 TEST_F(Play, ImperfectTextualizationChangesWhatAPolicySeesAndNothingElse) {
   const auto seen_with = [&](const TextualizationNoise& noise) {
     std::vector<TestScene> scenes = tests(*scenario, 20);

@@ -47,13 +47,15 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
 
 }  // namespace
 
-Perception perception_of(const Scenario& scenario, const Arm& arm) {
+Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
   const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
   const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
-  return [&scenario, noise, perceive](const Observation& seen, const Scene& scene) {
-    const auto stream = [&scene](const char* of) {
-      return RandomStream(fmt::format("{}/{}/{}/{}/{}", of, scene.scenario, scene.layout, scene.seed, scene.index));
+  const std::string own = training_seed ? fmt::format("/training seed {}", *training_seed) : "";  // as its scenes have
+  return [&scenario, noise, perceive, own](const Observation& seen, const Scene& scene) {
+    const auto stream = [&](const char* of) {
+      return RandomStream(
+          fmt::format("{}/{}/{}/{}{}/{}", of, scene.scenario, scene.layout, scene.seed, own, scene.index));
     };
     return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
                                     stream("textualization"));

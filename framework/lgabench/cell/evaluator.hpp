@@ -37,9 +37,10 @@ struct TestScene {
 };
 
 /// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
-/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. @pre the scenario
-/// outlives it.
-Perception perception_of(const Scenario& scenario, const Arm& arm);
+/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. `training_seed`:
+/// as in SceneRequest. @pre the scenario outlives it.
+Perception perception_of(const Scenario& scenario, const Arm& arm,
+                         std::optional<std::uint64_t> training_seed = std::nullopt);
 
 /// What an actor does, and what it says of the input that made it do so.
 struct Move {

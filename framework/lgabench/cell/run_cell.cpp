@@ -112,7 +112,7 @@ std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, c
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests) {
-    const Perception perception = perception_of(scenario, arm);
+    const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
       const bool empty = row == Row::abstraction_empty || selected.nothing_for(scene.command);

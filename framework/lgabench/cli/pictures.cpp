@@ -140,7 +140,8 @@ class Pictures {
     if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
 
     const Observation seen = find_environment(played.scenario.environment).draw(scene);
-    const Perception perception = perception_of(played.scenario, played.scenario.arm(request.arm));
+    const Perception perception =
+        perception_of(played.scenario, played.scenario.arm(request.arm), played.cell.scenes_of_seed());
     const Observation perceived = perception ? perception(seen, scene) : seen;
     Json masks = Json::array();
     for (const Json& one : request.selections) {
