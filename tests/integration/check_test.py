@@ -47,6 +47,7 @@ class CheckPlugin(Case):
 
     def test_outlives_what_crashes_throws_and_never_returns(self):
         for where, how, check, says in [
+            ("select", "log", "select", r"services\.log\.epoch\(\) was called outside of learn\(\)"),
             ("act", "nan", "act", "expected a finite number, got nan"),
             ("act", "throw", "act", "the fixture's own failure"),
             ("learn", "throw_int", "learn", "threw int"),
