@@ -167,8 +167,9 @@ void expect_verification(const JsonReader& line) {
   line.at("machine").at("processor").string();
   if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
   for (const char* count : {"bit_identical", "flips", "episodes"}) line.at(count).integer(0, INT64_MAX);
-  if (kind == "fresh")
-    for (const char* number : {"difference", "low", "high"}) line.at(number).number();
+  if (kind != "fresh") return;
+  for (const char* number : {"difference", "low", "high"}) line.at(number).number();
+  if (line.at("low").number() >= line.at("high").number()) line.at("high").fail("more than /low");
 }
 
 // The cells that a verification says it played are those that its nonce chooses.
