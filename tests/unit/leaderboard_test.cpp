@@ -6,6 +6,7 @@
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
@@ -146,6 +147,16 @@ TEST(LeaderboardEntry, TiersFollowFromVerifications) {
   entry.verifications.push_back(replay_of(entry, "c", "third", false));
   EXPECT_EQ(entry.tier(), Tier::recomputed);
   EXPECT_EQ(why_not_ranked(entry), "a replay differed");
+}
+
+TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten) {
+  Entry entry;
+  report::CellResult result;
+  result.failed = true;
+  for (int i = 0; i < 26; ++i) entry.failures.push_back(fmt::format("failure_{}", i));
+  played_cell(result, "", "", entry);
+  entry.failures.emplace_back("another");
+  EXPECT_SAYS(message_of<InputError>([&] { played_cell(result, "", "", entry); }), "27 words for failures");
 }
 
 TEST(LeaderboardEntry, RepeatedFreshVerificationsAreTestedTogether) {

@@ -39,6 +39,7 @@ struct PlayedCell {
   int successes() const;
 };
 constexpr char success_letter = '.', failed_cell_letter = '!';
+constexpr std::size_t most_failure_words = 26;  // a letter for each
 Json to_json(const PlayedCell& cell);
 
 /// How far an entry was checked.

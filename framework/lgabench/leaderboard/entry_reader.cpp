@@ -151,7 +151,7 @@ void expect_evidence(const JsonReader& evidence) {
 // A letter for each word, as many as there are.
 std::vector<std::string> read_failures(const JsonReader& reader) {
   const std::vector<std::string> words = reader.strings();
-  if (words.size() > 26) reader.fail("26 words at most");
+  if (words.size() > most_failure_words) reader.fail(fmt::format("{} words at most", most_failure_words));
   return words;
 }
 
