@@ -184,7 +184,7 @@ def _told(channel, kind, call, *arguments):
     except Exception as error:  # whatever a method raises costs its own call
         traceback.print_exc()
         sys.stderr.flush()
-        reason = (str(error).splitlines() or [""])[0]
+        reason = (str(error).splitlines() or [""])[0].encode(errors="replace").decode()  # a file's name may be no UTF-8
         channel.send({"type": "error", "kind": kind, "reason": f"{type(error).__name__}: {reason}"[:2000]})
     return None
 
