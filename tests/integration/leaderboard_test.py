@@ -341,7 +341,7 @@ class Replays(Board):
         self.forge(1)
         # Of the honest cells the nonce chooses others; the same five in their order once in 6,720 times.
         self.assertIn("DIFFERS", self.verify("--cells", "5", expect=1))
-        self.assertEqual(self.tier(), "recomputed")
+        self.assertEqual(self.tier(), "recomputed; a replay differed")
         self.assertIn("a replay differed", (self.dir / "board/leaderboard.csv").read_text())
         (self.entry / "cells.jsonl").write_bytes(honest)
         self.assertIn("expected the cells that the nonce chooses", self.leaderboard("check", expect=1).stderr)

@@ -1,5 +1,6 @@
-// A policy that keeps places and trains nothing: it takes hold of the middle of what is to be taken, and does the rest
-// as it was shown. Beyond the paper: it separates what an abstraction is worth from learning where pixels are.
+// A policy that keeps spatial positions and trains nothing: it takes hold of the middle of what is to be taken, and
+// does the rest as it was shown. Beyond the paper: it separates what an abstraction is worth from learning where pixels
+// are.
 #pragma once
 #include <memory>
 #include <vector>

@@ -1,6 +1,6 @@
-// A policy that keeps places and is trained: where to take hold is a heat map over the table, the rest is done as it
-// was shown. Beyond the paper: with a goal mask and with pixels alone, it tells what an abstraction is worth to a
-// policy that need not learn where pixels are.
+// A policy that keeps spatial positions and is trained: where to take hold is a heat map over the table, the rest is
+// done as it was shown. Beyond the paper: with a goal mask and with pixels alone, it tells what an abstraction is worth
+// to a policy that need not learn where pixels are.
 #pragma once
 #include <memory>
 #include <vector>

@@ -11,7 +11,8 @@ Json to_json(const StudyResults& results);
 /// A line for each trial of every person, practice and interrupted ones included.
 std::string trials_csv(const StudyResults& results);
 
-/// Writes DIR/report.html, report.md, results.json, trials.csv, figures/ and tables/. Returns the document. @throws InputError where there is no study.
+/// Writes DIR/report.html, report.md, results.json, trials.csv, figures/ and tables/. Returns the document. @throws
+/// InputError where there is no study.
 report::Document write_report(const fs::path& directory);
 
 }  // namespace lgabench::study
