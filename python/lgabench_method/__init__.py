@@ -135,7 +135,7 @@ class Services:
     human: object    # specify(command), edit(command, proposal): for methods that declare that they ask people
     options: dict    # every one
     seed: int        # governs all that is random
-    log: object      # epoch(epochs, steps, loss), after each pass over the data
+    log: object      # epoch(epochs, steps, loss), in learn() after each pass over the data
     files: str       # a directory for pictures and curves of the method's own; kept with the cell
     layout: dict     # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places
 

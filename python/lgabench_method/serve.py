@@ -59,10 +59,13 @@ class _Log:
 
     def __init__(self, channel):
         self.channel, self.waiting, self.sent = channel, [], time.monotonic()
+        self.open = False  # whether learn() runs: only then the worker takes what is logged
 
     def epoch(self, epochs, steps, loss, **curves):
         """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass, and other values of it
-        by name, as validation=.2: a report draws a curve of each."""
+        by name, as validation=.2: a report draws a curve of each. While learn() runs."""
+        if not self.open:
+            raise RuntimeError("services.log.epoch() was called outside of learn(): only training is logged")
         self.waiting.append((int(epochs), int(steps), float(loss), {name: float(value) for name, value in curves.items()}))
         if len(self.waiting) == 1000 or time.monotonic() - self.sent > .5:
             self.flush()
@@ -164,6 +167,7 @@ class Host:
         return {"type": "bye"}, b""
 
     def answer(self, frame):
+        self.log.open = frame[0]["type"] == "learn"
         try:
             reply = getattr(self, frame[0]["type"])(*frame)
         finally:  # what was logged comes before the reply, and before what the method raises
@@ -180,7 +184,7 @@ def _told(channel, kind, call, *arguments):
     except Exception as error:  # whatever a method raises costs its own call
         traceback.print_exc()
         sys.stderr.flush()
-        reason = (str(error).splitlines() or [""])[0]
+        reason = (str(error).splitlines() or [""])[0].encode(errors="replace").decode()  # a file's name may be no UTF-8
         channel.send({"type": "error", "kind": kind, "reason": f"{type(error).__name__}: {reason}"[:2000]})
     return None
 

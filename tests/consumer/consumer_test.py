@@ -88,6 +88,7 @@ class Package(Consumer):
         pages = self.prefix / "share/doc/lgabench"
         for file in "README.md", "docs/tutorial.md", "docs/pictures/scene.png", "examples/select_only/select_only.cpp":
             self.assertTrue((pages / file).is_file(), file)
+        self.assertEqual([*self.prefix.rglob("__pycache__")], [])
 
     def test_works_where_it_was_moved_to(self):
         self.assertIn("mujoco", self.lgabench("list").stdout)

@@ -417,6 +417,12 @@ class Humans(Case):
         refused = self.call(*self.RUN[:2], "--scenarios", "letter", *self.RUN[4:], "--out", "none", "--humans", "people", expect=2)
         self.assertIn("--humans: expected answers for lga_hill in a scenario of this run", refused.stderr)
 
+    def test_where_nobody_is_asked_nobodys_answers_are_taken(self):
+        refused = self.call("run", "q1", "--scenarios", "heart", "--methods", "gcbc_seg", "--demos", "10", "--seeds", "0",
+                            "--out", "none", "--humans", "people", expect=2)
+        self.assertIn("--humans: expected a method that asks people", refused.stderr)
+        self.assertFalse((self.dir / "none").exists())
+
     def test_what_no_layout_shows_is_an_empty_answer(self):
         """The pallet is the goal; a second one is never shown."""
         answers = json.loads((self.dir / "people/made-up-1.json").read_text())["answers"]

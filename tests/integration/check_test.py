@@ -37,6 +37,11 @@ class CheckPlugin(Case):
                 self.assertEqual(set(problems), checks)
                 self.assertTrue(all(problem["fix"] for problem in problems.values()))
 
+    def test_a_selection_of_which_nothing_can_be_shown_ends_a_cell_and_is_no_fault(self):
+        report = json.loads(self.call("check-plugin", UNSOUND, "--json", "--set", "how=unshowable").stdout)
+        notes = [finding["detail"] for finding in report["findings"] if finding["check"] == "abstraction_empty"]
+        self.assertIn("a run ends this cell as abstraction_empty", notes[0])
+
     def test_a_method_is_confined_as_in_a_run(self):
         probe = FIXTURES / "faulty/fixture_probe.so"
         detail = self.check(probe, "how=socket")["select"]["detail"]
@@ -47,6 +52,7 @@ class CheckPlugin(Case):
 
     def test_outlives_what_crashes_throws_and_never_returns(self):
         for where, how, check, says in [
+            ("select", "log", "select", r"services\.log\.epoch\(\) was called outside of learn\(\)"),
             ("act", "nan", "act", "expected a finite number, got nan"),
             ("act", "throw", "act", "the fixture's own failure"),
             ("learn", "throw_int", "learn", "threw int"),

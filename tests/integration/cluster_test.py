@@ -64,6 +64,14 @@ class Elements(Case):
         self.assertEqual([part[name] for name in ("shard", "cells", "done", "failed", "missing")], [1, 10, 8, 1, 1])
         self.assertEqual((said["array"], said["absent"]), ("1-2", "2"))
 
+    def test_status_of_two_parts_in_one_directory_is_the_whole_runs(self):
+        for shard in ("1/2", "2/2", "1/2"):
+            self.call("run", *RUN, "--shard", shard, "--out", "both")
+        self.assert_matches_schemas("both")
+        self.assertRegex(self.call("status", "both").stdout, r" 1/1 +20 +20 +0 +0 +0 ")
+        shutil.rmtree(next((self.dir / "both/cells").iterdir()))
+        self.assertRegex(self.call("status", "both", expect=3).stdout, r" 1/1 +20 +19 +0 +0 +1 ")
+
     def test_what_is_wrong_is_said_before_anything_is_written(self):
         for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
                               (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),

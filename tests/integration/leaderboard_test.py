@@ -362,6 +362,15 @@ class Replays(Board):
         self.assertFalse((self.entry / "verifications.jsonl").exists())
 
 
+    def test_an_entry_that_cannot_be_verified_stops_no_other(self):
+        stranger = self.dir / "board/entries/a_stranger/0123456789abcdef"
+        shutil.copytree(self.entry, stranger / "tiny-board")  # before the other in their order, and not as it should be
+        done = self.leaderboard("verify", "--by", "B. Reader", *PLUGIN, "--cells", "1", expect=2)
+        self.assertRegex(done.stderr, r"not verified: entries/a_stranger/\S+: .*\n(.*\n)*1 of 2 entries were not verified")
+        self.assertRegex(done.stdout, r"^agrees  entries/fixture_constant/")
+        self.assertTrue((self.entry / "verifications.jsonl").exists())
+
+
 class Versions(Case):
     """A version of a method promises its actions: entries of one version, by two builds, are one entry."""
     golden = pathlib.Path(__file__).parent / "golden/versions.json"

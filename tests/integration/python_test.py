@@ -40,6 +40,10 @@ class Mine:
         how = services.options["how"]
         if how == "raise":
             raise ValueError("its own failure")
+        if how == "no_utf8":
+            raise ValueError(os.fsdecode(b"\\xff") + " is no picture")
+        if how == "log":
+            services.log.epoch(1, 1, 0.5)
         if how.startswith("connect:"):
             socket.create_connection(("localhost", int(how[8:])), 10).close()
         if how == "human":
@@ -157,6 +161,7 @@ class PythonMethods(Case):
 
     def test_what_fails_costs_its_own_cell(self):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
+                   "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
                    "curve_name": "a curve's name", "read": "PermissionError"}
         found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)

@@ -461,6 +461,24 @@ class Page(Case):
         self.assertEqual(data["pictures"], {})
 
 
+    def test_pictures_of_one_space_in_two_environments(self):
+        self.call("new-scenario", "apple", "--command", "Bring me an apple.", "--types", "apple", "--space", "household")
+        requests = []
+        for suite, scenario in (("q1", "apple"), ("mobile", "bring_fruit")):
+            self.call("run", suite, "--scenarios", scenario, "--scenario-path", ".", "--answers", "none", "--engines", "kinematic",
+                      "--methods", "fixture_constant", "--plugin-path", FIXTURES / "good", "--demos", "2", "--seeds", "0",
+                      "--episodes", "1", "--no-reference", "--out", suite)
+            (key, _), = self.cells(suite).items()
+            cell = self.dir / suite / "cells" / key
+            episode = json.loads((cell / "episodes.jsonl").read_text().splitlines()[0])
+            requests.append({"cell": str(cell / "cell.json"), "arm": episode["arm"], "index": episode["index"],
+                             "scene": episode["scene"], "selections": []})
+        drawn = subprocess.run([BUILD / "bin/lgabench-worker", "pictures"], capture_output=True, text=True, check=True,
+                               input=json.dumps(requests)).stdout
+        for line in map(json.loads, drawn.splitlines()):
+            self.assertIsInstance(line.get("oracle"), list, line.get("problem"))
+
+
 class Engines(Case):
     @unittest.skipUnless((BUILD / "lib/lgabench/plugins/mujoco.so").exists(), "MuJoCo is not built")
     def test_one_policy_on_two_and_where_they_part(self):

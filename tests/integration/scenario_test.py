@@ -64,6 +64,7 @@ class OwnScenario(Case):
             with self.subTest(words):
                 self.assertIn(reason, self.new(*words, expect=2).stderr)
                 self.assertFalse((self.dir / "round.json").exists())
+        self.assertNotIn("throw_away", self.new(*NAME, "--task", "none", expect=2).stderr, "a task of another environment")
         self.new(*NAME)
         self.assertIn("is there already", self.new(*NAME, expect=2).stderr)
 

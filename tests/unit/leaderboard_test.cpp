@@ -1,10 +1,12 @@
 // Entries of a leaderboard: what is written is read again, what was changed is found.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
@@ -147,6 +149,37 @@ TEST(LeaderboardEntry, TiersFollowFromVerifications) {
   EXPECT_EQ(why_not_ranked(entry), "a replay differed");
 }
 
+TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten) {
+  Entry entry;
+  report::CellResult result;
+  result.failed = true;
+  for (int i = 0; i < 26; ++i) entry.failures.push_back(fmt::format("failure_{}", i));
+  played_cell(result, "", "", entry);
+  entry.failures.emplace_back("another");
+  EXPECT_SAYS(message_of<InputError>([&] { played_cell(result, "", "", entry); }), "27 words for failures");
+}
+
+TEST(LeaderboardEntry, RepeatedFreshVerificationsAreTestedTogether) {
+  Entry entry = made_entry(small_setting(), "a", .5);
+  EXPECT_EQ(entry.fresh(), 0);
+  const auto verify = [&entry](double difference) {  // with a standard error of .05
+    Json line = replay_of(entry, "b", "another", std::abs(difference) <= .098);
+    line.update({{"kind", "fresh"},
+                 {"difference", difference},
+                 {"low", difference - .05 * 1.959964},
+                 {"high", difference + .05 * 1.959964}});
+    entry.verifications.push_back(line);
+  };
+  verify(.11);  // p = .028
+  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+  verify(.01);
+  EXPECT_EQ(entry.fresh(), 1) << "one of two is chance";
+  EXPECT_EQ(why_not_ranked(entry), "");
+  for (int i = 0; i < 18; ++i) verify(.02);
+  verify(-.25);  // p = 6e-7
+  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+}
+
 TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {
   const Setting setting = small_setting();
   for (const bool shared : {false, true}) {
@@ -181,6 +214,20 @@ TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {
     EXPECT_NEAR(resamples.interval(0).low, interval.low, .01);
     EXPECT_NEAR(resamples.interval(0).high, interval.high, .01);
   }
+}
+
+TEST(Standings, AHugeDifferenceBearsTheCorrectionForManyEntries) {
+  using Scenario = std::vector<std::vector<double>>;  // of each policy and scene
+  const auto row = [](int successes) {
+    Scenario policies(3, std::vector<double>(40));
+    for (auto& scenes : policies) std::fill_n(scenes.begin(), successes, 1.);
+    return std::vector<Scenario>(3, policies);
+  };
+  const report::SharedResamples resamples({row(0), row(8), row(8)}, false, "name");
+  EXPECT_LT(resamples.p(0, 1), .05 / 100000);
+  EXPECT_GT(resamples.p(0, 1), 0);
+  EXPECT_LT(resamples.p(1, 0), .05 / 100000);
+  EXPECT_GT(resamples.p(1, 2), .9);
 }
 
 TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {

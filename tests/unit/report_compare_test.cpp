@@ -189,7 +189,10 @@ TEST(Compare, CountsWhatOneRunAloneHas) {
   RunComparison comparison = compared(a, b);
   EXPECT_EQ(comparison.only_a, 1);
   EXPECT_EQ(comparison.only_b, 1);
-  EXPECT_FALSE(comparison.regressed());
+  EXPECT_TRUE(comparison.regressed()) << "a cell of A's is missing";
+  EXPECT_SAYS(verdict(comparison), "1 of A's cells is missing in B. ");
+  const report::RunResults in_a = report::read_run(a.save().path), in_b = report::read_run(b.save().path);
+  EXPECT_FALSE(report::compare_runs(in_a, in_b, report::RowPair{"lga", "lga"}).regressed()) << "two rows were chosen";
   b.add_failed({"lga", 15, "letter"}, "plugin");
   comparison = compared(a, b);
   EXPECT_EQ(comparison.only_a, 0);

@@ -312,6 +312,24 @@ TEST(Report, TwiceGivesTheSameBytes) {
   EXPECT_SAYS(first[3], "LGA");
 }
 
+TEST(Report, FiguresAndTablesOfAnotherShapeAreRemoved) {
+  FabricatedRun run;
+  for (int n : {10, 20}) run.add({"lga", 10, "heart", n});
+  run.save();
+  report::write_report(run.path);
+  const fs::path success = run.path / "figures/success_cells_mujoco";
+  for (const char* file : {"figures/success_continuous_mujoco.svg", "figures/success_continuous_mujoco.pdf",
+                           "tables/continuous_mujoco.tex", "tables/continuous_mujoco.csv", "tables/notes.txt"})
+    write_file(run.path / file, "old");
+  report::write_report(run.path);
+  EXPECT_TRUE(fs::exists(success.string() + ".svg") && fs::exists(success.string() + ".pdf"));
+  EXPECT_FALSE(fs::exists(run.path / "figures/success_continuous_mujoco.svg"));
+  EXPECT_FALSE(fs::exists(run.path / "figures/success_continuous_mujoco.pdf"));
+  EXPECT_FALSE(fs::exists(run.path / "tables/continuous_mujoco.tex"));
+  EXPECT_FALSE(fs::exists(run.path / "tables/continuous_mujoco.csv"));
+  EXPECT_TRUE(fs::exists(run.path / "tables/notes.txt"));
+}
+
 TEST(Report, EveryNumberOfItsTablesStandsInTheSummary) {
   FabricatedRun run;
   for (int seed = 0; seed < 3; ++seed)

@@ -107,8 +107,8 @@ TEST_F(StudyResultsTest, ComparesPeoplesMeansAndSaysWhoIsLeftOut) {
   EXPECT_EQ(results.people[4].excluded, "0 trials of human count, 5 needed");
   EXPECT_EQ(results.too_long, 9);
   EXPECT_NEAR(results.seconds[0]->mean, 160, 1e-9);
-  EXPECT_NEAR(results.seconds[0]->sd, 10, 1e-9);
-  EXPECT_NEAR(results.seconds[0]->se, 10 / std::sqrt(3.), 1e-9);
+  EXPECT_NEAR(results.seconds[0]->sd.value(), 10, 1e-9);
+  EXPECT_NEAR(results.seconds[0]->se.value(), 10 / std::sqrt(3.), 1e-9);
   // Differences 100, 101, 99: mean 100, s = 1; t_.975 = 4.3027 of 2 degrees of freedom.
   ASSERT_TRUE(results.primary.has_value());
   EXPECT_NEAR(results.primary->difference, 100, 1e-9);
@@ -157,6 +157,22 @@ TEST_F(StudyResultsTest, NobodyTookNoTime) {
   EXPECT_EQ(json.at("/conditions/lga_hill/active_seconds"_json_pointer), nullptr);
   EXPECT_EQ(complaints("study_results", json), std::vector<std::string>());
   EXPECT_SAYS(read_file(data / "tables/seconds.csv"), "Human,0,–,–,–,–,");
+}
+
+TEST_F(StudyResultsTest, OnePersonHasNoSpread) {
+  {
+    const fs::path file = ready_protocol(path, "paper");
+    Study study(data, read_protocol(file), file, Kind::people);
+    person(study, "a", 150, 50);
+  }
+  write_report(data);
+  const Json json = read_json(data / "results.json"), seconds = json.at("/conditions/human/seconds"_json_pointer);
+  EXPECT_NEAR(seconds.at("mean").get<double>(), 150, 1e-9);
+  EXPECT_EQ(seconds.at("sd"), nullptr);
+  EXPECT_EQ(seconds.at("se"), nullptr);
+  EXPECT_EQ(complaints("study_results", json), std::vector<std::string>());
+  EXPECT_SAYS(read_file(data / "tables/seconds.csv"), "Human,1,150.0,–,–,");
+  EXPECT_SILENT(read_file(data / "report.md"), "(sd ");
 }
 
 TEST_F(StudyResultsTest, ARehearsalSaysSo) {

@@ -208,7 +208,14 @@ class MethodCheck {
       for (const Instruction& instruction : selected.instructions)
         use.selections += canonical(distribution_json(instruction.selection)) + '\n';
       if (first) judge_other_commands(selected.needs, *bench);
-      const auto policy = learn_from(*bench, asked, selected);
+      const std::vector<Scene> scenes = training_scenes(*bench, selected);
+      if (scenes.empty()) {
+        note_empty(*bench, judged);
+        phase_(doing_ = "destroy the method");
+        method_.drop_method();
+        continue;
+      }
+      const auto policy = learn_from(*bench, asked, selected, scenes);
       if (first && asked.log.lines.empty())
         report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
       use.training += asked.log.lines;
@@ -231,9 +238,29 @@ class MethodCheck {
     return timed(what, [&] { return select(&method_, job_.method.id, scenario, asked.services); });
   }
 
-  std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected) {
+  // What is to be demonstrated; nothing where a run would end the cell as abstraction_empty.
+  std::vector<Scene> training_scenes(const Bench& bench, const Selected& selected) {
     phase_(doing_ = "demonstrations that needs() asks for");
-    const std::vector<Scene> scenes = sample(bench.scenario, bench.layout, selected, seed, demonstrations);
+    for (const int command : bench.scenario.commands_of("train"))
+      if (selected.nothing_for(command)) return {};
+    try {
+      return sample(bench.scenario, bench.layout, selected, seed, demonstrations);
+    } catch (const NothingToShow&) {
+      return {};
+    }
+  }
+
+  void note_empty(const Bench& bench, bool judged) {
+    if (judged)
+      report_.note("abstraction_empty",
+                   fmt::format("select() returned nothing that can be shown for {}: a run ends this cell as "
+                               "abstraction_empty, and learn() and act() were not tried on it",
+                               bench.scenario.id),
+                   "give options with which select() finds something here, or run it where it does");
+  }
+
+  std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected,
+                                     const std::vector<Scene>& scenes) {
     const std::vector<Demonstration> shown = instructed(
         demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
     return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });

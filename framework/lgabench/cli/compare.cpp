@@ -32,7 +32,8 @@ void add_compare(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench compare runs/before runs/after\n"
       "         lgabench compare runs/paper runs/mine --rows lga,my_method\n"
-      "The verdict comes first: is a row worse beyond chance, or does a cell of A's fail in B?\n"
+      "The verdict comes first: is a row worse beyond chance, does a cell of A's fail in B, or is it missing there?\n"
+      "Exit 1: one of these; with --rows, cells may be missing.\n"
       "Rows are paired by method and options, not by name, also with those of a run of 0.1. Cells that played other "
       "scenes are listed and not compared.");
   verb->callback([options, &exit] {

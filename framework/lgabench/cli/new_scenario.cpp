@@ -27,6 +27,14 @@ struct Arguments {
   fs::path directory = ".";
 };
 
+constexpr const char* environment_id = "tabletop";  // whose scenarios this writes: its flags are that one's
+
+Words tasks() {
+  Words ids;
+  for (const TaskInfo& task : find_environment(environment_id).tasks()) ids.push_back(task.id);
+  return ids;
+}
+
 // The words that a person types for what no flag gave, with commas between them where there may be several.
 void ask(Words& words, const char* flag, const char* question, bool several) {
   if (!words.empty()) return;
@@ -56,7 +64,7 @@ Json range_of(const std::string& text) {
 
 Json scenario_json(const Arguments& a) {
   Json truth{{"target", set_of(a.types, a.textures)}};
-  const EnvironmentType& environment = find_environment("tabletop");
+  const EnvironmentType& environment = find_environment(environment_id);
   const std::optional<SecondRole>& second = find_task(environment, a.task).second;
   if (!a.other_types.empty()) {
     if (!second) throw InputError(fmt::format("--other-types: {} has no other objects than its target", a.task));
@@ -99,7 +107,7 @@ void new_scenario(Arguments a) {
 void add_new_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<Arguments>();
   CLI::App* verb =
-      app.add_subcommand("new-scenario", "Write a scenario of your own: a command, what it means, its scenes");
+      app.add_subcommand("new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
   const auto list = [verb](const char* name, Words& words, const char* help) {
     verb->add_option(name, words, help)->delimiter(',')->allow_extra_args(false);
   };
@@ -115,9 +123,7 @@ void add_new_scenario(CLI::App& app, int& exit) {
   verb->add_option("--space", a->space, "The feature space: which words there are (lgabench render --gallery objects)")
       ->check(one_of("space", {"tabletop", "household"}))
       ->capture_default_str();
-  verb->add_option("--task", a->task, "What is done with it")
-      ->check(one_of("task", installed_task_ids()))
-      ->capture_default_str();
+  verb->add_option("--task", a->task, "What is done with it")->check(one_of("task", tasks()))->capture_default_str();
   verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
   verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
   verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();

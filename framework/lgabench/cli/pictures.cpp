@@ -4,6 +4,7 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iostream>
@@ -189,7 +190,7 @@ class Pictures {
 
   // Null for an engine that is not there.
   Environment* on(const std::string& engine, const Scenario& scenario) {
-    std::unique_ptr<Environment>& made = environments_[{engine, scenario.space.id}];
+    std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, scenario.space.id}];
     if (made) return made.get();
     static const Catalogue catalogue = scan_plugins(plugin_directories());
     try {
@@ -208,8 +209,8 @@ class Pictures {
     return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
   }
 
-  std::map<std::pair<std::string, std::string>, std::unique_ptr<Environment>> environments_;  // by engine and space
-  std::map<std::string, std::unique_ptr<Played>> cells_;                                      // by file
+  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space
+  std::map<std::string, std::unique_ptr<Played>> cells_;                             // by file
 };
 
 }  // namespace

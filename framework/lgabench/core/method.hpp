@@ -45,11 +45,12 @@ struct Needs {
   double noise_max = 0;
 };
 
-/// Where a method reports its training. Owned by the host.
+/// Where a method reports its training, while learn() runs. Owned by the host.
 class TrainingLog {
  public:
   virtual ~TrainingLog() = default;
-  /// After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass.
+  /// After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass. @throws MethodError
+  /// outside of learn().
   virtual void epoch(int epochs, long long steps, double loss) = 0;
   /// Before it, any number of times: another value of that pass, as a validation loss. A report draws a curve of each
   /// name: 1 to 40 letters, digits and "_".

@@ -9,11 +9,13 @@
 namespace lgabench {
 namespace {
 
+bool asks_people(const Competitor& method) { return method.asks == "specify" || method.asks == "edit"; }
+
 // Those whose answers the method is based on in this scenario; one that is nobody where it asks no people, or where the
 // truth stands in for them.
 using Answering = std::vector<std::optional<CellParticipant>>;
 Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {
-  if (all.empty() || (method.asks != "specify" && method.asks != "edit")) return {std::nullopt};
+  if (all.empty() || !asks_people(method)) return {std::nullopt};
   const auto how = method.asks == "specify" ? &Participant::Answer::specified : &Participant::Answer::edited;
   Answering some;
   for (const Participant& one : all)
@@ -69,6 +71,8 @@ bool learns(const Competitor& row) { return !row.is_reference() || row.id == "co
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
   for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
+  if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
+    throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {

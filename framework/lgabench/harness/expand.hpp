@@ -32,7 +32,7 @@ bool learns(const Competitor& row);
 /// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// @throws as competitors(); PluginError for an unknown engine, InputError for a method that no participant answered at
-/// all.
+/// all, and for participants whom no method asks.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

@@ -70,10 +70,13 @@ void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
   }
 }
 
-// Which part of the run is played here; null where all of it is.
+// Which part of the run the directory holds; null where that is all of it, or where it holds another part as well.
 Json shard_json(const RunPlan& plan) {
   if (plan.shard.count == 1) return nullptr;
-  return {{"index", plan.shard.index}, {"count", plan.shard.count}, {"cells", cells_of(plan.cells, plan.shard).size()}};
+  const Json shard{
+      {"index", plan.shard.index}, {"count", plan.shard.count}, {"cells", cells_of(plan.cells, plan.shard).size()}};
+  const Json there = read_json(plan.out / "run.json", Links::refused).value("shard", shard);
+  return there == shard ? shard : Json();
 }
 
 Json run_json(const RunPlan& plan, const Catalogue& catalogue) {

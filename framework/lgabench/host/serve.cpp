@@ -96,8 +96,11 @@ class RemoteHuman : public HumanAnswers {
 class RemoteLog : public TrainingLog {
  public:
   explicit RemoteLog(Channel& channel) : channel_(channel) {}
+  /// Whether learn() runs: only then the worker takes what is logged.
+  void open(bool learning) { open_ = learning; }
   void epoch(int epochs, long long steps, double loss) override {
     constexpr std::size_t most = 1000;
+    if (!open_) throw MethodError("services.log.epoch() was called outside of learn(): only training is logged");
     waiting_.push_back({epochs, steps, loss, std::exchange(curves_, {})});
     if (waiting_.size() == most || Clock::now() - sent_ > std::chrono::milliseconds(500)) flush();
   }
@@ -116,6 +119,7 @@ class RemoteLog : public TrainingLog {
  private:
   using Clock = std::chrono::steady_clock;
   Channel& channel_;
+  bool open_ = false;
   std::vector<protocol::LogEntry> waiting_;
   std::vector<std::pair<std::string, double>> curves_;  // of the pass that epoch() ends
   Clock::time_point sent_ = Clock::now();
@@ -170,6 +174,7 @@ class Host {
  private:
   Frame reply_to(const Frame& frame) {
     const JsonReader reader(frame.header, frame.type());
+    log_.open(frame.type() == "learn");
     Services services{model_,
                       human_,
                       options_,

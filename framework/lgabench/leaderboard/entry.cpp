@@ -3,11 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
+namespace {
+
+// Two-sided p of a difference of which the 95 % interval is recorded.
+double p_of_fresh(const Json& line) {
+  const double width = line.at("high").get<double>() - line.at("low").get<double>();
+  return std::erfc(std::sqrt(2.) * 1.959964 * std::abs(line.at("difference").get<double>()) / width);
+}
+
+}  // namespace
 
 Json to_json(const Identity& identity) {
   Json json{{"method", identity.row.id},
@@ -89,10 +100,11 @@ Tier Entry::tier() const {
 }
 
 int Entry::fresh() const {
-  int state = 0;
+  std::vector<double> p;
   for (const Json& line : verifications)
-    if (line.at("kind") == "fresh") state = line.at("passed").get<bool>() && state >= 0 ? 1 : -1;
-  return state;
+    if (line.at("kind") == "fresh") p.push_back(p_of_fresh(line));
+  const std::vector<double> adjusted = report::holm(p);
+  return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= .05 ? -1 : 1;
 }
 
 std::string Entry::spec() const {

@@ -39,6 +39,7 @@ struct PlayedCell {
   int successes() const;
 };
 constexpr char success_letter = '.', failed_cell_letter = '!';
+constexpr std::size_t most_failure_words = 26;  // a letter for each
 Json to_json(const PlayedCell& cell);
 
 /// How far an entry was checked.
@@ -63,7 +64,8 @@ struct Entry {
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
   Tier tier() const;
-  /// What verifications on fresh scenes found: 1 where all agreed, -1 where one differs, 0 where none was made.
+  /// What verifications on fresh scenes found: -1 where success differs, by Holm's correction over all of them, so that
+  /// an honest entry is not lost by repetition; else 1; 0 where none was made.
   int fresh() const;
   /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
   std::string spec() const;

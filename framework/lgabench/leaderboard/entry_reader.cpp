@@ -151,7 +151,7 @@ void expect_evidence(const JsonReader& evidence) {
 // A letter for each word, as many as there are.
 std::vector<std::string> read_failures(const JsonReader& reader) {
   const std::vector<std::string> words = reader.strings();
-  if (words.size() > 26) reader.fail("26 words at most");
+  if (words.size() > most_failure_words) reader.fail(fmt::format("{} words at most", most_failure_words));
   return words;
 }
 
@@ -167,8 +167,9 @@ void expect_verification(const JsonReader& line) {
   line.at("machine").at("processor").string();
   if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
   for (const char* count : {"bit_identical", "flips", "episodes"}) line.at(count).integer(0, INT64_MAX);
-  if (kind == "fresh")
-    for (const char* number : {"difference", "low", "high"}) line.at(number).number();
+  if (kind != "fresh") return;
+  for (const char* number : {"difference", "low", "high"}) line.at(number).number();
+  if (line.at("low").number() >= line.at("high").number()) line.at("high").fail("more than /low");
 }
 
 // The cells that a verification says it played are those that its nonce chooses.

@@ -1,5 +1,7 @@
 #include <lgabench/leaderboard/played_cell.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +35,10 @@ std::string letters(const CellResult& result, const std::string& arm, const std:
 }  // namespace
 
 PlayedCell played_cell(const CellResult& result, const fs::path& directory, const std::string& key, Entry& entry) {
+  if (entry.failures.size() > most_failure_words)
+    throw InputError(
+        fmt::format("{} words for failures, of all environments that are installed: a board has letters for {}",
+                    entry.failures.size(), most_failure_words));
   PlayedCell cell;
   cell.place = {result.scenario, result.layout, result.demonstrations,
                 static_cast<std::uint64_t>(result.training_seed)};

@@ -99,7 +99,7 @@ Json compared(const Entry& entry, const std::vector<std::size_t>& chosen, const 
 }
 
 // Successes of the first arm, over the cells of one scenario and layout: the same policy on the board's scenes and on
-// others.
+// others. A success and a failure are added to each cell's (Agresti and Caffo 2000).
 Json compared_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now) {
   double difference = 0, variance = 0;
   int episodes = 0;

@@ -236,15 +236,22 @@ Interval SharedResamples::interval(std::size_t row) const {
 
 double SharedResamples::p(std::size_t one, std::size_t other) const {
   constexpr double rounding = 1e-6;  // of single precision
+  const auto resamples = static_cast<double>(imagined_.size());
   std::size_t up_to_zero = 0, from_zero = 0;
+  double total = 0, squares = 0;
   for (std::size_t k = 0; k < imagined_.size(); ++k) {
     const double sum =
         (static_cast<double>(means_[other][k]) - means_[one][k]) * scenes_ + imagined_[k].first - imagined_[k].second;
     up_to_zero += sum <= rounding * scenes_;
     from_zero += sum >= -rounding * scenes_;
+    total += sum;
+    squares += sum * sum;
   }
-  return std::min(1.0, 2 * (static_cast<double>(std::min(up_to_zero, from_zero)) + 1) /
-                           (static_cast<double>(imagined_.size()) + 1));
+  const std::size_t tail = std::min(up_to_zero, from_zero);
+  const double counted = std::min(1.0, 2 * (static_cast<double>(tail) + 1) / (resamples + 1));
+  if (tail > 0) return counted;
+  const double mean = total / resamples, variance = squares / resamples - mean * mean;
+  return std::min(counted, std::erfc(std::abs(mean) / std::sqrt(2 * variance)));
 }
 
 }  // namespace lgabench::report

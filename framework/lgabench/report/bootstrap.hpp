@@ -72,7 +72,9 @@ class SharedResamples {
                   std::string_view name);
   /// As success_interval(), of a row's mean.
   Interval interval(std::size_t row) const;
-  /// As paired_change(): two-sided p that two rows are equally good.
+  /// As paired_change(): two-sided p that two rows are equally good. Where no resample is on the other side of 0 the
+  /// tail is a normal distribution's with the resamples' mean and variance, if that is smaller: Holm's correction over
+  /// more than 250 rows would otherwise find no difference.
   double p(std::size_t one, std::size_t other) const;
 
  private:

@@ -193,6 +193,9 @@ std::string verdict(const RunComparison& comparison) {
   std::string text;
   if (comparison.failed_b > 0)
     text += fmt::format("{} of A's cells {} in B. ", comparison.failed_b, comparison.failed_b == 1 ? "fails" : "fail");
+  if (comparison.missing > 0)
+    text +=
+        fmt::format("{} of A's cells {} missing in B. ", comparison.missing, comparison.missing == 1 ? "is" : "are");
   if (rows > 0 && same == rows)
     return text + fmt::format("B acts as A does in every scene ({} row{}).", rows, rows == 1 ? "" : "s");
   if (!worse.empty()) text += fmt::format("B is worse: {}. ", fmt::join(worse, "; "));
@@ -205,7 +208,8 @@ std::string verdict(const RunComparison& comparison) {
 }
 
 bool RunComparison::regressed() const {
-  return failed_b > 0 || std::any_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return row.worse(); });
+  return failed_b + missing > 0 ||
+         std::any_of(rows.begin(), rows.end(), [](const ComparedRow& row) { return row.worse(); });
 }
 
 RunComparison compare_runs(const RunResults& all_a, const RunResults& all_b, const std::optional<RowPair>& rows) {
@@ -215,6 +219,7 @@ RunComparison compare_runs(const RunResults& all_a, const RunResults& all_b, con
   RunComparison comparison;
   comparison.suite = a.suite;
   const std::vector<CellPair> pairs = pair_arms(pair_cells(a, b, rows.has_value(), comparison), comparison);
+  comparison.missing = rows ? 0 : comparison.only_a;
   if (pairs.empty() && !comparison.other_scenes.empty()) {
     const OtherScenes& first = comparison.other_scenes.front();
     throw InputError(

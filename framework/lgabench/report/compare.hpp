@@ -48,8 +48,9 @@ struct RunComparison {
   std::vector<OtherScenes> other_scenes;
   int only_a = 0, only_b = 0;      // finished cells that measure what the other run does not
   int failed_a = 0, failed_b = 0;  // cells that finished in the other run alone
+  int missing = 0;                 // only_a, but 0 for two chosen rows, which need not have the same cells
 
-  /// Some row is worse in B beyond chance, or a cell that finished in A failed in B.
+  /// Some row is worse in B beyond chance, or a cell that finished in A failed in B or is missing there.
   bool regressed() const;
 };
 

@@ -30,6 +30,7 @@ Report write_report(const fs::path& run);
 inline Json no_episodes() { return {{"titles", Json::array()}}; }
 
 /// Writes a document's report.md, report.html (`data`: as html() takes it), figures/ and tables/ into the directory.
+/// Figures and tables that are there of another report are removed.
 void write_document(const fs::path& directory, const Document& document, const Json& data = no_episodes());
 
 /// Writes `file`, a page over several runs that have a report. Returns its document.

@@ -102,18 +102,19 @@ Spread spread(const std::vector<double>& values) {
   const double m = mean(values);
   double squares = 0;
   for (const double value : values) squares += (value - m) * (value - m);
-  const double sd = values.size() < 2 ? 0 : std::sqrt(squares / (n - 1));
+  if (values.size() < 2) return {m, {}, {}};
+  const double sd = std::sqrt(squares / (n - 1));
   return {m, sd, sd / std::sqrt(n)};
 }
 
 Change paired_t(const std::vector<double>& differences) {
   const Spread all = spread(differences);
-  return student(all.mean, all.se, static_cast<double>(differences.size()) - 1);
+  return student(all.mean, *all.se, static_cast<double>(differences.size()) - 1);
 }
 
 Change welch_t(const std::vector<double>& first, const std::vector<double>& second) {
   const Spread a = spread(first), b = spread(second);
-  const double va = a.se * a.se, vb = b.se * b.se, both = va + vb;
+  const double va = *a.se * *a.se, vb = *b.se * *b.se, both = va + vb;
   const double freedom = both == 0 ? 1
                                    : both * both /
                                          (va * va / (static_cast<double>(first.size()) - 1) +

@@ -1,5 +1,6 @@
 // Intervals and tests in closed form. bootstrap.hpp draws again.
 #pragma once
+#include <optional>
 #include <vector>
 
 namespace lgabench::report {
@@ -48,10 +49,11 @@ Change welch_t(const std::vector<double>& first, const std::vector<double>& seco
 /// @pre rows of one length, as many as values
 std::vector<Change> least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values);
 
-/// Mean with the standard deviation of the values and the standard error of the mean. @pre at least one value; with one
-/// alone both are 0
+/// Mean with the standard deviation of the values and the standard error of the mean; one value alone has neither.
+/// @pre at least one value
 struct Spread {
-  double mean = 0, sd = 0, se = 0;
+  double mean = 0;
+  std::optional<double> sd, se;
 };
 Spread spread(const std::vector<double>& values);
 

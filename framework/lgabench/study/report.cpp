@@ -23,6 +23,7 @@ constexpr const char* simulated_words = "rehearsal, not people";
 std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
 std::string seconds(double s) { return fixed(s, 1); }
+std::string seconds(const std::optional<double>& s) { return s ? seconds(*s) : "–"; }
 std::string p_cell(double p) { return p < .001 ? "< 0.001" : fixed(p, 3); }
 std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
 std::string change_words(const Change& c, const char* unit) {
@@ -61,14 +62,16 @@ Chart seconds_chart(const StudyResults& results) {
     const double x = condition == Condition::human ? .3 : .7;
     chart.ticks.push_back({x, name(condition)});
     if (const auto& s = results.seconds[index(condition)]) {
-      const std::string words = fmt::format("{} {} ± {}", name(condition), seconds(s->mean), seconds(s->se));
+      const double error = s->se.value_or(0);
+      const std::string words =
+          fmt::format("{} {}{}", name(condition), seconds(s->mean), s->se ? " ± " + seconds(s->se) : "");
       chart.series.push_back({Series::measured,
                               name(condition),
                               styles(to_string(condition)),
                               false,
-                              {{x, s->mean, s->mean - s->se, s->mean + s->se, words, {}}}});
+                              {{x, s->mean, s->mean - error, s->mean + error, words, {}}}});
       chart.alternative += " " + words + ";";
-      highest = std::max(highest, s->mean + s->se);
+      highest = std::max(highest, s->mean + error);
     }
     if (const auto found = paper.find(name(condition)); found != paper.end()) {
       const auto& [mean, error] = found->second;
@@ -134,8 +137,8 @@ Section seconds_section(const StudyResults& results) {
                      idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
   for (const Condition condition : both)
     if (const auto& first = results.by_first[index(condition)])
-      tests.items.push_back({fmt::format("Who began with {}: {} s (sd {})", name(condition),
-                                         signed_text(first->mean, 1), seconds(first->sd))});
+      tests.items.push_back({fmt::format("Who began with {}: {} s{}", name(condition), signed_text(first->mean, 1),
+                                         first->sd ? fmt::format(" (sd {})", seconds(first->sd)) : "")});
   section.add(everywhere, std::move(tests));
   section.add(reading, Charts{{seconds_chart(results)}});
   return section;
@@ -254,11 +257,11 @@ Json change_json(const std::optional<Change>& c) {
   if (!c) return nullptr;
   return {{"difference", c->difference}, {"low", c->interval.low}, {"high", c->interval.high}, {"p", c->p}};
 }
+Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json spread_json(const std::optional<Spread>& s) {
   if (!s) return nullptr;
-  return {{"mean", s->mean}, {"sd", s->sd}, {"se", s->se}};
+  return {{"mean", s->mean}, {"sd", optional_json(s->sd)}, {"se", optional_json(s->se)}};
 }
-Json optional_json(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
 Json quality_json(const PhiQuality& q) {
   const auto of = [](const PhiQuality::Of& one) {
     return Json{{"precision", optional_json(one.precision)}, {"recall", optional_json(one.recall)}};

@@ -120,6 +120,7 @@ class Faulty : public fixture::FixtureMethod<fixture::StayPolicy> {
     run = services.options.at("run");
     misbehave(so);
     Selection selection;
+    if (so == "log") services.log.epoch(1, 1, 0.0);
     if (so == "cost") selection.cost.lm_queries = -5;
     if (so == "cost_nan") selection.cost.human_seconds = std::numeric_limits<double>::quiet_NaN();
     if (so == "long_source") selection.source.assign(std::size_t{20} << 20, 'x');
@@ -150,5 +151,5 @@ LGABENCH_METHOD("fixture_faulty", "0.1", "misbehaves once", Faulty, R"({
   "how": {"default": "not", "help": "what it does", "source": "test fixture", "values": ["not", "abort", "exit",
     "quick_exit", "throw", "throw_int", "segfault", "spin", "allocate", "print", "messages", "fork", "fork_and_spin",
     "close", "thread", "nan", "exit_4", "throw_huge", "flood", "environment", "scratch_file", "scratch_gone",
-    "cells_gone", "link", "log_pipe", "cost", "cost_nan", "long_source", "escape_source"]}
+    "cells_gone", "link", "log_pipe", "log", "cost", "cost_nan", "long_source", "escape_source"]}
 })")

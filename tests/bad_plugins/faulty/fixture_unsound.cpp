@@ -41,10 +41,14 @@ class Unsound : public Policy {
 
 class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
  public:
+  Needs needs(const Json& options) const override {
+    return {options.at("how") == "unshowable" ? Needs::Targets::selected : Needs::Targets::truth};
+  }
   Selection select(const Command&, const FeatureSpace& space, Services& services) override {
     const std::string how = services.options.at("how");
     Selection selection;
     if (how == "outside") selection.target = {{"unicorn"}, space.textures};
+    if (how == "unshowable") selection.target = {{"pallet"}, space.textures};
     if (how == "outside") selection.provenance = Provenance::rule;
     return selection;
   }
@@ -63,5 +67,5 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "outside", "thread", "descriptor", "unseen"]}
+    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen"]}
 })")
