@@ -151,6 +151,7 @@ class Mobile final : public Environment {
     if (objects[taken].role != role::target) return failure::wrong_object;
     if (blocked(plan.waypoint_m)) return failure::blocked_way;
     if (!within_reach(plan)) return failure::out_of_reach;
+    if (meets_person(plan.waypoint_m, plan.drop_m)) return failure::blocked_way;
 
     std::vector<bool> fixed(first_, true);
     fixed.resize(first_ + objects.size(), false);

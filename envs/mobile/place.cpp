@@ -95,4 +95,6 @@ bool blocked(Vec2 waypoint) {
          distance_to_segment(person, start, waypoint) < robot_radius_m + person_radius_m;
 }
 
+bool meets_person(Vec2 waypoint, Vec2 drop) { return distance_to_segment(person, waypoint, drop) < person_radius_m; }
+
 }  // namespace lgabench::mobile

@@ -63,5 +63,7 @@ const std::vector<Furniture>& furniture();
 
 /// The robot cannot drive straight from where it starts to `waypoint`: it would meet the table, the bin or the person.
 bool blocked(Vec2 waypoint);
+/// What the arm carries from above the waypoint to above the drop meets the person, who alone is that tall.
+bool meets_person(Vec2 waypoint, Vec2 drop);
 
 }  // namespace lgabench::mobile

@@ -56,6 +56,14 @@ TEST(MobileEpisode, FailsAsThePlanDoes) {
     EXPECT_EQ(failure_of(id, [](Plan& p) { p.waypoint_m = {}; }), failure::out_of_reach);
     EXPECT_EQ(failure_of(id,
                          [](Plan& p) {
+                           p.waypoint_m = {-.39, 1.16};
+                           p.cosine = 0, p.sine = 1;
+                           p.drop_m = {-.333, 2.09};
+                         }),
+              failure::blocked_way)
+        << "into the person, where MuJoCo's accelerations had no bound";
+    EXPECT_EQ(failure_of(id,
+                         [](Plan& p) {
                            p.drop_m = p.waypoint_m + .3 * Vec2{p.cosine, p.sine};
                          }),
               failure::dropped_elsewhere);
@@ -119,6 +127,12 @@ TEST(MobilePlace, BlocksTheWayThroughThings) {
   EXPECT_TRUE(blocked(person));
   EXPECT_TRUE(blocked(bin.centre));
   EXPECT_FALSE(blocked({-2, -2}));
+
+  const Vec2 before_person = find_task("bring").waypoint_m;
+  EXPECT_FALSE(meets_person(before_person, tray.centre));
+  EXPECT_FALSE(meets_person(before_person, {tray.centre.x, tray.outer().high.y})) << "the tray's far edge";
+  EXPECT_TRUE(meets_person(before_person, person));
+  EXPECT_TRUE(meets_person({person.x, 2.6}, tray.centre)) << "from behind";
 }
 
 TEST(MobilePlace, ReachesAMeterAheadAndSixtyDegreesAside) {
