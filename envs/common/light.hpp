@@ -38,6 +38,7 @@ struct Look {
 /// Light on a triangle with that normal, where it comes from there; both in the body's frame.
 inline Look look_of(Vec3 normal, Vec3 towards_light) {
   const double cosine = dot(normal, towards_light);
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative
   const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;
   return {static_cast<std::uint16_t>(ambient + light_here), plane_of(normal)};
 }

@@ -18,7 +18,7 @@ struct Texture {
 
   /// Colour at a point of the object's surface, given in metres on the plane that faces the surface: u to the right,
   /// v down, the picture's centre at (0, 0), repeated without end (nearest pixel). u and v below a kilometre.
-  Rgb at(double u_m, double v_m) const { return pixels[static_cast<std::size_t>(texel(v_m) * size + texel(u_m))]; }
+  Rgb at(double u_m, double v_m) const { return pixels[static_cast<unsigned>(texel(v_m) * size + texel(u_m))]; }
 
   /// The column of at()'s pixel for u_m, its row for v_m.
   int texel(double metres) const {

@@ -44,6 +44,7 @@ class Mobile final : public Environment {
   Observation reset(const Scene& scene) override {
     std::vector<VisibleObject> objects = visible_objects(scene);
     std::vector<BodyPlacement> placements;
+    placements.reserve(first_ + objects.size());
     for (int i = 0; i < first_; ++i) placements.push_back({i, {}});
     for (const VisibleObject& object : objects) {
       const auto model = models_.find(object.object_type);
@@ -98,7 +99,7 @@ class Mobile final : public Environment {
     Vec2 nearest = at;
     for (int row = 0; row < camera.size.rows; ++row)
       for (int column = 0; column < camera.size.columns; ++column) {
-        if (ids[static_cast<std::size_t>(row * camera.size.columns + column)] != instance_id) continue;
+        if (ids[static_cast<unsigned>(row * camera.size.columns + column)] != instance_id) continue;
         const Vec2 pixel{row + 0., column + 0.};
         const double away = norm(pixel - at);
         if (away >= least) continue;
@@ -202,8 +203,7 @@ class MobileType final : public EnvironmentType {
   Perceive perception(const SceneContent& scenes) const override {
     const std::optional<double> error = dynamic_cast<const Content&>(scenes).caption_error;
     if (!error) return nullptr;
-    return
-        [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, std::move(stream)); };
+    return [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, stream); };
   }
   Observation draw(const Scene& scene) const override {
     static Renderer& renderer = *new Renderer(front_camera());

@@ -73,7 +73,7 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
     content.never_distractor = read_feature_set(file.at("never_distractor"), scenario.space);
   if (scenes) read_scenes(*scenes, scenario, content);
   find_task(scenario.task).read(file, scenes, content);
-  if (training && scenario.as_method_asks && (content.target || content.second))
+  if (training && scenes && scenario.as_method_asks && (content.target || content.second))
     scenes->fail("\"as_method_asks\": false beside \"target\"" +
                  (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
   return content;
