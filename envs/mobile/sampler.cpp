@@ -149,7 +149,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const FeatureSet& truth = scenario.commands[command].truth.target;
   const Content& content = content_of(scenario, request.arm);
   const bool asked = request.arm == "train" && scenario.as_method_asks && !request.selections.empty();
-  const std::string own = request.training_seed ? fmt::format("/training seed {}", *request.training_seed) : "";
+  const std::string own = own_stream(request.training_seed);
   const Streams stream = [&](const std::string& purpose) {
     return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
                                     request.seed, own, index, purpose));

@@ -208,7 +208,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Request what{scenario, task,     layout,
                      content,  training, asked ? request.selections.at(command) : scenario.commands[command].truth};
   // Arms share their streams: they are compared scene by scene.
-  const std::string own = request.training_seed ? fmt::format("/training seed {}", *request.training_seed) : "";
+  const std::string own = own_stream(request.training_seed);
   const Streams stream = [&](const std::string& purpose) {
     return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
                                     request.seed, own, index, purpose));

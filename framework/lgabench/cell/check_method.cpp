@@ -241,8 +241,7 @@ class MethodCheck {
   // What is to be demonstrated; nothing where a run would end the cell as abstraction_empty.
   std::vector<Scene> training_scenes(const Bench& bench, const Selected& selected) {
     phase_(doing_ = "demonstrations that needs() asks for");
-    for (const int command : bench.scenario.commands_of("train"))
-      if (selected.nothing_for(command)) return {};
+    if (selected.nothing_to_learn_from(bench.scenario)) return {};
     try {
       return sample(bench.scenario, bench.layout, selected, seed, demonstrations);
     } catch (const NothingToShow&) {

@@ -51,7 +51,7 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
   const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
   const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
-  const std::string own = training_seed ? fmt::format("/training seed {}", *training_seed) : "";  // as its scenes have
+  const std::string own = own_stream(training_seed);
   return [&scenario, noise, perceive, own](const Observation& seen, const Scene& scene) {
     const auto stream = [&](const char* of) {
       return RandomStream(

@@ -90,9 +90,7 @@ DemonstrationCache demonstration_cache(const CellJob& job) {
 enum class Row { learns, abstraction_empty, reference };
 Row row_of(const Method* method, const Selected& selected, const Scenario& scenario) {
   if (!method) return Row::reference;
-  const std::vector<int> shown = scenario.commands_of("train");
-  const bool nothing = std::any_of(shown.begin(), shown.end(), [&](int c) { return selected.nothing_for(c); });
-  return nothing ? Row::abstraction_empty : Row::learns;
+  return selected.nothing_to_learn_from(scenario) ? Row::abstraction_empty : Row::learns;
 }
 
 // What is shown. Where the layout can show nothing of what was selected, the row's abstraction is empty.

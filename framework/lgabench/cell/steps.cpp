@@ -19,6 +19,11 @@ bool Selected::nothing_for(int command) const {
          instructions.at(static_cast<std::size_t>(command)).selection.empty();
 }
 
+bool Selected::nothing_to_learn_from(const Scenario& scenario) const {
+  const std::vector<int> shown = scenario.commands_of("train");
+  return std::any_of(shown.begin(), shown.end(), [&](int command) { return nothing_for(command); });
+}
+
 void TrainingLines::epoch(int epochs, long long steps, double loss) {
   if (!std::isfinite(loss))
     throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epochs, loss));

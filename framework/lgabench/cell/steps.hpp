@@ -19,6 +19,8 @@ struct Selected {
 
   /// Whether scenes of this command depend on a Selection that is empty: there is nothing to show or to keep.
   bool nothing_for(int command) const;
+  /// Whether that is so of a command that is demonstrated: there is nothing to learn from.
+  bool nothing_to_learn_from(const Scenario& scenario) const;
 };
 
 /// training.jsonl as it grows.

@@ -41,6 +41,10 @@ void append_new(std::vector<std::string>& words, const std::vector<std::string>&
 
 NothingToShow::~NothingToShow() = default;
 
+std::string own_stream(std::optional<std::uint64_t> training_seed) {
+  return training_seed ? fmt::format("/training seed {}", *training_seed) : "";
+}
+
 std::vector<std::string> environment_ids() {
   static const std::vector<std::string> ids = [] {
     std::vector<std::string> found;

@@ -38,6 +38,10 @@ struct SceneRequest {
   std::optional<std::uint64_t> training_seed = {};
 };
 
+/// The part of a random stream's name that tells training seeds with scenes of their own apart; "" where all share
+/// them.
+std::string own_stream(std::optional<std::uint64_t> training_seed);
+
 /// An observation with the errors that a perception makes, drawn from the stream.
 using Perceive = std::function<Observation(Observation, RandomStream)>;
 
