@@ -70,7 +70,7 @@ class DocumentedCommands(Case):
         return words
 
     def test_each_is_as_the_program_takes_it(self):
-        ran, planned, carried_out = 0, 0, 0
+        ran, planned, carried_out = 0, 0, []
         for page in PAGES:
             for shown in commands(page):
                 verb = shown[0]
@@ -88,10 +88,10 @@ class DocumentedCommands(Case):
                         own = ["--plugin-path", FIXTURES / "good", "--python", PYTHON]
                         plan = self.call(*(word for word in words if word != "--dry-run"), "--dry-run", *own).stdout
                         planned += 1
-                        if "--dry-run" in words or asks_a_server or expected_seconds(plan) > LONGEST:
+                        if "--dry-run" in words or asks_a_server or words in carried_out or expected_seconds(plan) > LONGEST:
                             continue
-                        carried_out += 1
-                        self.call(*with_options(words, "--out", f"out{carried_out}"), *own, timeout=1800)
+                        carried_out.append(words)
+                        self.call(*with_options(words, "--out", f"out{len(carried_out)}"), *own, timeout=1800)
                     else:
                         for pair in {"--difference", "--rows"}.intersection(words):
                             words[words.index(pair) + 1] = "lga,lga_s"
@@ -103,7 +103,7 @@ class DocumentedCommands(Case):
                         ran += 1
         self.assertGreater(ran, 12)
         self.assertGreater(planned, 20)
-        self.assertGreater(carried_out, 0)
+        self.assertTrue(carried_out)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <lgabench/core/parallel.hpp>
 #include <lgabench/report/claims_field.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -275,9 +276,13 @@ std::string to_string(Verdict verdict) {
 
 std::vector<Claim> test_claims(const RunResults& run) {
   const std::vector<PaperClaim> paper = paper_claims();
-  std::vector<Claim> claims;
-  for (const auto& item : fields_of(run))
-    for (const PaperClaim& claim : paper) claims.push_back(test_claim(claim, run.suite, item.second));
+  const auto fields = fields_of(run);
+  std::vector<std::pair<const Field*, const PaperClaim*>> tests;
+  for (const auto& item : fields)
+    for (const PaperClaim& claim : paper) tests.emplace_back(&item.second, &claim);
+  std::vector<Claim> claims(tests.size());
+  in_parallel(tests.size(),
+              [&](std::size_t i) { claims[i] = test_claim(*tests[i].second, run.suite, *tests[i].first); });
   return claims;
 }
 

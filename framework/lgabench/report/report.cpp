@@ -1,5 +1,6 @@
 #include <lgabench/report/report.hpp>
 
+#include <future>
 #include <set>
 
 #include <lgabench/core/error.hpp>
@@ -33,9 +34,11 @@ RunResults read_cells(const fs::path& run) {
 Report write_report(const fs::path& run) {
   Report report;
   report.run = read_cells(run);
+  report.agreements = engine_agreement(report.run);
+  auto drawing =  // by another process
+      std::async(std::launch::async, [&] { return draw_pictures(run, report.run, report.agreements); });
   report.summary = summarize(report.run);
   report.claims = test_claims(report.run);
-  report.agreements = engine_agreement(report.run);
   const Summary& summary = report.summary;
   Json values = to_json(summary);
   if (!report.agreements.empty()) values["engine_agreement"] = to_json(report.agreements);
@@ -45,7 +48,7 @@ Report write_report(const fs::path& run) {
   write_file(run / "claims.json", canonical(to_json(summary.suite, report.claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
-  const Pictures pictures = draw_pictures(run, report.run, report.agreements);
+  const Pictures pictures = drawing.get();
   const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
   report.document = report_document(material);
   write_document(run, report.document, page_data(material));

@@ -10,6 +10,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/parallel.hpp>
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 
@@ -229,15 +230,18 @@ RunResults read_run(const fs::path& run) {
 
   const bool divided = reader.at("version").string() == "0.1.0";
   std::map<std::string, std::size_t> order;  // of scenarios: the suite's, which run.json's cells keep
-  for (const std::string& key : listed) {
-    if (found.erase(key) == 0) {
+  std::vector<std::string> played;
+  for (const std::string& key : listed)
+    if (found.erase(key) == 0)
       ++results.not_run;
-      continue;
-    }
-    results.cells.push_back(read_cell(run / "cells" / key));
-    if (results.cells.back().rehearsal) results.rehearsal = true;
-    if (divided) results.cells.back().demonstrated_commands = 1;
-    order.emplace(results.cells.back().scenario, order.size());
+    else
+      played.push_back(key);
+  results.cells.resize(played.size());
+  in_parallel(played.size(), [&](std::size_t i) { results.cells[i] = read_cell(run / "cells" / played[i]); });
+  for (CellResult& cell : results.cells) {
+    if (cell.rehearsal) results.rehearsal = true;
+    if (divided) cell.demonstrated_commands = 1;
+    order.emplace(cell.scenario, order.size());
   }
   const auto place = [&order](const CellResult& c) {
     return std::tuple(c.layout, c.engine, order.at(c.scenario), c.kind, c.method, c.demonstrations, c.training_seed,

@@ -7,6 +7,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/core/parallel.hpp>
 #include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -311,19 +312,28 @@ Table make_table(const Cells& cells) {
         cell);
   }
   for (const std::string& arm : table.arms) {
-    std::map<Place, std::vector<const Draft*>> over_scenarios;
-    std::vector<Draft> drafts;
-    drafts.reserve(cells.size());  // as many rows at most: pointers to them stay valid
+    std::vector<std::pair<const Place*, const Cells*>> groups;
     for (const std::string& scenario : scenarios)
       for (const auto& [place, seeds] : grouped[scenario]) {
         const std::vector<std::string>& played = seeds.front()->arms;
-        if (std::find(played.begin(), played.end(), arm) == played.end()) continue;
-        drafts.push_back(scenario_draft(seeds, arm, table.arms.front()));
-        over_scenarios[place].push_back(&drafts.back());
-        table.rows.push_back(drafts.back().row);
+        if (std::find(played.begin(), played.end(), arm) != played.end()) groups.emplace_back(&place, &seeds);
       }
-    for (const auto& [place, rows] : over_scenarios)
-      table.rows.push_back(mean_row(rows, table.scenarios_with(arm).size(), table.arms.front()));
+    std::vector<Draft> drafts(groups.size());
+    in_parallel(groups.size(),
+                [&](std::size_t i) { drafts[i] = scenario_draft(*groups[i].second, arm, table.arms.front()); });
+
+    std::map<Place, std::vector<const Draft*>> by_place;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      by_place[*groups[i].first].push_back(&drafts[i]);
+      table.rows.push_back(drafts[i].row);
+    }
+    std::vector<std::vector<const Draft*>> over_scenarios;
+    for (auto& item : by_place) over_scenarios.push_back(std::move(item.second));
+    const std::size_t scenarios_with_arm = table.scenarios_with(arm).size(), first_mean = table.rows.size();
+    table.rows.resize(first_mean + over_scenarios.size());
+    in_parallel(over_scenarios.size(), [&](std::size_t i) {
+      table.rows[first_mean + i] = mean_row(over_scenarios[i], scenarios_with_arm, table.arms.front());
+    });
   }
   mark_low_rows(table);
   mark_errors(table);
