@@ -105,6 +105,7 @@ class Submissions(Board):
         self.assertEqual(entry["about"], META)
         self.assertEqual(entry["identity"]["scene_seed"], 77)
         self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
+        self.assertRegex(entry["evidence"][0]["command"], "^lgabench run tiny ")  # not where the program lies
         said = self.add(expect=1).stderr
         self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
 

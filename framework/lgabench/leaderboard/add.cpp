@@ -109,6 +109,13 @@ std::string version_of(const RunResults& run, const std::string& kind, const std
   throw InputError(fmt::format("{}: no {} {} in its /plugins", (run.directory / "run.json").string(), kind, id));
 }
 
+// A run's command without the program's directory, which is nobody else's business.
+std::string published(const std::string& command) {
+  const bool quoted = command.rfind('\'', 0) == 0;
+  const std::size_t slash = command.rfind('/', command.find(quoted ? "' " : " "));
+  return slash == std::string::npos ? command : (quoted ? "'" : "") + command.substr(slash + 1);
+}
+
 Json evidence_of(const RunResults& run, const Identity& identity, const Json& data, const Json& about) {
   Json plugins = Json::array();
   for (const Json& plugin : run.json.at("plugins"))
@@ -127,7 +134,7 @@ Json evidence_of(const RunResults& run, const Identity& identity, const Json& da
           {"machine", json.at("machine")},
           {"confinement", json.value("confinement", "unknown")},
           {"started", json.at("started")},
-          {"command", json.at("command")},
+          {"command", published(json.at("command"))},
           {"data", data}};
 }
 
