@@ -99,6 +99,7 @@ def describe(written):
     if class_name not in classes:
         raise NoMethod(f"{file}: no class {class_name}, it has: {', '.join(classes) or 'none'}")
     found = _literals(classes[class_name].body)
+    real = file.resolve()  # where it runs and imports from: a link's own folder has nothing to do with it
     options = found.get("options", {})
     if not isinstance(options, dict):
         raise NoMethod(f"{file}: options: expected a dictionary that is written out")
@@ -107,9 +108,10 @@ def describe(written):
         paths |= {sys.prefix}
     if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
         paths |= {sys.base_prefix + "/lib"}
-    return {"file": str(file.resolve()), "class": class_name, "kind": "method",
+    return {"file": str(real), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
-            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file.parent, tree, {file.resolve()})},
+            "sha256": hashlib.sha256(source).hexdigest(),
+            "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})},
             "interpreter": sys.executable, "reads": sorted(paths)}

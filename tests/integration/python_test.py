@@ -62,6 +62,8 @@ class Mine:
     def learn(self, demonstrations, services):
         assert demonstrations[0].steps[0].observation.rgb.shape == (128, 256, 3)
         assert not demonstrations[0].steps[0].observation.rgb.flags.writeable
+        if services.options["how"] == "rewrite":
+            open(os.path.join(os.path.dirname(__file__), "helper.py"), "a").write("# more")
         services.log.epoch(1, 10, float("nan") if services.options["how"] == "nan_loss" else 0.5, validation=0.25)
         if services.options["how"] == "curve_name":
             services.log.epoch(2, 10, 0.5, epoch=1)
@@ -141,6 +143,31 @@ class PythonMethods(Case):
         self.assertLessEqual({"pack/__init__.py", "pack/inner.py"}, set(json.loads(status["build"]["python"])))
         (self.dir / "pack/inner.py").write_text("x = 2\n")
         self.assertIn("python differs", self.call(*run, expect=2).stderr)
+
+    def test_modules_beside_a_link_to_the_file_are_those_that_it_imports(self):
+        (self.dir / "link").mkdir()
+        (self.dir / "link/mine.py").symlink_to("../mine.py")
+        self.call(*RUN, "--methods", "link/mine.py:Mine", "--out", "out")
+        (_, status), = self.cells("out").values()
+        self.assertIn("helper.py", json.loads(status["build"]["python"]))
+
+    def test_bytecode_beside_the_file_is_not_run(self):
+        (self.dir / "pack").mkdir()
+        files = [self.dir / name for name in ("mine.py", "helper.py", "pack/__init__.py", "pack/inner.py")]
+        for file in files:
+            file.write_text("raise ValueError('not what the file says')\n")
+        subprocess.run([PYTHON, "-m", "compileall", "-q", "--invalidation-mode", "unchecked-hash", self.dir], check=True)
+        files[0].write_text(METHOD.replace("import helper", "import helper\nimport pack.inner"))
+        for file in files[1:]:
+            file.write_text("x = 1\n")
+        self.call(*RUN, "--methods", "mine.py:Mine", "--out", "out")
+
+    def test_a_module_that_changes_in_the_middle_of_a_run_is_refused(self):
+        self.call(*with_options(RUN, "--seeds", "0:2"), "--unconfined", "--jobs", "1", "--methods",
+                  "mine.py:Mine+how=rewrite", "--out", "out", expect=3)
+        states = {status["state"]: status for _, status in self.cells("out").values()}
+        self.assertEqual(set(states), {"ok", "failed"})
+        self.assertIn("helper.py: changed since the run began", states["failed"]["reason"])
 
     def test_runs_of_other_modules_are_not_merged(self):
         for seed in ("0", "1"):

@@ -46,7 +46,8 @@ protocol::Layout layout_of(const std::string& environment) {
 
 Json method_json(const PluginInfo& method) {
   Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
-  if (!method.python.is_null()) json["class"] = method.python.at("class");
+  if (!method.python.is_null())
+    for (const char* member : {"class", "versions"}) json[member] = method.python.at(member);
   return json;
 }
 
