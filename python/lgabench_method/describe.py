@@ -2,6 +2,7 @@
 import ast
 import hashlib
 import importlib.metadata
+import json
 import pathlib
 import sys
 import sysconfig
@@ -84,6 +85,8 @@ def _text(found, name, default, file):
 
 def describe(written):
     """Of FILE.py:Class: the descriptor, what it depends on and where its interpreter reads."""
+    if sys.version_info < (3, 10):  # importlib.metadata.packages_distributions()
+        raise NoMethod(f"Python {sys.version_info[0]}.{sys.version_info[1]}, expected 3.10 or later")
     name, separator, class_name = written.rpartition(":")
     file = pathlib.Path(name)
     if not separator or not class_name.isidentifier():
@@ -103,6 +106,10 @@ def describe(written):
     options = found.get("options", {})
     if not isinstance(options, dict):
         raise NoMethod(f"{file}: options: expected a dictionary that is written out")
+    try:
+        json.dumps(options, allow_nan=False, sort_keys=True)
+    except (TypeError, ValueError) as error:
+        raise NoMethod(f"{file}: options: expected values that JSON has: {error}") from error
     paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
     if sys.prefix != sys.base_prefix:
         paths |= {sys.prefix}

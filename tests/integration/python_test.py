@@ -215,11 +215,21 @@ class PythonMethods(Case):
 
     def test_refused_with_a_reason(self):
         for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
-                           "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options"}.items():
+                           "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
+                           "sets.py:A": "sets.py: options: expected values that JSON has",
+                           "endless.py:A": "endless.py: options: expected values that JSON has"}.items():
             (self.dir / "bad.py").write_text("class A(")
             (self.dir / "named.py").write_text("class A:\n    id = 'Upper'\n")
             (self.dir / "options.py").write_text("class A:\n    options = {'x': {'default': [1]}}\n")
+            (self.dir / "sets.py").write_text("class A:\n    options = {'x': {'default': 'a', 'values': {'a', 'b'}}}\n")
+            (self.dir / "endless.py").write_text("class A:\n    options = {'x': {'default': 1e999}}\n")
             self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
+        (self.dir / "old.py").write_text("import sys\nfrom lgabench_method import describe\nsys.version_info = (3, 9, 2)\n"
+                                         "try:\n    describe.describe('mine.py:Mine')\n"
+                                         "except describe.NoMethod as error:\n    print(error)\n")
+        done = subprocess.run([PYTHON, self.dir / "old.py"], capture_output=True, text=True, cwd=self.dir,
+                              env=dict(os.environ, PYTHONPATH=f"{BUILD}/share/lgabench/python"))
+        self.assertEqual(done.stdout, "Python 3.9, expected 3.10 or later\n", done.stderr)
 
     def test_new_plugin_and_check_plugin(self):
         self.call("new-plugin", "my_method", "--kind", "python")
