@@ -48,7 +48,7 @@ class _Human(_Worker):
 
     def edit(self, command, proposal):
         return self._person({"type": "person", "how": "edit", "command": values.command_json(command),
-                             "proposal": values.selection_json(proposal)})
+                             "proposal": values.selection_json(proposal, "edit() was given")})
 
     def _person(self, question):
         return values.selection(self.ask(question, "person")["selection"])

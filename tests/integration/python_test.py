@@ -26,7 +26,7 @@ import os
 import socket
 import numpy
 import helper
-from lgabench_method import Needs, Refused, Selection, select_features
+from lgabench_method import Needs, Refused, SecondSet, Selection, select_features
 
 class Mine:
     version = "0.3"
@@ -48,6 +48,10 @@ class Mine:
             socket.create_connection(("localhost", int(how[8:])), 10).close()
         if how == "human":
             services.human.specify(command)
+        if how == "no_selection":
+            services.human.edit(command, "all")
+        if how == "second_target":
+            return Selection(second=SecondSet(["heart"], ["red"], "target"))
         if how == "rule":
             selection = Selection()
             selection.target.object_types, selection.target.textures = ["heart"], list(space.textures)
@@ -190,6 +194,8 @@ class PythonMethods(Case):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
+                   "no_selection": "edit() was given str",
+                   "second_target": "the second set has the role \"target\"",
                    "curve_name": "a curve's name", "read": "PermissionError"}
         found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)
         for how in ("nan", "short", "huge"):
