@@ -125,6 +125,9 @@ class Sweep final : public Task {
   std::vector<std::string> scene_members() const override { return {distances}; }
   void read(const JsonReader&, const JsonReader* scenes, Content& content) const override {
     constexpr double usual_m = .21, nearest_m = .15, farthest_m = .3;  // outlines apart, and within the picture
+    constexpr std::size_t most_choice = 2;                             // place() has no room beside the target for more
+    if (content.choice.size() > most_choice)
+      scenes->at("choice").fail(fmt::format("at most {} object types for sweep", most_choice));
     if (!scenes || !scenes->has(distances)) {
       content.numbers[distances] = {usual_m};
       return;
