@@ -148,6 +148,10 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
     const std::string& texture = any_of(request.scenario.space.textures, random);
     objects.push_back({type, texture, right.contains(type, texture) ? if_right : role::distractor, {}, 0, 0});
   }
+  if (std::none_of(objects.begin(), objects.end(), [&](const auto& o) { return o.role == if_right; }))
+    throw NothingToShow(
+        fmt::format("scenario \"{}\", layout {}: expected a distribution that has one of the choice, got {}",
+                    request.scenario.id, request.layout.id, canonical(to_json(right))));
   std::stable_partition(objects.begin(), objects.end(), [](const auto& o) { return o.role == role::target; });
   return objects;
 }
@@ -218,7 +222,11 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   set_asked_turn(scene, task.turn_rad(content));
   scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
+  const std::size_t sampled = scene.objects.size();
   task.place(layout, content, scene.objects, stream);
+  if (!content.choice.empty() && scene.objects.size() < sampled)
+    throw InputError(fmt::format("scenario \"{}\", layout {}: expected places for all {} objects of a choice, got {}",
+                                 scenario.id, layout.id, sampled, scene.objects.size()));
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;
