@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 
 #include <common/objects.hpp>
 #include <lgabench/core/error.hpp>
@@ -38,6 +39,14 @@ std::string natural_texture(const std::string& type, const Names& held, RandomSt
   return any_of(both.empty() ? held : both, random);
 }
 
+// Those that scenes can show.
+Names showable(const Names& types) {
+  Names kept;
+  std::copy_if(types.begin(), types.end(), std::back_inserter(kept),
+               [](const std::string& type) { return natural_textures().count(type) > 0; });
+  return kept;
+}
+
 // The target of the first training scene.
 struct First {
   std::string type;
@@ -46,9 +55,7 @@ struct First {
 
 SceneObject sample_target(const Scenario& scenario, const FeatureSet& meant, const std::optional<First>& first,
                           RandomStream random) {
-  Names types;
-  std::copy_if(meant.object_types.begin(), meant.object_types.end(), std::back_inserter(types),
-               [&](const std::string& type) { return natural_textures().count(type) > 0; });
+  Names types = showable(meant.object_types);
   if (types.empty() || meant.textures.empty())
     throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a target that can be shown, got {}",
                                     scenario.id, canonical(to_json(meant))));
@@ -60,7 +67,8 @@ SceneObject sample_target(const Scenario& scenario, const FeatureSet& meant, con
 std::vector<SceneObject> sample_others(const Content& content, const FeatureSet& truth, const FeatureSpace& space,
                                        RandomStream random) {
   Names types = content.distractor_types;
-  if (content.several_right) types.insert(types.end(), truth.object_types.begin(), truth.object_types.end());
+  if (content.several_right)
+    for (const std::string& type : showable(truth.object_types)) types.push_back(type);
   const auto [fewest, most] = content.distractors;
   const int count = fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<SceneObject> others;
