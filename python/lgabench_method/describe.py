@@ -4,6 +4,7 @@ import hashlib
 import importlib.metadata
 import json
 import pathlib
+import site
 import sys
 import sysconfig
 
@@ -115,10 +116,13 @@ def describe(written):
         paths |= {sys.prefix}
     if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
         paths |= {sys.base_prefix + "/lib"}
+    user = site.ENABLE_USER_SITE and pathlib.Path(site.getusersitepackages()).is_dir()  # of pip install --user
+    if user:
+        paths |= {site.getusersitepackages()}
     return {"file": str(real), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
             "sha256": hashlib.sha256(source).hexdigest(),
             "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})},
-            "interpreter": sys.executable, "reads": sorted(paths)}
+            "interpreter": sys.executable, "reads": sorted(paths), "user_base": site.getuserbase() if user else ""}

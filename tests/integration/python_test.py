@@ -155,6 +155,18 @@ class PythonMethods(Case):
         (_, status), = self.cells("out").values()
         self.assertIn("helper.py", json.loads(status["build"]["python"]))
 
+    def test_packages_that_the_user_has_installed(self):
+        self.environment["PYTHONUSERBASE"] = str(self.dir / "user")
+        where = "import numpy, site; print(site.getusersitepackages() if site.ENABLE_USER_SITE else '')"
+        found = subprocess.run([PYTHON, "-c", where], env=self.environment, capture_output=True, text=True).stdout.strip()
+        if not found:
+            self.skipTest(f"{PYTHON} looks for none, or has NumPy there")
+        (self.dir / "code").mkdir()
+        pathlib.Path(found).mkdir(parents=True)
+        pathlib.Path(found, "of_the_user.py").write_text("x = 1\n")
+        (self.dir / "code/mine.py").write_text(METHOD.replace("import helper", "import of_the_user"))
+        self.call(*RUN, "--methods", "code/mine.py:Mine", "--out", "out")
+
     def test_bytecode_beside_the_file_is_not_run(self):
         (self.dir / "pack").mkdir()
         files = [self.dir / name for name in ("mine.py", "helper.py", "pack/__init__.py", "pack/inner.py")]
