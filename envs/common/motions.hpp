@@ -1,4 +1,4 @@
-// What motions of every environment are made of. Engine-free; times and speeds are simulated ones.
+// Parts of the motions of every environment. They need no engine's own functions; times and speeds are simulated ones.
 #pragma once
 #include <algorithm>
 #include <cmath>

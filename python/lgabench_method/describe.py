@@ -72,7 +72,7 @@ def _siblings(folder, tree, seen):
             try:
                 own = ast.parse(source, str(file))
             except (SyntaxError, ValueError):
-                continue  # whoever imports it is told where
+                continue  # the import says where
             hashes.update(_siblings(folder, own, seen))
     return hashes
 
