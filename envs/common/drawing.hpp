@@ -18,6 +18,7 @@ struct Drawing {
   Vec2 grasp;
 };
 
+/// The point at that distance and direction from the centre, counter-clockwise from u.
 Vec2 polar(Vec2 centre, double radius, double degrees);
 
 Polygon rectangle(double left, double bottom, double right, double top);
@@ -33,7 +34,8 @@ Polygon slanted(double low, double bottom, double high, double top, double width
 /// The other side of the v axis.
 Polygon mirrored(const Polygon& polygon);
 
-/// A band between two radii in convex pieces, each with two outer segments over one inner chord.
+/// A band between two radii, from one direction counter-clockwise to another, in degrees; in convex pieces, each with
+/// two outer segments over one inner chord.
 std::vector<Polygon> arc(Vec2 centre, double inner, double outer, double from, double to, int pieces);
 
 Drawing::Part prism(const Polygon& polygon, double z_low, double z_high);

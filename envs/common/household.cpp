@@ -1,5 +1,5 @@
-// The household types. What has a round underside in life has a flat one here, so that it lies where it is put; what
-// stands tall lies on its side, where a view from above knows it best.
+// The household types. What is round underneath in life is flat here, so that it stays where it is put; what is tall
+// lies on its side, as a view from above shows it best.
 #include <algorithm>
 
 #include <common/shapes.hpp>

@@ -1,4 +1,4 @@
-// What motions of every environment are made of. Engine-free; times and speeds are simulated ones.
+// Parts of the motions of every environment. They need no engine's own functions; times and speeds are simulated ones.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 namespace lgabench::common {
 
-constexpr double lower_speed = 0.5;  // m/s
-constexpr double carry_speed = 3;    // greatest ones: m/s,
-constexpr double turn_speed = 12;    // rad/s
+constexpr double lower_speed = 0.5;  // m/s, all the way
+constexpr double carry_speed = 3;    // m/s in the middle of the way, see move()
+constexpr double turn_speed = 12;    // rad/s, likewise
 
 /// The bodies of a scene, in the order in which they were placed.
 struct Bodies {
@@ -19,7 +19,7 @@ struct Bodies {
   std::vector<bool> fixed;  // cannot be taken
 };
 
-/// Counts the steps of one action, and calls `after_step` after each.
+/// Counts the steps of one action, of at most 10 s, and calls `after_step` after each. @pre the world outlives it.
 class Clock {
  public:
   explicit Clock(PhysicsWorld& world, std::function<void()> after_step = {});
@@ -42,7 +42,8 @@ struct Stance {
 };
 using PutTool = std::function<void(const Stance&)>;
 
-/// Straight, the turn at an even share, starting and ending at zero speed (cosine profile). `put` moves the tool.
+/// Straight, the turn at an even share, starting and ending at zero speed (cosine profile); `speed`, in m/s, is the
+/// greatest on the way. `put` moves the tool.
 /// This and the following @return false where the limit in steps is reached.
 bool move(Clock& clock, const Stance& from, const Stance& to, double speed, const PutTool& put);
 

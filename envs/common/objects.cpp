@@ -117,11 +117,17 @@ const std::vector<std::string>& object_types() {
   return types;
 }
 
-void expect_finite(const VisibleObject& object) {
-  const auto& [p, q] = object.pose;
-  for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w})
-    if (!std::isfinite(number))
-      throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
+void expect_drawable(const std::vector<VisibleObject>& objects) {
+  std::array<bool, 256> taken{true};  // 0 is no object's
+  for (const VisibleObject& object : objects) {
+    if (taken[object.instance_id])
+      throw InputError(fmt::format("instance id {}: expected 1 to 255, each once", object.instance_id));
+    taken[object.instance_id] = true;
+    const auto& [p, q] = object.pose;
+    for (const double number : {p.x, p.y, p.z, q.x, q.y, q.z, q.w})
+      if (!std::isfinite(number))
+        throw InputError(fmt::format("instance {}: expected a finite pose, got {}", object.instance_id, number));
+  }
 }
 
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad) {

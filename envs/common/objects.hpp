@@ -49,8 +49,9 @@ struct VisibleObject {
   std::uint8_t instance_id;  // 1..255
 };
 
-/// @throws InputError for a pose that is not finite.
-void expect_finite(const VisibleObject& object);
+/// What every renderer asks of its objects. @throws InputError for an instance id that is 0 or given twice, or a pose
+/// that is not finite.
+void expect_drawable(const std::vector<VisibleObject>& objects);
 
 /// Outlines moved to a pose on the table.
 std::vector<Polygon> placed_outline(const ObjectModel& model, Vec2 position_m, double yaw_rad);

@@ -23,7 +23,8 @@ Polygon convex_hull(Polygon points);
 /// The polygons turned by the yaw about the origin, then moved.
 std::vector<Polygon> placed(const std::vector<Polygon>& polygons, Vec2 position_m, double yaw_rad);
 
-/// The smallest distance in metres between two unions of convex polygons; 0 where they overlap.
+/// The smallest distance in metres between two unions of convex polygons; 0 where they overlap, infinity where one of
+/// them has no polygon.
 double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
 
 }  // namespace lgabench::common

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <lgabench/core/suggest.hpp>
+#include <algorithm>
+
 #include <mobile/mobile.hpp>
 #include <mobile/tables.hpp>
 
@@ -32,6 +33,8 @@ Content read_content(const Scenario&, const JsonReader& file, const JsonReader* 
   if (training) content.distractors = {0, 1};
   for (const JsonReader& type : file.at("distractor_types").elements()) {
     if (natural_textures().count(type.string()) == 0) type.fail("a type of mobile/natural_textures.json");
+    const auto& before = content.distractor_types;
+    if (std::find(before.begin(), before.end(), type.string()) != before.end()) type.fail("each object type once");
     content.distractor_types.push_back(type.string());
   }
   if (content.distractor_types.empty()) file.at("distractor_types").fail("at least one object type");

@@ -78,7 +78,7 @@ class Mobile final : public Environment {
 
   Action expert_action() const override {
     const SceneObject* target = scene_.find(role::target);
-    if (!target) throw InputError("scene: expected an object to be a target");
+    if (!target) throw InputError("scene: expected an object with the role target");
     return expert_action_for(target->instance_id);
   }
 

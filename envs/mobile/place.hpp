@@ -30,7 +30,7 @@ constexpr double table_top_m = .72;
 /// Where objects stand: .46 deep, .8 wide, at the table's centre.
 constexpr Rectangle zone{{.72, -.4}, {1.18, .4}};
 
-/// The person is a disc to whoever drives by.
+/// The person is a disc to a robot that drives by.
 constexpr Vec2 person{-.3, 2.05};
 constexpr double person_radius_m = .25, person_height_m = 1.7;
 

@@ -1,13 +1,9 @@
 #include <mobile/renderer.hpp>
 
-#include <fmt/format.h>
-
-#include <array>
 #include <cstring>
 
 #include <common/raster.hpp>
 #include <common/solids.hpp>
-#include <lgabench/core/error.hpp>
 #include <mobile/place.hpp>
 
 namespace lgabench::mobile {
@@ -91,7 +87,6 @@ struct Renderer::Impl {
   }
 
   Placed place(const VisibleObject& object) {
-    expect_finite(object);
     Placed placed(solids.of(object.object_type, standing_model(object.object_type).mesh), object.pose);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
@@ -193,14 +188,9 @@ struct Renderer::Impl {
 
   // Places the objects and finds what is nearest at each pixel.
   std::vector<Placed> trace(const std::vector<VisibleObject>& objects) {
-    std::array<bool, 256> taken{true};  // 0 is the room's
+    expect_drawable(objects);
     std::vector<Placed> placed;
-    for (const VisibleObject& object : objects) {
-      if (taken[object.instance_id])
-        throw InputError(fmt::format("instance id {}: expected 1 to 255, each once", object.instance_id));
-      taken[object.instance_id] = true;
-      placed.push_back(place(object));
-    }
+    for (const VisibleObject& object : objects) placed.push_back(place(object));
     for (const Area& area : drawn)
       for_each_pixel(area, [&](std::size_t pixel) {
         nearness[pixel] = room_nearness[pixel];

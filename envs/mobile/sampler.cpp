@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <iterator>
 
 #include <common/objects.hpp>
+#include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
-#include <lgabench/core/random.hpp>
 #include <mobile/content.hpp>
 #include <mobile/place.hpp>
 #include <mobile/renderer.hpp>
@@ -19,15 +19,10 @@ namespace {
 constexpr double margin_m = .02;                                // between outlines
 constexpr double nearest_first_m = .1, farthest_first_m = .25;  // see Content::near_first
 
-using Streams = std::function<RandomStream(const std::string& purpose)>;
 using Names = std::vector<std::string>;
 
 bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-const std::string& any_of(const Names& names, RandomStream& random) {
-  return names[random.below(static_cast<std::uint32_t>(names.size()))];
 }
 
 // A texture that things of the type have in life; of those, one that the distribution holds, if there is one.
@@ -38,6 +33,14 @@ std::string natural_texture(const std::string& type, const Names& held, RandomSt
   return any_of(both.empty() ? held : both, random);
 }
 
+// Those that scenes can show.
+Names showable(const Names& types) {
+  Names kept;
+  std::copy_if(types.begin(), types.end(), std::back_inserter(kept),
+               [](const std::string& type) { return natural_textures().count(type) > 0; });
+  return kept;
+}
+
 // The target of the first training scene.
 struct First {
   std::string type;
@@ -46,9 +49,7 @@ struct First {
 
 SceneObject sample_target(const Scenario& scenario, const FeatureSet& meant, const std::optional<First>& first,
                           RandomStream random) {
-  Names types;
-  std::copy_if(meant.object_types.begin(), meant.object_types.end(), std::back_inserter(types),
-               [&](const std::string& type) { return natural_textures().count(type) > 0; });
+  Names types = showable(meant.object_types);
   if (types.empty() || meant.textures.empty())
     throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a target that can be shown, got {}",
                                     scenario.id, canonical(to_json(meant))));
@@ -60,7 +61,8 @@ SceneObject sample_target(const Scenario& scenario, const FeatureSet& meant, con
 std::vector<SceneObject> sample_others(const Content& content, const FeatureSet& truth, const FeatureSpace& space,
                                        RandomStream random) {
   Names types = content.distractor_types;
-  if (content.several_right) types.insert(types.end(), truth.object_types.begin(), truth.object_types.end());
+  if (content.several_right)
+    for (const std::string& type : showable(truth.object_types)) types.push_back(type);
   const auto [fewest, most] = content.distractors;
   const int count = fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<SceneObject> others;
@@ -138,22 +140,12 @@ void place(const Content& content, const std::optional<First>& first, std::vecto
 
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
   if (request.layout != layout) throw InputError(fmt::format("layout \"{}\": expected {}", request.layout, layout));
-  if (request.split != "train" && request.split != "dev" && request.split != "test")
-    throw InputError(fmt::format("split \"{}\": expected train, dev or test", request.split));
-  if (request.training_seed && request.split != "test")
-    throw InputError("a training seed's own scenes: expected split test");
-  if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
-
-  const std::vector<int> commands = scenario.commands_of(request.arm);
-  const auto command = static_cast<std::size_t>(commands[static_cast<std::size_t>(index) % commands.size()]);
+  Scene scene = without_objects(scenario, request, index);
+  const auto command = static_cast<std::size_t>(scene.command);
   const FeatureSet& truth = scenario.commands[command].truth.target;
   const Content& content = content_of(scenario, request.arm);
   const bool asked = request.arm == "train" && scenario.as_method_asks && !request.selections.empty();
-  const std::string own = own_stream(request.training_seed);
-  const Streams stream = [&](const std::string& purpose) {
-    return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
-                                    request.seed, own, index, purpose));
-  };
+  const Streams stream = streams_of(scenario, request, index);
   std::optional<First> first;
   if (content.near_first) {
     const Scene shown = sample_scene(scenario, {layout, "train", "train", request.training_seed.value_or(0)}, 0);
@@ -161,19 +153,12 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
     first = First{target->object_type, target->position_m};
   }
 
-  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, {}, request.seed, index, 0, {}};
-  scene.command = static_cast<int>(command);
   scene.objects = {
       sample_target(scenario, asked ? request.selections.at(command).target : truth, first, stream("target"))};
   for (SceneObject& other : sample_others(content, truth, scenario.space, stream("distractors")))
     scene.objects.push_back(std::move(other));
   place(content, first, scene.objects, stream);
-
-  // Ids 1..n in random order, the objects sorted by them: neither tells a role.
-  const auto order = stream("ids").permutation(static_cast<int>(scene.objects.size()));
-  for (std::size_t i = 0; i < order.size(); ++i) scene.objects[i].instance_id = static_cast<std::uint8_t>(order[i] + 1);
-  std::sort(scene.objects.begin(), scene.objects.end(),
-            [](const auto& a, const auto& b) { return a.instance_id < b.instance_id; });
+  permute_ids(scene.objects, stream("ids"));
   return scene;
 }
 

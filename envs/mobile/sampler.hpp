@@ -7,7 +7,8 @@ namespace lgabench::mobile {
 /// Scene number `index`. Target, distractors, places and ids come from separate random streams: arms and distributions
 /// that differ in one share the rest, but for arms near the first demonstration, which is the training seed's (of tests
 /// that all seeds share: seed 0's).
-/// @throws InputError where layout or arm is unknown, or the distribution holds nothing that can be shown.
+/// @throws InputError where layout, split or arm is unknown; NothingToShow where the distribution holds nothing that
+/// can be shown. Error where no room is found.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);
 
 constexpr const char* layout = "table";

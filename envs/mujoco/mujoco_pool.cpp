@@ -10,7 +10,7 @@
 namespace lgabench {
 namespace {
 
-constexpr double stiffest = 2 * mujoco_time_step_s;  // time constant of contacts and of suction that the step bears
+constexpr double stiffest = 2 * mujoco_time_step_s;  // shortest stable time constant of contacts and suction
 constexpr double rest_speed = 5e-4;                  // m/s: slower bodies may fall asleep
 /// Far beside the table, each body in its own place.
 constexpr double parking_distance = 10, parking_gap = 1;

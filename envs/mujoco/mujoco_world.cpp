@@ -58,6 +58,7 @@ MujocoWorld::MujocoWorld() : data_(nullptr, mj_deleteData), pristine_(nullptr, m
 
 void MujocoWorld::load(const std::vector<BodyModel>& models, int bodies) {
   if (pool_) throw EngineError("MuJoCo: load() is called once");
+  if (models.empty() || bodies < 1) throw EngineError("MuJoCo: load() without a model or a body");
   pool_.emplace(models, bodies);
   model_ = pool_->model();
   data_.reset(mj_makeData(model_));
@@ -68,8 +69,8 @@ void MujocoWorld::load(const std::vector<BodyModel>& models, int bodies) {
 }
 
 void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
+  expect_loaded("reset");
   mjData* d = data_.get();
-  if (!d) throw EngineError("MuJoCo: reset() before load()");
   if (spatula_pose_) park_spatula();
   held_ = no_body;
   std::vector<int> models;
@@ -99,6 +100,7 @@ void MujocoWorld::reset(const std::vector<BodyPlacement>& placements) {
 double MujocoWorld::time_step_s() const { return mujoco_time_step_s; }
 
 void MujocoWorld::step() {
+  expect_loaded("step");
   if (spatula_pose_) drive_spatula();
   mj_step(model_, data_.get());
   if (spatula_pose_) {  // to the digit, whatever it pushed
@@ -118,6 +120,7 @@ Pose MujocoWorld::pose(int body) const {
 }
 
 std::vector<Contact> MujocoWorld::contacts() const {
+  expect_loaded("contacts");
   std::vector<Contact> found;
   for (int i = 0; i < data_->ncon; ++i) {
     const mjContact& c = data_->contact[i];
@@ -129,6 +132,7 @@ std::vector<Contact> MujocoWorld::contacts() const {
 }
 
 int MujocoWorld::cast_down(Vec2 point, double& height_m) const {
+  expect_loaded("cast_down");
   refresh();
   const mjModel* m = model_;
   int hit = no_body;
@@ -178,6 +182,7 @@ void MujocoWorld::release() {
 }
 
 void MujocoWorld::place_spatula(Vec3 size_m, const Pose& pose) {
+  expect_loaded("place_spatula");
   mjModel* m = model_;
   const double half[3] = {size_m.x / 2, size_m.y / 2, size_m.z / 2};
   const MujocoBody& spatula = pool_->spatula();
@@ -218,6 +223,10 @@ void MujocoWorld::drive_spatula() {
   for (int i = 0; i < 3; ++i) velocity[i] = (position[i] - now[i]) / mujoco_time_step_s;
   mju_subQuat(velocity + 3, quaternion, now + 3);
   mju_scl3(velocity + 3, velocity + 3, 1 / mujoco_time_step_s);
+}
+
+void MujocoWorld::expect_loaded(const char* call) const {
+  if (!data_) throw EngineError(fmt::format("MuJoCo: {}() before load()", call));
 }
 
 const MujocoBody& MujocoWorld::placed(int body) const {

@@ -33,6 +33,7 @@ class MujocoWorld final : public PhysicsWorld {
   void remove_spatula() override;
 
  private:
+  void expect_loaded(const char* call) const;
   const MujocoBody& placed(int body) const;
   void set_mocap(int mocap, const Pose& pose);
   void park_spatula();

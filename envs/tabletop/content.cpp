@@ -21,10 +21,13 @@ void read_choice(const JsonReader& scenes, const std::string& second, const Feat
     if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
   const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
+  if (content.choice.empty()) reader.fail("at least one object type");
   if (content.choice.size() > most) reader.fail(fmt::format("at most {} object types", most));
-  for (const JsonReader& type : reader.elements())
+  for (const JsonReader& type : reader.elements()) {
     if (std::find(space.object_types.begin(), space.object_types.end(), type.string()) == space.object_types.end())
       type.fail("an object type of the feature space");
+    if (std::count(content.choice.begin(), content.choice.end(), type.string()) > 1) type.fail("each object type once");
+  }
 }
 
 void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& content) {

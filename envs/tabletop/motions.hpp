@@ -1,4 +1,4 @@
-// What motions are made of: what an action does to the bodies. Engine-free; times and speeds are simulated ones.
+// How an action is carried out by suction. Needs no engine's own functions; times and speeds are simulated ones.
 #pragma once
 #include <common/motions.hpp>
 #include <tabletop/failures.hpp>

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <common/outline.hpp>
+#include <common/sampling.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scene.hpp>
 #include <tabletop/workspace.hpp>
@@ -25,9 +26,6 @@ struct Layout {
   double shift_m = 0;                                        // the target stands up to this far from its place
   static constexpr double unbounded = std::numeric_limits<double>::infinity();
 };
-
-/// A scene's random streams by what they are for.
-using Streams = std::function<RandomStream(const std::string& purpose)>;
 
 /// What must stay free beside a target for its motion.
 using Room = std::function<std::vector<Polygon>(const SceneObject& target)>;

@@ -3,8 +3,6 @@
 // on every processor. Only light on the objects themselves takes rays (Embree), and few points need one.
 #include <tabletop/renderer.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +11,6 @@
 #include <common/objects.hpp>
 #include <common/solids.hpp>
 #include <common/textures.hpp>
-#include <lgabench/core/error.hpp>
 #include <tabletop/raster.hpp>
 #include <tabletop/zones.hpp>
 
@@ -73,7 +70,6 @@ struct Renderer::Impl {
   Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {}
 
   Placed place(const VisibleObject& object) {
-    expect_finite(object);
     Placed placed(solids.of(object.object_type, object_model(object.object_type).mesh), object.pose);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
@@ -201,14 +197,9 @@ Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
 Renderer::~Renderer() = default;
 
 Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground) {
-  std::array<bool, 256> taken{true};  // 0 is the table's
+  expect_drawable(objects);
   std::vector<Placed> placed;
-  for (const VisibleObject& object : objects) {
-    if (taken[object.instance_id])
-      throw InputError(fmt::format("instance id {}: expected 1 to 255, each once", object.instance_id));
-    taken[object.instance_id] = true;
-    placed.push_back(impl_->place(object));
-  }
+  for (const VisibleObject& object : objects) placed.push_back(impl_->place(object));
 
   const Table& empty = table(ground);
   Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include <common/objects.hpp>
-#include <lgabench/core/random.hpp>
+#include <common/sampling.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
@@ -18,10 +18,6 @@ bool can_show(const std::string& type, double widest_m) {
   if (type == goal_type) return false;
   const Vec2 size = object_model(type).size_m;
   return std::max(size.x, size.y) <= widest_m + 1e-9;
-}
-
-const std::string& any_of(const std::vector<std::string>& names, RandomStream& random) {
-  return names[random.below(static_cast<std::uint32_t>(names.size()))];
 }
 
 struct Features {
@@ -148,6 +144,10 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
     const std::string& texture = any_of(request.scenario.space.textures, random);
     objects.push_back({type, texture, right.contains(type, texture) ? if_right : role::distractor, {}, 0, 0});
   }
+  if (std::none_of(objects.begin(), objects.end(), [&](const auto& o) { return o.role == if_right; }))
+    throw NothingToShow(
+        fmt::format("scenario \"{}\", layout {}: expected a distribution that has one of the choice, got {}",
+                    request.scenario.id, request.layout.id, canonical(to_json(right))));
   std::stable_partition(objects.begin(), objects.end(), [](const auto& o) { return o.role == role::target; });
   return objects;
 }
@@ -179,27 +179,11 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   return objects;
 }
 
-// Ids 1..n in random order, the objects sorted by them: neither tells a role.
-void permute_ids(std::vector<SceneObject>& objects, RandomStream random) {
-  const auto order = random.permutation(static_cast<int>(objects.size()));
-  for (std::size_t i = 0; i < objects.size(); ++i) objects[i].instance_id = static_cast<std::uint8_t>(order[i] + 1);
-  std::sort(objects.begin(), objects.end(), [](const auto& a, const auto& b) { return a.instance_id < b.instance_id; });
-}
-
-void check(const SceneRequest& request, int index) {
-  const auto& split = request.split;
-  if (split != "train" && split != "dev" && split != "test")
-    throw InputError(fmt::format("split \"{}\": expected train, dev or test", split));
-  if (request.training_seed && split != "test") throw InputError("a training seed's own scenes: expected split test");
-  if (index < 0) throw InputError(fmt::format("scene index {}: expected 0 or more", index));
-}
-
 }  // namespace
 
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
-  check(request, index);
-  const std::vector<int> commands = scenario.commands_of(request.arm);
-  const auto command = static_cast<std::size_t>(commands[static_cast<std::size_t>(index) % commands.size()]);
+  Scene scene = without_objects(scenario, request, index);
+  const auto command = static_cast<std::size_t>(scene.command);
   const bool training = request.arm == "train";
   const Content& content = content_of(scenario, request.arm);
   const bool asked = training && scenario.as_method_asks && !request.selections.empty();
@@ -207,18 +191,15 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Layout layout = find_layout(task, request.layout);
   const Request what{scenario, task,     layout,
                      content,  training, asked ? request.selections.at(command) : scenario.commands[command].truth};
-  // Arms share their streams: they are compared scene by scene.
-  const std::string own = own_stream(request.training_seed);
-  const Streams stream = [&](const std::string& purpose) {
-    return RandomStream(fmt::format("scene/{}/{}/{}/{}{}/{}/{}", scenario.id, request.layout, request.split,
-                                    request.seed, own, index, purpose));
-  };
+  const Streams stream = streams_of(scenario, request, index);
 
-  Scene scene{scenario.id, request.arm, request.layout, request.split, scenario.task, {}, request.seed, index, 0, {}};
   set_asked_turn(scene, task.turn_rad(content));
-  scene.command = static_cast<int>(command);
   scene.objects = sample_objects(what, stream);
+  const std::size_t sampled = scene.objects.size();
   task.place(layout, content, scene.objects, stream);
+  if (!content.choice.empty() && scene.objects.size() < sampled)
+    throw InputError(fmt::format("scenario \"{}\", layout {}: expected places for all {} objects of a choice, got {}",
+                                 scenario.id, layout.id, sampled, scene.objects.size()));
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;

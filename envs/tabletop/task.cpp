@@ -59,7 +59,7 @@ Layout released_layout(std::optional<Vec2> pallet) {
 
 const SceneObject& expect(const Scene& scene, const Role& role) {
   const SceneObject* found = scene.find(role);
-  if (!found) throw InputError(fmt::format("scene: expected an object to be a {}", role));
+  if (!found) throw InputError(fmt::format("scene: expected an object with the role {}", role));
   return *found;
 }
 

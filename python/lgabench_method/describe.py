@@ -2,7 +2,9 @@
 import ast
 import hashlib
 import importlib.metadata
+import json
 import pathlib
+import site
 import sys
 import sysconfig
 
@@ -70,7 +72,7 @@ def _siblings(folder, tree, seen):
             try:
                 own = ast.parse(source, str(file))
             except (SyntaxError, ValueError):
-                continue  # whoever imports it is told where
+                continue  # the import says where
             hashes.update(_siblings(folder, own, seen))
     return hashes
 
@@ -84,6 +86,8 @@ def _text(found, name, default, file):
 
 def describe(written):
     """Of FILE.py:Class: the descriptor, what it depends on and where its interpreter reads."""
+    if sys.version_info < (3, 10):  # importlib.metadata.packages_distributions()
+        raise NoMethod(f"Python {sys.version_info[0]}.{sys.version_info[1]}, expected 3.10 or later")
     name, separator, class_name = written.rpartition(":")
     file = pathlib.Path(name)
     if not separator or not class_name.isidentifier():
@@ -99,17 +103,26 @@ def describe(written):
     if class_name not in classes:
         raise NoMethod(f"{file}: no class {class_name}, it has: {', '.join(classes) or 'none'}")
     found = _literals(classes[class_name].body)
+    real = file.resolve()  # where it runs and imports from: a link's own folder has nothing to do with it
     options = found.get("options", {})
     if not isinstance(options, dict):
         raise NoMethod(f"{file}: options: expected a dictionary that is written out")
+    try:
+        json.dumps(options, allow_nan=False, sort_keys=True)
+    except (TypeError, ValueError) as error:
+        raise NoMethod(f"{file}: options: expected values that JSON has: {error}") from error
     paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
     if sys.prefix != sys.base_prefix:
         paths |= {sys.prefix}
     if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
         paths |= {sys.base_prefix + "/lib"}
-    return {"file": str(file.resolve()), "class": class_name, "kind": "method",
+    user = site.ENABLE_USER_SITE and pathlib.Path(site.getusersitepackages()).is_dir()  # of pip install --user
+    if user:
+        paths |= {site.getusersitepackages()}
+    return {"file": str(real), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
-            "sha256": hashlib.sha256(source).hexdigest(), "versions": {**_versions(tree), **_siblings(file.parent, tree, {file.resolve()})},
-            "interpreter": sys.executable, "reads": sorted(paths)}
+            "sha256": hashlib.sha256(source).hexdigest(),
+            "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})},
+            "interpreter": sys.executable, "reads": sorted(paths), "user_base": site.getuserbase() if user else ""}

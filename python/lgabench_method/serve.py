@@ -48,7 +48,7 @@ class _Human(_Worker):
 
     def edit(self, command, proposal):
         return self._person({"type": "person", "how": "edit", "command": values.command_json(command),
-                             "proposal": values.selection_json(proposal)})
+                             "proposal": values.selection_json(proposal, "edit() was given")})
 
     def _person(self, question):
         return values.selection(self.ask(question, "person")["selection"])
@@ -81,29 +81,46 @@ class _Log:
             self.channel.send(header, struct.pack(f"<{len(values)}d", *values))
 
 
-class _Beside:
-    """Finds modules in the method's folder by their name: one that holds a run cannot be listed."""
+class _Source(importlib.machinery.SourceFileLoader):
+    """Runs what a file says now: bytecode beside it may be of another source. `sha256`: what the run's record says of it."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, name, file, sha256):
+        super().__init__(name, str(file))
+        self.sha256 = sha256
+
+    def get_code(self, fullname):
+        source = self.get_data(self.path)
+        if self.sha256 not in (None, hashlib.sha256(source).hexdigest()):
+            raise ImportError(f"{self.path}: changed since the run began")
+        return self.source_to_code(source, self.path)
+
+
+class _Beside:
+    """Finds modules in the method's folder, and in packages there, by their names: a folder that holds a run cannot be
+    listed. `versions`: as describe() gives them, with the modules' hashes."""
+
+    def __init__(self, folder, versions):
+        self.folder, self.versions, self.packages = folder, versions, set()
 
     def find_spec(self, name, path=None, target=None):
-        package = self.folder / name
-        for file, inside in ((package.with_suffix(".py"), None), (package / "__init__.py", [str(package)])):
-            if path is None and file.is_file():
-                return importlib.util.spec_from_file_location(name, file, submodule_search_locations=inside)
+        for folder in [self.folder] if path is None else self.packages.intersection(map(pathlib.Path, path)):
+            package = folder / name.rpartition(".")[2]
+            for file, inside in ((package.with_suffix(".py"), None), (package / "__init__.py", [str(package)])):
+                if not file.is_file():
+                    continue
+                if inside:
+                    self.packages.add(package)
+                loader = _Source(name, file, self.versions.get(file.relative_to(self.folder).as_posix()))
+                return importlib.util.spec_from_file_location(name, file, loader=loader, submodule_search_locations=inside)
         return None
 
 
-def load(file, name, sha256):
+def load(file, name, sha256, versions):
     """The class of that name; the file is run, whose folder is where it imports from first."""
-    source = pathlib.Path(file).read_bytes()
-    if hashlib.sha256(source).hexdigest() != sha256:
-        raise ImportError(f"{file}: changed since the run began")
-    folder = pathlib.Path(file).parent
-    sys.path.insert(0, str(folder))
-    sys.meta_path.insert(sys.meta_path.index(importlib.machinery.PathFinder), _Beside(folder))
-    spec = importlib.util.spec_from_file_location(pathlib.Path(file).stem, file)
+    file = pathlib.Path(file)
+    sys.path.insert(0, str(file.parent))
+    sys.meta_path.insert(sys.meta_path.index(importlib.machinery.PathFinder), _Beside(file.parent, versions))
+    spec = importlib.util.spec_from_file_location(file.stem, file, loader=_Source(file.stem, file, sha256))
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     spec.loader.exec_module(module)
@@ -122,7 +139,8 @@ class Host:
         files = os.path.join(os.environ.get("HOME", "."), "files")
         self.log = _Log(channel)
         self.services = Services(_Model(channel), _Human(channel), hello["options"], hello["seed"], self.log, files, layout)
-        self.kind = load(hello["method"]["file"], hello["method"]["class"], hello["method"]["sha256"])
+        method = hello["method"]
+        self.kind = load(method["file"], method["class"], method["sha256"], method["versions"])
         self.method = self.kind()
         self.policy = None
 

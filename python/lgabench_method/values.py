@@ -36,19 +36,24 @@ def _set_json(value):
     return {"object_types": [str(name) for name in value.object_types], "textures": [str(name) for name in value.textures]}
 
 
+SELECTION = ("target", "provenance", "source", "asked_as")  # its members beside the second set, which is named by its role
+
+
 def selection(json):
-    roles = [name for name in json if name not in ("target", "provenance", "source", "asked_as")]
+    roles = [name for name in json if name not in SELECTION]
     second = json[roles[0]] if roles else None
     return Selection(_set(json["target"]),
                      SecondSet(list(second["object_types"]), list(second["textures"]), roles[0]) if roles else None,
                      json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
 
 
-def selection_json(value):
+def selection_json(value, what="select() returned"):
     if not isinstance(value, Selection):
-        raise TypeError(f"select() returned {type(value).__name__}, expected a lgabench_method.Selection")
+        raise TypeError(f"{what} {type(value).__name__}, expected a lgabench_method.Selection")
     json = {"target": _set_json(value.target)}
     if value.second is not None:
+        if value.second.role in ("", *SELECTION):
+            raise ValueError(f"the second set has the role \"{value.second.role}\", expected the id of command.second")
         json[value.second.role] = _set_json(value.second)
     return json
 

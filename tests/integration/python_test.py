@@ -26,7 +26,7 @@ import os
 import socket
 import numpy
 import helper
-from lgabench_method import Needs, Refused, Selection, select_features
+from lgabench_method import Needs, Refused, SecondSet, Selection, select_features
 
 class Mine:
     version = "0.3"
@@ -48,6 +48,10 @@ class Mine:
             socket.create_connection(("localhost", int(how[8:])), 10).close()
         if how == "human":
             services.human.specify(command)
+        if how == "no_selection":
+            services.human.edit(command, "all")
+        if how == "second_target":
+            return Selection(second=SecondSet(["heart"], ["red"], "target"))
         if how == "rule":
             selection = Selection()
             selection.target.object_types, selection.target.textures = ["heart"], list(space.textures)
@@ -62,6 +66,8 @@ class Mine:
     def learn(self, demonstrations, services):
         assert demonstrations[0].steps[0].observation.rgb.shape == (128, 256, 3)
         assert not demonstrations[0].steps[0].observation.rgb.flags.writeable
+        if services.options["how"] == "rewrite":
+            open(os.path.join(os.path.dirname(__file__), "helper.py"), "a").write("# more")
         services.log.epoch(1, 10, float("nan") if services.options["how"] == "nan_loss" else 0.5, validation=0.25)
         if services.options["how"] == "curve_name":
             services.log.epoch(2, 10, 0.5, epoch=1)
@@ -142,6 +148,43 @@ class PythonMethods(Case):
         (self.dir / "pack/inner.py").write_text("x = 2\n")
         self.assertIn("python differs", self.call(*run, expect=2).stderr)
 
+    def test_modules_beside_a_link_to_the_file_are_those_that_it_imports(self):
+        (self.dir / "link").mkdir()
+        (self.dir / "link/mine.py").symlink_to("../mine.py")
+        self.call(*RUN, "--methods", "link/mine.py:Mine", "--out", "out")
+        (_, status), = self.cells("out").values()
+        self.assertIn("helper.py", json.loads(status["build"]["python"]))
+
+    def test_packages_that_the_user_has_installed(self):
+        self.environment["PYTHONUSERBASE"] = str(self.dir / "user")
+        where = "import numpy, site; print(site.getusersitepackages() if site.ENABLE_USER_SITE else '')"
+        found = subprocess.run([PYTHON, "-c", where], env=self.environment, capture_output=True, text=True).stdout.strip()
+        if not found:
+            self.skipTest(f"{PYTHON} looks for none, or has NumPy there")
+        (self.dir / "code").mkdir()
+        pathlib.Path(found).mkdir(parents=True)
+        pathlib.Path(found, "of_the_user.py").write_text("x = 1\n")
+        (self.dir / "code/mine.py").write_text(METHOD.replace("import helper", "import of_the_user"))
+        self.call(*RUN, "--methods", "code/mine.py:Mine", "--out", "out")
+
+    def test_bytecode_beside_the_file_is_not_run(self):
+        (self.dir / "pack").mkdir()
+        files = [self.dir / name for name in ("mine.py", "helper.py", "pack/__init__.py", "pack/inner.py")]
+        for file in files:
+            file.write_text("raise ValueError('not what the file says')\n")
+        subprocess.run([PYTHON, "-m", "compileall", "-q", "--invalidation-mode", "unchecked-hash", self.dir], check=True)
+        files[0].write_text(METHOD.replace("import helper", "import helper\nimport pack.inner"))
+        for file in files[1:]:
+            file.write_text("x = 1\n")
+        self.call(*RUN, "--methods", "mine.py:Mine", "--out", "out")
+
+    def test_a_module_that_changes_in_the_middle_of_a_run_is_refused(self):
+        self.call(*with_options(RUN, "--seeds", "0:2"), "--unconfined", "--jobs", "1", "--methods",
+                  "mine.py:Mine+how=rewrite", "--out", "out", expect=3)
+        states = {status["state"]: status for _, status in self.cells("out").values()}
+        self.assertEqual(set(states), {"ok", "failed"})
+        self.assertIn("helper.py: changed since the run began", states["failed"]["reason"])
+
     def test_runs_of_other_modules_are_not_merged(self):
         for seed in ("0", "1"):
             (self.dir / "helper.py").write_text(f"x = {seed}\n")
@@ -163,6 +206,8 @@ class PythonMethods(Case):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
+                   "no_selection": "edit() was given str",
+                   "second_target": "the second set has the role \"target\"",
                    "curve_name": "a curve's name", "read": "PermissionError"}
         found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)
         for how in ("nan", "short", "huge"):
@@ -188,11 +233,21 @@ class PythonMethods(Case):
 
     def test_refused_with_a_reason(self):
         for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
-                           "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options"}.items():
+                           "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
+                           "sets.py:A": "sets.py: options: expected values that JSON has",
+                           "endless.py:A": "endless.py: options: expected values that JSON has"}.items():
             (self.dir / "bad.py").write_text("class A(")
             (self.dir / "named.py").write_text("class A:\n    id = 'Upper'\n")
             (self.dir / "options.py").write_text("class A:\n    options = {'x': {'default': [1]}}\n")
+            (self.dir / "sets.py").write_text("class A:\n    options = {'x': {'default': 'a', 'values': {'a', 'b'}}}\n")
+            (self.dir / "endless.py").write_text("class A:\n    options = {'x': {'default': 1e999}}\n")
             self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
+        (self.dir / "old.py").write_text("import sys\nfrom lgabench_method import describe\nsys.version_info = (3, 9, 2)\n"
+                                         "try:\n    describe.describe('mine.py:Mine')\n"
+                                         "except describe.NoMethod as error:\n    print(error)\n")
+        done = subprocess.run([PYTHON, self.dir / "old.py"], capture_output=True, text=True, cwd=self.dir,
+                              env=dict(os.environ, PYTHONPATH=f"{BUILD}/share/lgabench/python"))
+        self.assertEqual(done.stdout, "Python 3.9, expected 3.10 or later\n", done.stderr)
 
     def test_new_plugin_and_check_plugin(self):
         self.call("new-plugin", "my_method", "--kind", "python")

@@ -285,6 +285,10 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice/1: expected an object type");
   json["tests"][1]["choice"] = std::vector<std::string>(6, "heart");
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice: expected at most 5 object types");
+  json["tests"][1]["choice"] = {"heart", "star", "heart"};
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice/0: expected each object type once");
+  json["tests"][1]["choice"] = Json::array();
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1/choice: expected at least one object type");
   const Json set = json["commands"][0]["truth"]["target"];
   for (const auto& [member, value] : {std::pair<const char*, Json>{"target", set},
                                       {"distractors", {1, 1}},
@@ -300,6 +304,8 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_NO_THROW(read_scenario(sweep, "mine.json"));
   sweep["tests"][0]["avoid"] = truth["avoid"];
   EXPECT_SAYS(refusal(sweep), "mine.json: /tests/0/avoid: expected no such member beside \"choice\"");
+  sweep["tests"][0] = {{"arm", "test"}, {"choice", {"pan", "bowl", "ring"}}};
+  EXPECT_SAYS(refusal(sweep), "mine.json: /tests/0/choice: expected at most 2 object types for sweep");
   json["tests"][1] = {{"arm", "train"}};
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1/arm: expected another name");
   json = heart();

@@ -14,6 +14,8 @@
 #include <mobile/sampler.hpp>
 #include <mobile/tables.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench::mobile {
 namespace {
 
@@ -80,6 +82,24 @@ TEST_P(AScenario, HoldsWhatItsArmSays) {
     EXPECT_EQ(*counts.begin(), static_cast<std::size_t>(fewest) + 1);
     EXPECT_EQ(*counts.rbegin(), static_cast<std::size_t>(most) + 1);
   }
+}
+
+// A feature space has more types than this environment shows.
+TEST(MobileScenes, LeaveOutOfACrowdWhatTheyCannotShow) {
+  Json json = scenario("bring_fruit").json;
+  json["commands"][0]["truth"]["target"]["object_types"] = {"heart", "star", "cross", "ring", "diamond", "apple"};
+  const Scenario s = read_scenario(json, "mine.json");
+  for (int i = 0; i < 10; ++i) {
+    const Scene scene = sample_scene(s, {layout, "test", "crowd", 0, {}, 3}, i);
+    for (const SceneObject& o : scene.objects) EXPECT_TRUE(natural_textures().count(o.object_type)) << o.object_type;
+  }
+}
+
+TEST(MobileScenes, HaveEachTypeOfDistractorOnce) {
+  Json json = scenario("bring_fruit").json;
+  json["distractor_types"] = {"fork", "mug", "fork"};
+  EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),
+              "mine.json: /distractor_types/2: expected each object type once");
 }
 
 TEST_P(AScenario, SamePlaceIsAnotherObjectNearTheFirst) {

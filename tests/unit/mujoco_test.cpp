@@ -14,6 +14,18 @@ TEST(MujocoWorld, RefusesABodyWithoutVolume) {
   EXPECT_THROW(MujocoWorld().load({flat}, 1), EngineError);
 }
 
+TEST(MujocoWorld, RefusesCallsBeforeItIsLoaded) {
+  MujocoWorld world;
+  double height = 0;
+  EXPECT_THROW(world.reset({}), EngineError);
+  EXPECT_THROW(world.step(), EngineError);
+  EXPECT_THROW(world.contacts(), EngineError);
+  EXPECT_THROW(world.cast_down({.5, 0}, height), EngineError);
+  EXPECT_THROW(world.place_spatula({.12, .01, .05}, {}), EngineError);
+  EXPECT_THROW(world.load({common::object_model("block").body}, 0), EngineError);
+  EXPECT_THROW(world.load({}, 1), EngineError);
+}
+
 TEST(MujocoWorld, AFaultInsideIsAnErrorNotTheEndOfTheProcess) {
   MujocoWorld world;
   world.load({common::object_model("block").body}, 1);

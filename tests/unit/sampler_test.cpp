@@ -13,6 +13,8 @@
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 
+#include "testing.hpp"
+
 namespace lgabench::tabletop {
 namespace {
 
@@ -536,6 +538,45 @@ TEST(Sampler, RefusesWhatItCannotSample) {
   Selection pallets = s.commands[0].truth;
   pallets.target.object_types = {"pallet"};
   EXPECT_THROW(sample_scene(s, train_request(pallets, "cells"), 0), InputError);
+}
+
+// The scenario with one arm, of scenes that show these types.
+Scenario with_choice(const std::string& id, const std::vector<std::string>& types) {
+  Json json = load_scenario(id).json;
+  json["tests"] = Json::array({Json{{"arm", "test"}, {"choice", types}}});
+  return read_scenario(json, id);
+}
+
+TEST(Sampler, AChoiceIsShownWholeOrNotAtAll) {
+  const auto objects = [](const Scenario& s, const char* layout) {
+    return sample_scene(s, test_request(layout), 0).objects.size();
+  };
+  const std::vector<std::string> four{"heart", "star", "cross", "ring"},
+      five{"heart", "star", "cross", "ring", "diamond"};
+  EXPECT_EQ(objects(with_choice("heart", four), "cells"), 5u);  // and the pallet
+  EXPECT_EQ(objects(with_choice("heart", five), "continuous"), 6u);
+  EXPECT_SAYS(message_of<InputError>([&] { objects(with_choice("heart", five), "cells"); }),
+              "layout cells: expected places for all 5 objects of a choice, got 4");
+  // What it is to be stacked on might be the one that is left out.
+  EXPECT_SAYS(message_of<InputError>([] {
+                const std::vector<std::string> onto{"hexagon", "star", "cross", "ring"};
+                sample_scene(with_choice("stack_small_block_on_hexagon", onto), test_request("cells"), 0);
+              }),
+              "layout cells: expected places for all 5 objects of a choice, got 4");
+}
+
+TEST(Sampler, AChoiceHoldsWhatTheDistributionMeans) {
+  EXPECT_THROW(sample_scene(with_choice("heart", {"star", "cross"}), test_request("cells"), 0), NothingToShow);
+  EXPECT_THROW(
+      sample_scene(with_choice("sweep_block_without_touching_pan", {"star", "cross"}), test_request("cells"), 0),
+      NothingToShow);
+  Json json = load_scenario("heart").json;
+  json["train"] = {{"choice", {"heart", "star"}}};
+  const Scenario s = read_scenario(json, "heart");
+  Selection selection = s.commands[0].truth;
+  EXPECT_NO_THROW(sample_scene(s, train_request(selection, "cells"), 0));
+  selection.target.object_types = {"cross"};  // an empty abstraction (run_cell.cpp), not a cell that fails
+  EXPECT_THROW(sample_scene(s, train_request(selection, "cells"), 0), NothingToShow);
 }
 
 // Published results name scenes by these: a change here makes every earlier run incomparable.

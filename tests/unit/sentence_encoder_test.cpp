@@ -147,6 +147,8 @@ TEST(Safetensors, AreReadAndChecked) {
   EXPECT_SAYS(refusal(file_of(entry({3, 1}, {4, 12}))), "/w/data_offsets: expected 12 bytes within");
   EXPECT_SAYS(refusal(file_of(entry({3, 1}, {16, 4}))), "/w/data_offsets");
   EXPECT_SAYS(refusal(file_of(entry({1000000000, 1000000000}, {0, 16}))), "/w/shape");
+  // 2^64 numbers, which 64 bits count as none.
+  EXPECT_SAYS(refusal(file_of(entry({1 << 24, 1LL << 40}, {0, 0})) + std::string(1 << 24, '\0')), "/w/shape");
   EXPECT_SAYS(refusal(file_of(entry({3, 1}, {4, 16}, "F16"))), "of type F32");
 }
 

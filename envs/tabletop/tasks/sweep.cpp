@@ -55,10 +55,10 @@ struct Push {
   double tilt_rad = 0;
 };
 
-/// How to push what reaches beyond the blade when it turns. Pushed straight where the face that meets the blade bears
-/// the centre of mass; else (an L-shaped block whose notch faces the blade) it would turn in its own time. It is made
-/// to turn at once, around the end P of that face: the way passes the centre of mass, and the blade reaches from P to
-/// the side that comes to meet it.
+/// How to push what reaches beyond the blade when it turns. Straight, where the centre of mass is in front of the face
+/// that meets the blade. An object for which it is not (an L-shaped block with its notch towards the blade) would turn
+/// at some point on the way. It is made to turn at once, about the end P of that face: the blade moves on a tilted
+/// line, and reaches from P to the side of the object that turns towards it.
 Push push_of(Vec2 centre, Vec2 mass, const Polygon& corners, double side) {
   constexpr double flat_m = .002, bears_m = .005, from_end_m = .015, tilt_rad = 15 * pi / 180;
   double back = -1, low = 1, high = -1;
@@ -125,6 +125,9 @@ class Sweep final : public Task {
   std::vector<std::string> scene_members() const override { return {distances}; }
   void read(const JsonReader&, const JsonReader* scenes, Content& content) const override {
     constexpr double usual_m = .21, nearest_m = .15, farthest_m = .3;  // outlines apart, and within the picture
+    constexpr std::size_t most_choice = 2;                             // place() has no room beside the target for more
+    if (content.choice.size() > most_choice)
+      scenes->at("choice").fail(fmt::format("at most {} object types for sweep", most_choice));
     if (!scenes || !scenes->has(distances)) {
       content.numbers[distances] = {usual_m};
       return;

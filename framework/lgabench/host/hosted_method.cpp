@@ -28,6 +28,8 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   if (const Json& python = job.method.python; !python.is_null()) {
     command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
     command.also_set = {"PYTHONPATH=" + python_package().string(), "PYTHONUNBUFFERED=1"};
+    if (const auto base = python.at("user_base").get<std::string>(); !base.empty())  // HOME is another one there
+      command.also_set.push_back("PYTHONUSERBASE=" + base);
   } else if (job.perturb != 0) {
     command.words.insert(command.words.end(), {"--perturb", std::to_string(job.perturb)});
   }
@@ -46,7 +48,8 @@ protocol::Layout layout_of(const std::string& environment) {
 
 Json method_json(const PluginInfo& method) {
   Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
-  if (!method.python.is_null()) json["class"] = method.python.at("class");
+  if (!method.python.is_null())
+    for (const char* member : {"class", "versions"}) json[member] = method.python.at(member);
   return json;
 }
 

@@ -16,7 +16,7 @@ namespace lgabench {
 /// one's nearest to where the action begins), moved to the piece's nearest pixel with two more on every side where it
 /// is not on such a one. The action's first place is the taken point where most demonstrations begin on the target.
 /// Each other coordinate of the places is the demonstrations' mean as it is or relative to the taken point, whichever
-/// varies less (spreads below 1 mm are equal; of equals the latter where most demonstrated places lie on the target).
+/// varies less (spreads below .001 are equal; of equals the latter where most demonstrated places lie on the target).
 /// All else are means.
 ///
 /// Where most do not begin on the target (sweep), demonstrations of one direction of push (unit vectors within .15) are

@@ -21,7 +21,8 @@ namespace lgabench {
 /// by direction of push, the likeliest of which the network names.
 ///
 /// 300 steps of 16 samples (of all where there are fewer), rounded up to whole passes, so one pass of more than 4800.
-/// Adam, learning rate .003 falling as a cosine.
+/// Adam, learning rate .003 falling as a cosine. Lengths are the tabletop's metres; elsewhere, the same numbers in the
+/// unit that Field has.
 class HeatMap : public Learner {
  public:
   static constexpr PictureSize rgb_size{32, 64};

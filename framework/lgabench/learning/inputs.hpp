@@ -15,7 +15,7 @@ constexpr PictureSize input_size{input_rows, input_columns};
 /// @throws InputError if `rgb` is not a picture of size `native`.
 void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize native, PictureSize size, float* out);
 
-/// A mask of 0, target_role and avoid_role (goal_mask.hpp), written to `out` as rows x columns: 1 where any native
+/// A mask of 0, target_role and second_role (goal_mask.hpp), written to `out` as rows x columns: 1 where any native
 /// pixel that the small one touches is the target's, else -1 where any is to be avoided, else 0. Row r of R touches
 /// of N native rows floor(N r / R) to ceil(N (r + 1) / R) - 1, columns alike.
 /// @throws InputError if the mask is not of size `native`.

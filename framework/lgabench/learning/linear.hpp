@@ -7,7 +7,7 @@
 namespace lgabench {
 
 /// A linear layer of one input, or that input's share of a layer that joins several. Rows of numbers are padded with
-/// zeros to whole vectors. The bias is kept by whoever has the layer.
+/// zeros to whole vectors. The bias belongs to the layer's owner.
 class Linear {
  public:
   /// Takes its weights. @pre both references outlive this.

@@ -37,7 +37,7 @@ Groups by_push(const ActionSpace& actions, const std::vector<Demonstrated>& all)
 Action mean_action(const ActionSpace& actions, const std::vector<Action>& labels);
 
 /// Each coordinate of the places is the group's mean as it is, relative to the taken point or, where every
-/// demonstration shows one, to the second set's centroid, whichever varies least (spreads below 1 mm are equal; of
+/// demonstration shows one, to the second set's centroid, whichever varies least (spreads below .001 are equal; of
 /// equals the taken point where most demonstrated places lie on the target, else as it is). All else are means.
 class Motion {
  public:
@@ -47,7 +47,8 @@ class Motion {
          bool second);
   /// @pre `group` is one of those.
   Action act(const Places& places, std::size_t group) const;
-  /// Largest root of the mean squared deviation of a coordinate of the later places from its group's mean, in metres.
+  /// Largest root of the mean squared deviation of a coordinate of the later places from its group's mean, in Field's
+  /// unit.
   double spread_m() const { return spread_m_; }
 
  private:

@@ -1,4 +1,4 @@
-// Private to learning/.
+// Arrays of numbers as kernels want them. Private to learning/.
 #pragma once
 #include <cstddef>
 #include <cstdlib>

@@ -8,8 +8,9 @@
 
 namespace lgabench {
 
-/// What a picture shows: x grows down its rows, y across its columns; both as the first of ActionSpace::places has
-/// them.
+/// What a picture shows: x grows down its rows, y across its columns; both in the unit of the first of
+/// ActionSpace::places, as is every length below, in motion.hpp and in the policies made of them: metres on the
+/// tabletop, in `mobile` shares of the picture's height and width.
 struct Field {
   double x_low, x_high, y_low, y_high;
 

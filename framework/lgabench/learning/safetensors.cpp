@@ -35,8 +35,9 @@ Safetensors::Safetensors(const fs::path& file, const std::string& sum) : file_(f
     Entry read{{}, numbers_.size(), 1};
     for (const JsonReader& extent : entry.at("shape").elements()) {
       read.shape.push_back(extent.integer(1, most));
-      read.count *= static_cast<std::size_t>(read.shape.back());
-      if (read.count > data_size) entry.at("shape").fail("no more numbers than the file holds");
+      const auto times = static_cast<std::size_t>(read.shape.back());
+      if (times > data_size / read.count) entry.at("shape").fail("no more numbers than the file holds");
+      read.count *= times;
     }
     const auto offsets = entry.at("data_offsets").elements();
     if (offsets.size() != 2) entry.at("data_offsets").fail("[begin, end]");

@@ -38,7 +38,8 @@ void train(Learner& learner, const Samples& samples, const TrainingOptions& aske
       ++steps;
     }
     const double mean = total / batches;
-    if (!std::isfinite(mean)) throw MethodError(fmt::format("training: the loss of epoch {} is {}", epoch, mean));
+    if (!std::isfinite(mean))
+      throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epoch, mean));
     if (epoch % 10 == 0 || epoch == options.epochs) log.epoch(epoch, steps, mean);
   }
 }

@@ -20,7 +20,8 @@ struct PluginInfo {
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?}}
   std::string sha256;  // of the file
   std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
-  /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "versions"}; else null.
+  /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "user_base",
+  /// "versions"}; else null.
   Json python{};
 };
 

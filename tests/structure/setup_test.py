@@ -1,0 +1,40 @@
+"""cmake/setup on machines that it is not made for: it says so before it installs anything.
+
+Usage: setup_test.py SOURCE_DIR
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(sys.argv[1])
+
+
+class Setup(unittest.TestCase):
+    def said(self, machine, *programs):
+        """On a machine that has these programs alone, and does nothing with them."""
+        with tempfile.TemporaryDirectory() as directory:
+            for program in programs:
+                (pathlib.Path(directory) / program).symlink_to(shutil.which("true"))
+            os.symlink(shutil.which("dirname"), f"{directory}/dirname")
+            uname = pathlib.Path(directory) / "uname"
+            uname.write_text(f"#!/bin/sh\necho {machine}\n")
+            uname.chmod(0o755)
+            done = subprocess.run([shutil.which("bash"), SOURCE / "cmake/setup"], capture_output=True, text=True,
+                                  env={"PATH": directory})
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn("docker build --platform linux/amd64", done.stderr)
+        return done.stderr
+
+    def test_another_processor(self):
+        self.assertIn("expected an x86-64 processor, for which MuJoCo's wheel is, got aarch64", self.said("aarch64", "apt-get"))
+
+    def test_another_system(self):
+        self.assertIn("expected Debian 12 with apt-get", self.said("x86_64"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
