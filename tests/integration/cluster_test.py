@@ -1,21 +1,27 @@
-"""`lgabench cluster` and `lgabench status`: scripts for Slurm, and how far the parts are.
+"""`lgabench cluster` and `lgabench status`: scripts for Slurm, and how far the parts are; GNU parallel over ssh.
 
-Elements are played by bash here; on a real Slurm of this machine in ./test --full, where it is installed.
+Elements are played by bash here; in ./test --full on a real Slurm of this machine and over a real ssh, where they are installed.
 By hand: python3 cluster_test.py Elements
 """
 import getpass
 import json
 import os
+import pathlib
+import re
+import shlex
 import shutil
+import socket
 import subprocess
 import textwrap
 import time
 import unittest
 
-from case import FIXTURES, Case, with_options
+from case import FIXTURES, PROGRAM, Case, with_options
 
 RUN = ("q1", "--scenarios", "heart,letter", "--methods", "fixture_constant", "--plugin-path", FIXTURES / "good",
        "--demos", "2,4", "--seeds", "0:2", "--episodes", "2", "--engines", "kinematic")
+PAGE = pathlib.Path(__file__).parents[2] / "docs/running-on-a-cluster.md"
+SSHD = shutil.which("sshd", path=os.environ["PATH"] + ":/usr/sbin")
 SLURM = all(map(shutil.which, ("slurmctld", "slurmd", "sbatch", "sacct", "scontrol")))
 
 
@@ -169,6 +175,68 @@ class Slurm(Case):
         self.call("status", "out")
         self.call("run", *run, "--out", "undisturbed")
         self.assert_same_results("out/whole", "undisturbed")
+
+
+@unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
+@unittest.skipUnless(SSHD and shutil.which("parallel"), "GNU parallel (parallel) or sshd (openssh-server) is not installed")
+class OverSsh(Case):
+    """Two hosts that are this machine: an sshd of this user's own, on a port and with keys of its own."""
+
+    def setUp(self):
+        super().setUp()
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        for key in "host", "user":
+            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", self.dir / key], check=True)
+        (self.dir / "known_hosts").write_text(f"[127.0.0.1]:{port} {(self.dir / 'host.pub').read_text()}")
+        self.environment.update(PATH=f"{self.dir}/bin:{os.environ['PATH']}", PARALLEL_HOME=str(self.dir),
+                                PARALLEL_SSH=f"ssh -F {self.dir}/ssh_config")
+        (self.dir / "ssh_config").write_text(textwrap.dedent(f"""\
+            Host host1 host2
+            HostName 127.0.0.1
+            Port {port}
+            IdentityFile {self.dir}/user
+            IdentitiesOnly yes
+            UserKnownHostsFile {self.dir}/known_hosts
+            BatchMode yes
+            """))
+        there = " ".join(f'{name}="{self.environment[name]}"' for name in ("PATH", "LGABENCH_CACHE", "TMPDIR"))
+        (self.dir / "sshd_config").write_text(textwrap.dedent(f"""\
+            ListenAddress 127.0.0.1:{port}
+            HostKey {self.dir}/host
+            AuthorizedKeysFile {self.dir}/user.pub
+            PasswordAuthentication no
+            KbdInteractiveAuthentication no
+            StrictModes no
+            PidFile none
+            SetEnv {there}
+            """))
+        if os.geteuid() == 0:
+            pathlib.Path("/run/sshd").mkdir(exist_ok=True)  # which Debian's service makes
+        with (self.dir / "sshd.log").open("w") as log:
+            server = subprocess.Popen([SSHD, "-D", "-e", "-f", self.dir / "sshd_config"], stderr=log)
+        self.addCleanup(server.wait)
+        self.addCleanup(server.terminate)
+        for _ in range(100):
+            if "Server listening" in (self.dir / "sshd.log").read_text():
+                break
+            time.sleep(.1)
+
+    def test_the_documents_lines_make_the_same_run(self):
+        (self.dir / "bin").mkdir()
+        small = self.dir / "bin/lgabench"  # the run is smaller than the document's
+        small.write_text(f'#!/bin/sh\n[ "$1" != run ] || set -- "$@" {shlex.join(map(str, RUN[1:]))}\nexec {PROGRAM} "$@"\n')
+        small.chmod(0o755)
+        lines = re.search(r"^## GNU parallel over ssh\n.*?\n\n((?:    .+\n)+)", PAGE.read_text(), re.M | re.S)[1].splitlines()
+        self.assertEqual(len(lines), 3)
+        for line in lines:
+            done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=self.environment, cwd=self.dir,
+                                  timeout=600)
+            self.assertEqual(done.returncode, 0, done.stderr + (self.dir / "sshd.log").read_text())
+        self.assertGreaterEqual((self.dir / "sshd.log").read_text().count("Accepted publickey for "), 8)
+        self.call("run", *RUN, "--out", "undisturbed")
+        self.assert_same_results("whole", "undisturbed")
 
 
 if __name__ == "__main__":
