@@ -23,6 +23,10 @@ class Steps {
     ready_ = std::getline(out_, line) && line == "ready";
   }
   bool ready() const { return ready_; }
+  bool running() {
+    std::error_code gone;
+    return child_.running(gone) && !gone;
+  }
 
   // Processor time of `count` steps; nothing sensible once the child has gone, which `failed` tells.
   double seconds(benchmark::IterationCount count, bool& failed) {
@@ -51,13 +55,13 @@ std::unique_ptr<Steps> start(const std::string& channels, bool text) {
 
 void pytorch(benchmark::State& state, const std::string& name, const std::string& channels, bool text) {
   static std::map<std::string, std::unique_ptr<Steps>> started;
-  const auto [found, first] = started.try_emplace(name);
-  if (first) found->second = start(channels, text);
-  if (!found->second) return state.SkipWithError("skipped: python3 cannot import torch");
-  constexpr benchmark::IterationCount steps = 10;
-  while (state.KeepRunningBatch(steps)) {
+  std::unique_ptr<Steps>& steps = started[name];
+  if (!steps || !steps->running()) steps = start(channels, text);  // a method's process takes all children along
+  if (!steps) return state.SkipWithError("skipped: python3 cannot import torch");
+  constexpr benchmark::IterationCount batch = 10;
+  while (state.KeepRunningBatch(batch)) {
     bool failed = false;
-    state.SetIterationTime(found->second->seconds(steps, failed));
+    state.SetIterationTime(steps->seconds(batch, failed));
     if (failed) stop_at("training_in_pytorch.py ended early");
   }
   state.SetItemsProcessed(state.iterations());
