@@ -23,7 +23,7 @@ Drawing water_bottle() {
 Drawing juice_box() {
   Drawing drawing{{}, {}, {-.008, 0}};
   add_solid(drawing, rectangle(-.034, -.024, .034, .024), {{0, 0}, {.104, 0}, {.108, .004}});
-  // A straw with a bend.
+  // A straw with a bend, whose end reaches .004 beyond the outline.
   const Polygon foot = rectangle(.014, -.004, .022, .004), bend = rectangle(.018, -.004, .026, .004),
                 end = rectangle(.03, -.004, .038, .004);
   drawing.parts.push_back({foot, bend, .106, .135});

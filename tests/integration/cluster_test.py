@@ -228,7 +228,7 @@ class OverSsh(Case):
         small = self.dir / "bin/lgabench"  # the run is smaller than the document's
         small.write_text(f'#!/bin/sh\n[ "$1" != run ] || set -- "$@" {shlex.join(map(str, RUN[1:]))}\nexec {PROGRAM} "$@"\n')
         small.chmod(0o755)
-        lines = re.search(r"^## GNU parallel over ssh\n.*?\n\n((?:    .+\n)+)", PAGE.read_text(), re.M | re.S)[1].splitlines()
+        lines = re.search(r"\n## GNU parallel over ssh\n[^#]*?\n\n((?:    .+\n)+)", PAGE.read_text())[1].splitlines()
         self.assertEqual(len(lines), 3)
         for line in lines:
             done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=self.environment, cwd=self.dir,

@@ -346,6 +346,25 @@ class TornFiles(Faults):
         self.assertEqual(self.results("out"), before)
 
 
+class NoReport(Faults):
+    run_of_class = NO_TRAINING
+
+    def test_the_counts_are_told_all_the_same(self):
+        """The worker draws pictures that no report can be made with."""
+        (self.dir / "bin").mkdir()
+        for part in "lib", "share", "bin/lgabench-method":
+            (self.dir / part).symlink_to(BUILD / part)
+        shutil.copy(BUILD / "bin/lgabench", self.dir / "bin")
+        worker = self.dir / "bin/lgabench-worker"
+        worker.write_text("#!/bin/sh\n[ $1 != pictures ] || exec echo '{\"picture\": 0}'\n"
+                          f'exec "{BUILD}/bin/lgabench-worker" "$@"\n')
+        worker.chmod(0o755)
+        words = [self.dir / "bin/lgabench", *command_line(*NO_TRAINING, "--out", "out")[1:]]
+        done = subprocess.run(words, capture_output=True, text=True, env=self.environment, cwd=self.dir, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertRegex(done.stderr, r"(?s)\n1 cells computed, 0 reused, 0 failed\n.*\nno report: ")
+
+
 class SharedCache(Faults):
     def test_two_runs_fill_it_at_once(self):
         runs = [self.start(*RUN, "--jobs", "2", "--out", out) for out in ("a", "b")]

@@ -5,7 +5,6 @@ The suite is a tiny one of the test's own, in a copy of the installed data. By h
 import hashlib
 import json
 import os
-import pathlib
 import re
 import shutil
 import tarfile
@@ -13,6 +12,7 @@ import time
 import unittest
 
 from case import BUILD, ENGINE, FIXTURES, Case
+from published_test import cheapest_first, replay_one_cell
 from verify_test import canonical, rewrite
 
 SUITE = {"id": "tiny", "environment": "tabletop", "scenarios": ["heart", "letter"], "layouts": ["cells"],
@@ -316,14 +316,13 @@ class Replays(Board):
         self.assertIn("1 entries, 0 problems", self.leaderboard("check").stdout)
         return done.stdout
 
-    def forge(self, share):
-        """Success in that share of the cells, in all episodes."""
+    def forge(self, change):
+        """Changes each cell's line."""
         lines = [json.loads(line) for line in (self.entry / "cells.jsonl").read_text().splitlines()]
-        for line in lines[:round(share * len(lines))]:
-            self.assertNotIn("failed", line)
-            line["outcomes"] = {"test": "...."}
-            line["digest"] = "0" * 64
-        (self.entry / "cells.jsonl").write_text("".join(map(canonical, lines)))
+        (self.entry / "cells.jsonl").write_text("".join(canonical({**line, **change(line)}) for line in lines))
+
+    def forge_success(self):
+        self.forge(lambda line: {"outcomes": {"test": "...."}, "digest": "0" * 64})
 
     def tier(self):
         return (self.dir / "board/README.md").read_text().split("| fixture_constant |")[1].split("|")[1].strip()
@@ -339,7 +338,7 @@ class Replays(Board):
 
     def test_a_made_up_cell_is_found_and_not_outvoted(self):
         honest = (self.entry / "cells.jsonl").read_bytes()
-        self.forge(1)
+        self.forge_success()
         # Of the honest cells the nonce chooses others; the same five in their order once in 6,720 times.
         self.assertIn("DIFFERS", self.verify("--cells", "5", expect=1))
         self.assertEqual(self.tier(), "recomputed; a replay differed")
@@ -347,10 +346,23 @@ class Replays(Board):
         (self.entry / "cells.jsonl").write_bytes(honest)
         self.assertIn("expected the cells that the nonce chooses", self.leaderboard("check", expect=1).stderr)
 
+    def test_one_replayed_cell_finds_what_was_changed_in_all(self):
+        """As ./test --full replays the published board; an honest digest does not hide what else was changed."""
+        shutil.copytree(self.dir / "board", self.dir / "honest")
+        opposite = lambda line: {"test": re.sub(".", lambda one: "a" if one[0] == "." else ".", line["outcomes"]["test"])}
+        for change, says in [(lambda line: {}, "agrees "), (lambda line: {"outcomes": opposite(line)}, "DIFFERS"),
+                             (lambda line: {"lm_queries": 1.0}, "DIFFERS"), (lambda line: {"scenes": "0" * 64}, "DIFFERS"),
+                             (lambda line: {"digest": "0" * 64}, "DIFFERS")]:
+            shutil.rmtree(self.dir / "board")
+            shutil.copytree(self.dir / "honest", self.dir / "board")
+            self.forge(change)
+            places = cheapest_first(self.dir / "board")["fixture_constant"]
+            self.assertRegex(replay_one_cell(self, places, *PLUGIN), f"^{says}")
+
     def test_scenes_learned_by_heart_differ_from_fresh_ones(self):
         self.assertRegex(self.verify("--fresh"), r"^agrees .*: [+-]0.\d+ \[-.*\] on fresh scenes")
         (self.entry / "verifications.jsonl").unlink()
-        self.forge(1)
+        self.forge_success()
         self.assertIn("DIFFERS", self.verify("--fresh", expect=1))
         self.assertIn("differs on fresh scenes", (self.dir / "board/leaderboard.csv").read_text())
 
@@ -370,45 +382,6 @@ class Replays(Board):
         self.assertRegex(done.stderr, r"not verified: entries/a_stranger/\S+: .*\n(.*\n)*1 of 2 entries were not verified")
         self.assertRegex(done.stdout, r"^agrees  entries/fixture_constant/")
         self.assertTrue((self.entry / "verifications.jsonl").exists())
-
-
-class Versions(Case):
-    """A version of a method promises its actions: entries of one version, by two builds, are one entry."""
-    golden = pathlib.Path(__file__).parent / "golden/versions.json"
-
-    def test_a_shipped_methods_actions_change_with_its_version_alone(self):
-        self.call("run", "q1", "--engines", "kinematic", "--scenarios", "heart,sweep_block_without_touching_pan", "--demos", "6",
-                  "--seeds", "0", "--episodes", "12", "--set", "*.epochs=30", "--no-reference", "--out", "run")
-        found = {}
-        for key, (cell, status) in self.cells("run").items():
-            self.assertEqual(status["state"], "ok")
-            episodes = (self.dir / "run/cells" / key / "episodes.jsonl").read_text().splitlines()
-            # To a centimetre: last bits are the processor's.
-            actions = [[round(x, 2) for x in json.loads(line)["action"][:2]] for line in episodes]
-            found.setdefault(cell["method"]["id"], {"version": cell["method"]["version"]})[cell["scenario"]["id"]] = actions
-        if os.environ.get("LGABENCH_WRITE_GOLDEN"):
-            self.golden.parent.mkdir(exist_ok=True)
-            self.golden.write_text(json.dumps(found, sort_keys=True) + "\n")
-        promised = json.loads(self.golden.read_text())
-        self.assertEqual(sorted(found), sorted(promised))
-        for method, now in found.items():
-            if now["version"] != promised[method]["version"]:
-                self.fail(f"{method}: version {now['version']}: LGABENCH_WRITE_GOLDEN=1 writes what it promises")
-            for scenario in set(now) - {"version"}:
-                for one, other in zip(now[scenario], promised[method][scenario]):
-                    for x, y in zip(one, other):
-                        self.assertAlmostEqual(x, y, delta=.021, msg=f"{method} acts otherwise in {scenario}, and is still "
-                                               f"version {now['version']}: give it a new one")
-
-
-class Published(Case):
-    """The repository's own board, and the tables of it in docs/results.md, as continuous integration checks them."""
-
-    def test_it_is_what_its_entries_make(self):
-        source = pathlib.Path(__file__).parents[2]
-        done = self.call("leaderboard", "check", "--board", source / "results/leaderboard",
-                         "--documents", source / "docs/results.md")
-        self.assertRegex(done.stdout, r"^\d+ entries, 0 problems\n$")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 run_test.py BadInput
 """
 import base64
+import ctypes
 import hashlib
 import json
 import os
@@ -209,6 +210,19 @@ class Unloadable(Case):
         self.assertEqual(sorted(status["state"] for _, status in self.cells("out").values()), ["failed", "ok"])
 
 
+def times_opened(files, action):
+    """How often the action opens each of the files."""
+    libc, opens, closes = ctypes.CDLL(None), 0x20, 0x10  # IN_OPEN, IN_CLOSE_NOWRITE: equal events in a row count once
+    watcher = libc.inotify_init1(os.O_NONBLOCK)
+    watched = {libc.inotify_add_watch(watcher, os.fsencode(file), opens | closes): file for file in files}
+    action()
+    times = dict.fromkeys(files, 0)
+    for watch, mask, _, _ in struct.iter_unpack("iIII", os.read(watcher, 1 << 20)):
+        times[watched[watch]] += mask == opens
+    os.close(watcher)
+    return times
+
+
 class Shards(Case):
     RUN = ["run", "q1", "--scenarios", "heart,letter", "--methods",
            "fixture_constant,fixture_faulty+where=learn+how=throw", "--demos", "10,20", "--seeds", "0", "--episodes", "2", "--plugin-path", FIXTURES / "good",
@@ -314,6 +328,15 @@ class Shards(Case):
         self.assertEqual(run["settings"], {"gcbc_seg": {"epochs": 1}} | json.loads(
             (self.dir / "first/run.json").read_text())["settings"])
         self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")
+
+    def test_each_file_is_read_once_to_judge_it_and_once_to_copy_it(self):
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--episodes", "2", "--plugin-path", FIXTURES / "good",
+               "--methods", "fixture_constant", "--no-reference"]
+        for seed in "01":
+            self.call(*one, "--seeds", seed, "--out", seed)
+        statuses = [file for run in "01" for file in (self.dir / run / "cells").glob("*/status.json")]
+        times = times_opened(statuses, lambda: self.call("merge", "both", "0", "1"))
+        self.assertEqual(list(times.values()), [2, 2])
 
     def test_two_rows_of_one_name_are_refused(self):
         """Each is alone of its method in its run, and so named by the method."""

@@ -101,6 +101,21 @@ class StudyServer(StudyCase):
         with self.assertRaises(OSError):  # another address of this machine
             socket.create_connection(("127.0.0.2", self.server.port), timeout=2)
 
+    def test_a_browser_leaves_port_80_out(self):
+        with socket.socket() as free:
+            free.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                free.bind(("127.0.0.1", 80))
+            except OSError as e:
+                self.skipTest(f"port 80: {e}")
+        self.server.kill()
+        self.server.port = 80
+        self.server.start()
+        for host, status in (("localhost", 200), ("127.0.0.1:80", 200), ("study.example", 421)):
+            self.assertEqual(self.server.ask("GET", "/", headers={"Host": host})[0], status, host)
+        answer = self.server.ask("POST", "/begin", {"key": "0" * 32}, headers={"Host": "localhost", "Origin": "http://localhost"})
+        self.assertEqual(answer[0], 400, "its own Origin: only consent is missing")
+
     def test_bodies_and_ids_are_checked(self):
         person = Person(self.server)
         at = f"/p/{person.id}/events"

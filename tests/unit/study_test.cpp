@@ -146,10 +146,12 @@ TEST_F(StudyDirectory, WhoWithdrawsLeavesASlotAndNothingElse) {
                  [](unsigned char c) { return c == '-' ? ' ' : std::tolower(c); });
   write_report(data);
   EXPECT_TRUE(holds("p01,"));
+  EXPECT_TRUE(fs::exists(data / "figures") && fs::exists(data / "tables"));
   EXPECT_TRUE(study->withdraw(typed));
   EXPECT_FALSE(holds(id));
   EXPECT_FALSE(holds("p01,")) << "a report's lines";
-  EXPECT_FALSE(fs::exists(data / "report.html"));
+  for (const char* made : {"trials.csv", "results.json", "report.md", "report.html", "figures", "tables"})
+    EXPECT_FALSE(fs::exists(data / made)) << made << " has numbers that they are part of";
   EXPECT_FALSE(fs::exists(data / "participants/p01.json"));
   EXPECT_TRUE(fs::exists(data / "participants/p02.json"));
   Page page;

@@ -62,7 +62,7 @@ int run(const RunArguments& a) {
   std::string no_report;
   try {
     if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
-  } catch (const InputError& e) {  // a full disk, or nothing left to report: the counts are told all the same
+  } catch (const std::exception& e) {  // a full disk, or a damaged run: the counts are told all the same
     no_report = e.what();
   }
   print_counts(outcome, plan);

@@ -10,6 +10,7 @@
 #include <array>
 #include <chrono>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -114,11 +115,13 @@ Json united(Json all, const Part& first, const Part& more) {
   return all;
 }
 
+Cell cell_of(const fs::path& directory) {
+  const fs::path file = directory / "cell.json";
+  return read_cell(read_json(file, Links::refused), file.string());
+}
+
 // What status.json says of a cell that the run's own programs computed.
-Json build_of(const Part& part, const std::string& key) {
-  const fs::path file = part.cell(key) / "cell.json";
-  const Json json = read_json(file, Links::refused);
-  const Cell cell = read_cell(json, file.string());
+Json build_of(const Part& part, const Cell& cell) {
   Json build = part.json().at("build");
   const auto plugin = [&](const std::string& kind, const std::string& id) {
     const auto found = part.programs().find(kind + " " + id);
@@ -129,16 +132,23 @@ Json build_of(const Part& part, const std::string& key) {
   return build;
 }
 
-CellState state_of(const Part& part, const std::string& key) {
-  const fs::path cell = part.cell(key);
-  if (!fs::exists(cell)) return {};
+// A part's cell, by its files.
+struct Candidate {
+  fs::path directory;
+  Cell cell;  // of a state that is complete or failed
+  CellState state;
+};
+
+Candidate candidate(const Part& part, const std::string& key) {
+  Candidate found{part.cell(key), {}, {}};
+  if (!fs::exists(found.directory)) return found;
   try {
-    return cell_state(cell, key, build_of(part, key));
+    found.cell = cell_of(found.directory);
+    found.state = cell_state(found.directory, key, build_of(part, found.cell));
   } catch (const InputError& e) {
-    CellState damaged;
-    damaged.why = e.what();
-    return damaged;
+    found.state.why = e.what();
   }
+  return found;
 }
 
 void expect_same_results(const fs::path& one, const fs::path& other) {
@@ -148,77 +158,59 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
           fmt::format("{} and {}: other results of one cell: {} differs", one.string(), other.string(), file));
 }
 
-// The cell's directory to take: a finished one, else a failed one, else none.
-fs::path best(const std::vector<Part>& parts, const std::string& key, MergeOutcome& outcome) {
-  fs::path finished, failed;
+// The cell to take: a finished one, else a failed one, else none.
+std::optional<Candidate> best(const std::vector<Part>& parts, const std::string& key, MergeOutcome& outcome) {
+  std::optional<Candidate> finished, failed;
   for (const Part& part : parts) {
-    const CellState state = state_of(part, key);
-    if (state.complete) {
-      if (!finished.empty()) expect_same_results(finished, part.cell(key));
-      if (finished.empty()) finished = part.cell(key);
-    } else if (state.failed) {
-      if (failed.empty()) failed = part.cell(key);
-    } else if (!state.why.empty()) {
-      to_stderr("{}: {}; left out\n", part.cell(key).string(), state.why);
+    Candidate here = candidate(part, key);
+    if (here.state.complete) {
+      if (finished)
+        expect_same_results(finished->directory, here.directory);
+      else
+        finished = std::move(here);
+    } else if (here.state.failed) {
+      if (!failed) failed = std::move(here);
+    } else if (!here.state.why.empty()) {
+      to_stderr("{}: {}; left out\n", here.directory.string(), here.state.why);
     }
   }
-  if (!finished.empty()) {
-    ++outcome.finished;
-    return finished;
-  }
-  if (failed.empty())
-    ++outcome.missing;
-  else
-    ++outcome.failed;
-  return failed;
+  ++(finished ? outcome.finished : failed ? outcome.failed : outcome.missing);
+  return finished ? finished : failed;
 }
 
-// Runs name their rows apart: two that a run has alone of their method have its id, whatever their options.
-void expect_one_of_each(const std::map<std::string, fs::path>& chosen, const Json& settings) {
-  const auto read = [](const fs::path& directory) {
-    const fs::path file = directory / "cell.json";
-    return read_cell(read_json(file, Links::refused), file.string());
+// Runs name their rows apart: two that a run has alone of their method have its id, whatever their options. `measured`:
+// the cells before this one, by kind and title.
+void expect_one_of_each(const Candidate& here, const Json& settings, std::map<std::string, fs::path>& measured) {
+  const Cell& cell = here.cell;
+  const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), here.directory);
+  if (is_new) return;
+  const Json one = to_json(cell_of(before->second)), other = to_json(cell);
+  const auto differing = [](const Json& a, const Json& b) {
+    std::vector<std::string> members;
+    for (const auto& [member, value] : b.items())
+      if (!a.is_object() || a.value(member, Json()) != value) members.push_back(member);
+    return members;
   };
-  std::map<std::string, fs::path> measured;  // by kind and title
-  for (const auto& item : chosen) {
-    const Cell cell = read(item.second);
-    const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), item.second);
-    if (is_new) continue;
-    const Json there = to_json(read(before->second)), here = to_json(cell);
-    const auto differing = [](const Json& a, const Json& b) {
-      std::vector<std::string> members;
-      for (const auto& [member, value] : b.items())
-        if (!a.is_object() || a.value(member, Json()) != value) members.push_back(member);
-      return members;
-    };
-    const std::vector<std::string> options = differing(there["method"]["options"], cell.method.options);
-    std::string say = fmt::format("{} and {} both are {}, and differ in {}", before->second.string(),
-                                  item.second.string(), cell.title(), fmt::join(differing(there, here), ", "));
-    if (!options.empty())
-      say += fmt::format(
-          " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
-          "--methods {}, whose names tell them apart",
-          fmt::join(options, ", "), fmt::join(JsonReader(settings, "run.json: /request").at("methods").strings(), ","));
-    throw InputError(say);
-  }
+  const std::vector<std::string> options = differing(one["method"]["options"], cell.method.options);
+  std::string say = fmt::format("{} and {} both are {}, and differ in {}", before->second.string(),
+                                here.directory.string(), cell.title(), fmt::join(differing(one, other), ", "));
+  if (!options.empty())
+    say += fmt::format(
+        " ({}): a row that a run has alone of its method is named by the method; give these rows to one run, "
+        "--methods {}, whose names tell them apart",
+        fmt::join(options, ", "), fmt::join(JsonReader(settings, "run.json: /request").at("methods").strings(), ","));
+  throw InputError(say);
 }
 
 // What a method in Python is made of beside its file (interpreter, packages, modules) stands with its cells alone.
-void expect_one_python(const std::map<std::string, fs::path>& chosen) {
-  std::map<std::string, std::pair<std::string, fs::path>> known;  // by method: what, and where
-  for (const auto& item : chosen) {
-    const fs::path file = item.second / "status.json", cell_file = item.second / "cell.json";
-    const Json status = read_json(file, Links::refused);
-    const JsonReader reader(status, file.string());
-    if (reader.at("state").string() != "ok" || !reader.at("build").has("python")) continue;
-    const std::string python = reader.at("build").at("python").string();
-    const Cell cell = read_cell(read_json(cell_file, Links::refused), cell_file.string());
-    const auto [first, is_new] = known.try_emplace(cell.method.id, python, item.second);
-    if (!is_new && first->second.first != python)
-      throw InputError(
-          fmt::format("{} and {}: other builds of method {}: their interpreter, packages or modules differ",
-                      first->second.second.string(), item.second.string(), cell.method.id));
-  }
+// `known`: of the cells before this one, by method, and where.
+void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Json, fs::path>>& known) {
+  if (!here.state.build.contains("python")) return;
+  const std::string& method = here.cell.method.id;
+  const auto& [python, first] = known.try_emplace(method, here.state.build.at("python"), here.directory).first->second;
+  if (python != here.state.build.at("python"))
+    throw InputError(fmt::format("{} and {}: other builds of method {}: their interpreter, packages or modules differ",
+                                 first.string(), here.directory.string(), method));
 }
 
 bool asks_live(const Part& part) {
@@ -290,12 +282,17 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   }
   Json all = parts.front().json();
   for (const Part& part : parts) all = united(std::move(all), parts.front(), part);
+  const bool of_several_runs = all.at("cells") != parts.front().json().at("cells");
   MergeOutcome outcome;
-  std::map<std::string, fs::path> chosen;
-  for (const std::string& key : all.at("cells").get<std::vector<std::string>>())
-    if (const fs::path from = best(parts, key, outcome); !from.empty()) chosen[key] = from;
-  expect_one_python(chosen);
-  if (all.at("cells") != parts.front().json().at("cells")) expect_one_of_each(chosen, all.at("request"));
+  std::map<std::string, fs::path> chosen, measured;
+  std::map<std::string, std::pair<Json, fs::path>> pythons;
+  for (const std::string& key : all.at("cells").get<std::vector<std::string>>()) {
+    const std::optional<Candidate> from = best(parts, key, outcome);
+    if (!from) continue;
+    expect_one_python(*from, pythons);
+    if (of_several_runs) expect_one_of_each(*from, all.at("request"), measured);
+    chosen[key] = from->directory;
+  }
 
   const Part& replies = with_all_replies(parts);
   const Json answers = replies.json().value("answers", Json());

@@ -87,6 +87,7 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
         state.why = fmt::format("computed by another build ({} differs)", file.key());
         return state;
       }
+    state.build = there;
     state.complete = true;
   } catch (const InputError& e) {
     state.why = e.what();

@@ -22,6 +22,7 @@ constexpr std::array<const char*, 4> result_files{"cell.json", "selection.json",
 struct CellState {
   bool complete = false, failed = false, other_build = false;
   std::string why;
+  Json build;  // what computed a complete cell, as its status.json says
 };
 /// State of the cell `key` in `directory`, read from its files alone.
 CellState cell_state(const fs::path& directory, const std::string& key, const Json& build);

@@ -77,6 +77,14 @@ int other_outcomes(const PlayedCell& there, const PlayedCell& here) {
   return flips;
 }
 
+// What a cell's line says of its results: a digest of the files alone would vouch for outcomes that are not theirs.
+Json results_of(const PlayedCell& cell) {
+  Json json = to_json(cell);
+  for (const char* other : {"key", "learn_s", "total_s"}) json.erase(other);
+  if (!cell.failed.empty()) json["failed"] = true;  // its words may name a process
+  return json;
+}
+
 // Recorded cells beside the same ones now: how many agree to the bit, and how many episodes ended otherwise.
 Json compared(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
               const std::string& processor) {
@@ -85,7 +93,7 @@ Json compared(const Entry& entry, const std::vector<std::size_t>& chosen, const 
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const PlayedCell& before = entry.cells[chosen[i]];
     keys.push_back(before.key);
-    identical += before.digest == now[i].digest && before.failed.empty() == now[i].failed.empty();
+    identical += results_of(before) == results_of(now[i]);
     flips += other_outcomes(before, now[i]);
     episodes += before.episodes();
   }

@@ -95,7 +95,10 @@ struct Server::Impl {
     if (port <= 0)
       throw InputError(
           fmt::format("{}:{}: cannot be listened on: is another program there?", where.address, where.port));
-    for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) hosts.push_back(fmt::format("{}:{}", own, port));
+    for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
+      hosts.push_back(fmt::format("{}:{}", own, port));
+      if (port == 80) hosts.emplace_back(own);  // a browser leaves HTTP's own port out
+    }
     if (!where.host.empty()) hosts.push_back(where.host);
   }
 

@@ -42,10 +42,11 @@ fs::path export_of(const fs::path& directory, int slot) {
   return directory / "participants" / (pseudonym(slot) + ".json");
 }
 
-// Deletes what is of one person: their export, what a report says of them (study report makes it anew) and, last, as a
-// restart finds them by these, their events.
+// Deletes what is of one person: their export, a report, whose numbers they are part of (study report makes it anew)
+// and, last, as a restart finds them by these, their events.
 void forget(const fs::path& directory, const std::string& id, int slot) {
-  for (const char* said : {"trials.csv", "report.md", "report.html"}) fs::remove(directory / said);
+  for (const char* made : {"trials.csv", "results.json", "report.md", "report.html", "figures", "tables"})
+    fs::remove_all(directory / made);
   fs::remove(export_of(directory, slot));
   fs::remove(events_of(directory, id));
 }

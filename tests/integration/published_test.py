@@ -1,0 +1,88 @@
+"""What this repository publishes: the versions of its methods, and its own leaderboard.
+
+By hand: LGABENCH_FULL=1 python3 published_test.py Published
+"""
+import json
+import os
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import unittest
+
+from case import Case, command_line
+
+SOURCE = pathlib.Path(__file__).parents[2]
+BOARD = SOURCE / "results/leaderboard"
+
+
+def cheapest_first(board):
+    """method -> its entries that were not withdrawn, relative to the board, by the mean seconds of a cell."""
+    entries = {}
+    for file in sorted(board.glob("entries/*/*/*/cells.jsonl")):
+        if "withdrawn" not in json.loads((file.parent / "entry.json").read_text()):
+            seconds = statistics.mean(json.loads(line)["total_s"] for line in file.read_text().splitlines())
+            entries.setdefault(file.parts[-4], []).append((seconds, file.parent.relative_to(board)))
+    return {method: [place for _, place in sorted(places)] for method, places in entries.items()}
+
+
+def replay_one_cell(case, places, *words):
+    """What `leaderboard verify` says of the first entry of the board in `case.dir` that this build can play."""
+    for place in places:
+        done = subprocess.run(command_line("leaderboard", "verify", place, "--board", "board", "--cells", "1", "--by", "a test", *words),
+                              capture_output=True, text=True, env=case.environment, cwd=case.dir, timeout=1200)
+        if not re.search("not verified: .*: (version of |no (method|engine) )", done.stderr):  # older, or a stranger's
+            return done.stdout or done.stderr
+    raise unittest.SkipTest(done.stderr)
+
+
+class Versions(Case):
+    """A version of a method promises its actions: entries of one version, by two builds, are one entry."""
+    golden = pathlib.Path(__file__).parent / "golden/versions.json"
+
+    def test_a_shipped_methods_actions_change_with_its_version_alone(self):
+        self.call("run", "q1", "--engines", "kinematic", "--scenarios", "heart,sweep_block_without_touching_pan", "--demos", "6",
+                  "--seeds", "0", "--episodes", "12", "--set", "*.epochs=30", "--no-reference", "--out", "run")
+        found = {}
+        for key, (cell, status) in self.cells("run").items():
+            self.assertEqual(status["state"], "ok")
+            episodes = (self.dir / "run/cells" / key / "episodes.jsonl").read_text().splitlines()
+            # To a centimetre: last bits are the processor's.
+            actions = [[round(x, 2) for x in json.loads(line)["action"][:2]] for line in episodes]
+            found.setdefault(cell["method"]["id"], {"version": cell["method"]["version"]})[cell["scenario"]["id"]] = actions
+        if os.environ.get("LGABENCH_WRITE_GOLDEN"):
+            self.golden.parent.mkdir(exist_ok=True)
+            self.golden.write_text(json.dumps(found, sort_keys=True) + "\n")
+        promised = json.loads(self.golden.read_text())
+        self.assertEqual(sorted(found), sorted(promised))
+        for method, now in found.items():
+            if now["version"] != promised[method]["version"]:
+                self.fail(f"{method}: version {now['version']}: LGABENCH_WRITE_GOLDEN=1 writes what it promises")
+            for scenario in set(now) - {"version"}:
+                for one, other in zip(now[scenario], promised[method][scenario]):
+                    for x, y in zip(one, other):
+                        self.assertAlmostEqual(x, y, delta=.021, msg=f"{method} acts otherwise in {scenario}, and is still "
+                                               f"version {now['version']}: give it a new one")
+
+
+class Published(Case):
+    """The repository's own board, and the tables of it in docs/results.md, as continuous integration checks them."""
+
+    def test_it_is_what_its_entries_make(self):
+        done = self.call("leaderboard", "check", "--board", BOARD, "--documents", SOURCE / "docs/results.md")
+        self.assertRegex(done.stdout, r"^\d+ entries, 0 problems\n$")
+
+    @unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
+    def test_a_cell_of_each_method_is_what_this_build_plays(self):
+        shutil.copytree(BOARD, self.dir / "board")  # into which each replay is written
+        entries = cheapest_first(self.dir / "board")
+        if not entries:
+            self.skipTest("the board has no entry")
+        for method, places in entries.items():
+            with self.subTest(method):
+                self.assertRegex(replay_one_cell(self, places), "^agrees ")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
