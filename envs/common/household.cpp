@@ -250,7 +250,7 @@ Drawing sponge() {
   Drawing drawing;
   const double half = .036, low = .016, high = .032;
   add_solid(drawing, rectangle(-.058, -half, .058, half), {{0, 0}, {low, 0}});
-  const auto strip = [&](double left, double right, std::vector<double> pores) {
+  const auto strip = [&](double left, double right, const std::vector<double>& pores) {
     double from = -half;
     for (const double pore : pores) {
       drawing.parts.push_back(prism(rectangle(left, from, right, pore), low, high));
