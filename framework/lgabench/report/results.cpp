@@ -104,7 +104,7 @@ void expect_selection(const JsonReader& selection) {
 void expect_quality(const JsonReader& quality) {
   if (!quality.has("target") || quality.at("target").json().is_null()) quality.fail("the quality of the target");
   for (const auto& item : quality.json().items()) {
-    const std::string about = item.key();
+    const std::string& about = item.key();
     if (item.value().is_null()) continue;  // a second set, in runs of 0.1
     for (const char* group : {"object_types", "textures"})
       for (const char* number : {"precision", "recall", "size", "true_size"})
