@@ -210,7 +210,7 @@ class Submissions(Board):
         ids = [path.name for path in (self.dir / "board/entries/fixture_constant").iterdir()]
         self.leaderboard("withdraw", ids[0], "--reason", "a mistake in its training")
         self.leaderboard("build")
-        self.assertIn("1 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
         self.assertNotIn("| 1 |", (self.dir / "board/README.md").read_text())
         self.assertIn("was withdrawn before", self.leaderboard("withdraw", ids[0], "--reason", "again", expect=2).stderr)
         self.change_run(started="2030-01-01T00:00:00Z")
@@ -313,7 +313,7 @@ class Replays(Board):
     def verify(self, *words, expect=0):
         done = self.leaderboard("verify", "--by", "B. Reader", *PLUGIN, *words, expect=expect)
         self.leaderboard("build")
-        self.assertIn("1 entries, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
         return done.stdout
 
     def forge(self, change):

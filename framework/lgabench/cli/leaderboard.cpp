@@ -106,7 +106,8 @@ int withdraw(const Arguments& a) {
 int check(const Arguments& a) {
   const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
   for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
-  to_stdout("{} entries, {} problems\n", checked.entries, checked.problems.size());
+  to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
+            checked.problems.size() == 1 ? "" : "s");
   return print_all(checked.problems, "");
 }
 
