@@ -180,7 +180,7 @@ class PythonMethods(Case):
 
     def test_a_module_that_changes_in_the_middle_of_a_run_is_refused(self):
         self.call(*with_options(RUN, "--seeds", "0:2"), "--unconfined", "--jobs", "1", "--methods",
-                  "mine.py:Mine+how=rewrite", "--out", "out", expect=3)
+                  "mine.py:Mine+how=rewrite", "--out", "out", expect=4)
         states = {status["state"]: status for _, status in self.cells("out").values()}
         self.assertEqual(set(states), {"ok", "failed"})
         self.assertIn("helper.py: changed since the run began", states["failed"]["reason"])
