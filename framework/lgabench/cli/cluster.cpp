@@ -10,6 +10,7 @@
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/run_directory.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -59,8 +60,7 @@ Costs costs_of(const fs::path& run) {
     const fs::path cell = run / "cells" / name;
     if (!fs::exists(cell / "timing.json")) continue;
     const Json timing = read_json(cell / "timing.json", Links::refused);
-    costs.learn(read_cell(read_json(cell / "cell.json", Links::refused), (cell / "cell.json").string()),
-                JsonReader(timing, (cell / "timing.json").string()).at("total_s").number());
+    costs.learn(recorded_cell(cell), JsonReader(timing, (cell / "timing.json").string()).at("total_s").number());
   }
   return costs;
 }

@@ -19,6 +19,7 @@
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/report/agreement.hpp>
@@ -69,7 +70,7 @@ Inventory take_stock(const fs::path& run, const Json& record) {
     try {
       if (!state.complete) throw InputError(state.why);
       Recorded cell{directory, {}, read_json(directory / "status.json", Links::refused)};
-      cell.cell = read_cell(read_json(directory / "cell.json", Links::refused), (directory / "cell.json").string());
+      cell.cell = recorded_cell(directory);
       inventory.cells.push_back(std::move(cell));
     } catch (const InputError& e) {
       inventory.edited.emplace_back(e.what());

@@ -115,11 +115,6 @@ Json united(Json all, const Part& first, const Part& more) {
   return all;
 }
 
-Cell cell_of(const fs::path& directory) {
-  const fs::path file = directory / "cell.json";
-  return read_cell(read_json(file, Links::refused), file.string());
-}
-
 // What status.json says of a cell that the run's own programs computed.
 Json build_of(const Part& part, const Cell& cell) {
   Json build = part.json().at("build");
@@ -143,7 +138,7 @@ Candidate candidate(const Part& part, const std::string& key) {
   Candidate found{part.cell(key), {}, {}};
   if (!fs::exists(found.directory)) return found;
   try {
-    found.cell = cell_of(found.directory);
+    found.cell = recorded_cell(found.directory);
     found.state = cell_state(found.directory, key, build_of(part, found.cell));
   } catch (const InputError& e) {
     found.state.why = e.what();
@@ -184,7 +179,7 @@ void expect_one_of_each(const Candidate& here, const Json& settings, std::map<st
   const Cell& cell = here.cell;
   const auto [before, is_new] = measured.try_emplace(cell.method.kind + " " + cell.title(), here.directory);
   if (is_new) return;
-  const Json one = to_json(cell_of(before->second)), other = to_json(cell);
+  const Json one = to_json(recorded_cell(before->second)), other = to_json(cell);
   const auto differing = [](const Json& a, const Json& b) {
     std::vector<std::string> members;
     for (const auto& [member, value] : b.items())

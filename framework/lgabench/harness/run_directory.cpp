@@ -43,6 +43,11 @@ bool other_programs(const Json& there, const Json& wanted) {
 
 }  // namespace
 
+Cell recorded_cell(const fs::path& directory) {
+  const fs::path file = directory / "cell.json";
+  return read_cell(read_json(file, Links::refused), file.string());
+}
+
 std::string difference(const Json& there, const Json& wanted) {
   Json before = there.value("request", Json::object());
   const Json now = wanted.value("request", Json::object());

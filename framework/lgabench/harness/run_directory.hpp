@@ -27,6 +27,10 @@ struct CellState {
 /// State of the cell `key` in `directory`, read from its files alone.
 CellState cell_state(const fs::path& directory, const std::string& key, const Json& build);
 
+/// The cell that cell.json in `directory` describes. No link is followed.
+/// @throws InputError if it is not there, or not a cell.
+Cell recorded_cell(const fs::path& directory);
+
 /// Which setting of two run.json differs first; data and versions may differ where no setting does.
 std::string difference(const Json& there, const Json& wanted);
 

@@ -11,6 +11,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/answers.hpp>
+#include <lgabench/harness/run_directory.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 
 namespace lgabench::leaderboard {
@@ -54,8 +55,7 @@ Rows rows_of(const RunResults& run, const std::vector<std::string>& wanted) {
   for (const CellResult& result : run.cells) {
     names.insert(result.method);
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), result.method) == wanted.end()) continue;
-    const fs::path file = run.directory / "cells" / result.key / "cell.json";
-    Found found{&result, read_cell(read_json(file, Links::refused), file.string())};
+    Found found{&result, recorded_cell(run.directory / "cells" / result.key)};
     const Place place{result.scenario, result.layout, result.demonstrations, found.cell.training_seed};
     rows[{result.method, result.engine}][place] = std::move(found);
   }
