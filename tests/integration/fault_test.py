@@ -363,6 +363,10 @@ class NoReport(Faults):
         done = subprocess.run(words, capture_output=True, text=True, env=self.environment, cwd=self.dir, timeout=60)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, r"(?s)\n1 cells computed, 0 reused, 0 failed\n.*\nno report: ")
+        done = subprocess.run([words[0], "merge", "merged", "out"], capture_output=True, text=True, env=self.environment,
+                              cwd=self.dir, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("1 cells finished, 0 failed, 0 in none of the runs\n", done.stderr)
 
 
 class SharedCache(Faults):

@@ -159,7 +159,9 @@ TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
   EXPECT_EQ(all(checked.problems), "");
   EXPECT_EQ(checked.entries, 200u);
   RecordProperty("check_seconds", std::to_string(seconds));
+#if !defined(__SANITIZE_ADDRESS__)
   EXPECT_LT(seconds, 10);
+#endif
   for (const auto& file : fs::directory_iterator(board))
     if (file.is_regular_file()) {
       EXPECT_LT(fs::file_size(file.path()), 3'000'000u) << file.path();

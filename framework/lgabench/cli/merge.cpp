@@ -33,7 +33,6 @@ void add_merge(CLI::App& app, int& exit) {
       "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method");
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, joined(command_line()));
-    if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);
     to_stderr("{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
               outcome.missing);
     if (outcome.failed + outcome.missing > 0)
@@ -41,6 +40,7 @@ void add_merge(CLI::App& app, int& exit) {
           "Shards: the command of one of them, with --out {} and without --shard, computes the rest. Other runs: "
           "resume each, and merge again.\n",
           options->out.string());
+    if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);  // last: it may throw
     exit = outcome.failed ? cells_failed : ok;
   });
 }

@@ -109,7 +109,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
     for (const auto& part : {s.precision, s.recall}) row.cells.emplace_back(Span::number(part ? fixed(*part) : "–"));
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
-      row.cells.emplace_back(Span::number(amount(value)));
+      row.cells.emplace_back(Span::number(reference ? "–" : amount(value)));
     row.cells.emplace_back(tier_and_marks(s));
     grid.rows.push_back(std::move(row));
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <boost/dll/import.hpp>
+#include <boost/dll/runtime_symbol_info.hpp>
 #include <cstdlib>
 
 #include <lgabench/core/files.hpp>
@@ -15,9 +16,10 @@ namespace {
 
 decltype(&make_sentence_encoder) load_encoder() {
 #if defined(LGABENCH_ENCODER_LIBRARY)
-  // Never unloaded, since LibTorch in a process cannot be; found by this library's run path.
+  // Never unloaded, since LibTorch in a process cannot be. By its path: AddressSanitizer calls dlopen in this library's
+  // stead, and then this library's run path does not count.
   static const auto& library = *new boost::dll::shared_library(
-      LGABENCH_ENCODER_LIBRARY, boost::dll::load_mode::search_system_folders | boost::dll::load_mode::rtld_local);
+      boost::dll::this_line_location().parent_path() / LGABENCH_ENCODER_LIBRARY, boost::dll::load_mode::rtld_local);
   return library.get_alias<decltype(make_sentence_encoder)>("sentence_encoder");
 #else
   throw InputError("the sentence encoder needs LibTorch, which this lgabench was built without (LGABENCH_TORCH=OFF)");
