@@ -94,7 +94,7 @@ TEST(Board, DocumentsHaveTheTablesOfReadme) {
   EXPECT_SAYS(text, table);
   build(board, {document});
   EXPECT_EQ(read_file(document), text) << "built twice";
-  for (const std::string& broken : {before, after, before + before + after}) {
+  for (const std::string& broken : {before, after, fmt::format("{0}{0}{1}", before, after)}) {
     write_file(document, broken);
     EXPECT_SAYS(problems(), "results.md: expected <!-- ");
     EXPECT_THROW(build(board, {document}), InputError);
