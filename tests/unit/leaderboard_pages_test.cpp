@@ -47,6 +47,21 @@ TEST(Board, ARowSaysWhatTheKernelCouldNotConfine) {
   EXPECT_SAYS(page, "recomputed; unconfined");
 }
 
+TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
+  const TemporaryDirectory board;
+  for (const auto& [name, loss] : {std::pair("a", "norm"), {"a", "squared"}, {"b", "norm"}, {"c", ""}}) {
+    Entry entry = made_entry(small_setting(), name, .5);
+    entry.identity.row.options["loss"] = loss;
+    if (!*loss) entry.identity.row.options.erase("loss");
+    write_entry(board.path, entry);
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "README.md");
+  for (const char* row :
+       {"| method_of_a loss=norm |", "| method_of_a loss=squared |", "| method_of_b loss=norm |", "| method_of_c |"})
+    EXPECT_SAYS(page, row);
+}
+
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {
   std::string text = read_file(file);
   ASSERT_NE(text.find(old), text.npos) << old << " in " << file;

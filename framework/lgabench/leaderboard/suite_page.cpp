@@ -38,19 +38,23 @@ std::string interval_text(const Standing& s) {
   return fmt::format(" [{}, {}]", fixed(s.interval.low, score_digits), fixed(s.interval.high, score_digits));
 }
 
-// Names of a method's rows: its id and the options in which they differ; then what else tells them apart.
+// Names of a table's rows: the id, and those options, at every row that has them, by which two rows of one method
+// differ (one row's default is another's variant); then what else tells them apart.
 std::vector<std::string> names_of(const std::vector<Standing>& all) {
-  std::map<std::string, std::map<std::string, std::set<Json>>> options;  // by id
+  std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
   for (const Standing& s : all)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
-      options[s.entry->identity.row.id][option].insert(value);
+      values[{s.entry->identity.row.id, option}].insert(value);
+  std::set<std::string> telling;
+  for (const auto& [key, different] : values)
+    if (different.size() > 1) telling.insert(key.second);
   std::vector<std::string> names;
   std::map<std::string, int> times;
   for (const Standing& s : all) {
     const Identity& identity = s.entry->identity;
     std::string name = identity.row.id;
     for (const auto& [option, value] : identity.row.options.items())
-      if (options[identity.row.id][option].size() > 1) name += fmt::format("+{}={}", option, option_text(value));
+      if (telling.count(option) > 0) name += fmt::format("+{}={}", option, option_text(value));
     names.push_back(name);
     ++times[name];
   }
