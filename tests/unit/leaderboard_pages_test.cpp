@@ -62,6 +62,19 @@ TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
     EXPECT_SAYS(page, row);
 }
 
+TEST(Board, ASuiteWithoutARankComesAfterThoseWithRanks) {
+  const TemporaryDirectory board;
+  for (const char* suite : {"z_ranked", "a_diagnosis", "b_ranked"}) {
+    Setting setting = small_setting();
+    setting.suite = suite;
+    write_entry(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "README.md");
+  EXPECT_LT(page.find("## b_ranked"), page.find("## z_ranked"));
+  EXPECT_LT(page.find("## z_ranked"), page.find("## a_diagnosis"));
+}
+
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {
   std::string text = read_file(file);
   ASSERT_NE(text.find(old), text.npos) << old << " in " << file;

@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include <lgabench/core/random.hpp>
 #include <lgabench/report/bootstrap.hpp>
+#include <lgabench/report/resampled_mean.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -123,6 +126,56 @@ TEST(Bootstrap, SameNameSameBits) {
   const Interval b = success_interval(scenarios, "b");
   EXPECT_NEAR(a.low, b.low, .05);
   EXPECT_TRUE(a.low != b.low || a.high != b.high);
+}
+
+// Every mean that two draws of units with each three draws of scenes may have, and how probable it is.
+std::map<int, double> all_means(const Outcomes::Sample& sample) {
+  std::map<int, double> probability;  // of the mean times 6
+  const auto value = [&](int unit, int scene) { return static_cast<int>(sample.units[unit][scene]); };
+  for (int draw = 0; draw < 729; ++draw) {
+    std::array<int, 6> scene{};
+    for (int i = 0, rest = draw; i < 6; ++i, rest /= 3) scene[i] = rest % 3;
+    if (sample.shared)  // both units have the first three
+      for (const auto& [a, b] : {std::pair(0, 0), {0, 1}, {1, 0}, {1, 1}}) {
+        int sum = 0;
+        for (int i = 0; i < 3; ++i) sum += value(a, scene[i]) + value(b, scene[i]);
+        probability[sum] += 1. / 729 / 4;
+      }
+    else  // one is drawn
+      for (const int a : {0, 1})
+        probability[2 * (value(a, scene[0]) + value(a, scene[1]) + value(a, scene[2]))] += 1. / 729 / 2;
+  }
+  return probability;
+}
+
+TEST(ResampledMean, IsDistributedAsDrawingSceneByScene) {
+  for (const bool shared : {true, false}) {
+    const Outcomes::Sample drawn_from = sample({{1, 0, -1}, {1, 1, 0}}, shared);
+    ASSERT_TRUE(ResampledMean::pays(drawn_from, 1000));
+    ResampledMean mean(drawn_from);
+    RandomStream random("means");
+    constexpr int draws = 100000;
+    std::map<int, int> times;
+    for (int i = 0; i < draws; ++i) ++times[static_cast<int>(std::lround(6 * mean.draw(random)))];
+    const std::map<int, double> expected = all_means(drawn_from);
+    for (const auto& [sum, count] : times) EXPECT_EQ(expected.count(sum), 1u) << sum;
+    for (const auto& [sum, p] : expected)
+      EXPECT_NEAR(static_cast<double>(times[sum]) / draws, p, 5 * std::sqrt(p / draws)) << shared << ' ' << sum;
+  }
+}
+
+TEST(ResampledMean, IsForWholeOutcomesOfFewPolicies) {
+  EXPECT_FALSE(ResampledMean::pays(sample({{1, 0}, {.5, 1}}), 1000));
+  EXPECT_FALSE(ResampledMean::pays(sample({{1}, {0}, {1}, {0}, {1}}), 1000));
+  EXPECT_FALSE(ResampledMean::pays(sample({alternating(400)}), 50)) << "its distribution costs more than 50 resamples";
+}
+
+TEST(ResampledMean, OfOutcomesThatAllAgreeIsTheirs) {
+  for (const double value : {-1., 0., 1.}) {
+    const Outcomes::Sample all = sample({Values(20, value), Values(20, value), Values(20, value)}, false);
+    RandomStream random("means");
+    EXPECT_EQ(ResampledMean(all).draw(random), value);
+  }
 }
 
 // What follows: two methods without a difference play `scenarios`, again and again.

@@ -58,9 +58,7 @@ Costs costs_of(const fs::path& run) {
   const Json record = read_json(run / "run.json", Links::refused);
   for (const std::string& name : read_cell_keys(JsonReader(record, (run / "run.json").string()))) {
     const fs::path cell = run / "cells" / name;
-    if (!fs::exists(cell / "timing.json")) continue;
-    const Json timing = read_json(cell / "timing.json", Links::refused);
-    costs.learn(recorded_cell(cell), JsonReader(timing, (cell / "timing.json").string()).at("total_s").number());
+    if (fs::exists(cell / "timing.json")) costs.learn(recorded_cell(cell), recorded_seconds(cell));
   }
   return costs;
 }

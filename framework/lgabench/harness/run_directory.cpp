@@ -48,6 +48,12 @@ Cell recorded_cell(const fs::path& directory) {
   return read_cell(read_json(file, Links::refused), file.string());
 }
 
+double recorded_seconds(const fs::path& directory) {
+  const fs::path file = directory / "timing.json";
+  const Json timing = read_json(file, Links::refused);
+  return JsonReader(timing, file.string()).at("total_s").number();
+}
+
 std::string difference(const Json& there, const Json& wanted) {
   Json before = there.value("request", Json::object());
   const Json now = wanted.value("request", Json::object());

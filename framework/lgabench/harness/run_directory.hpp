@@ -30,6 +30,9 @@ CellState cell_state(const fs::path& directory, const std::string& key, const Js
 /// The cell that cell.json in `directory` describes. No link is followed.
 /// @throws InputError if it is not there, or not a cell.
 Cell recorded_cell(const fs::path& directory);
+/// Wall-clock seconds that the cell in `directory` took, from its timing.json. No link is followed.
+/// @throws InputError if the file is not there, or holds no such number.
+double recorded_seconds(const fs::path& directory);
 
 /// Which setting of two run.json differs first; data and versions may differ where no setting does.
 std::string difference(const Json& there, const Json& wanted);

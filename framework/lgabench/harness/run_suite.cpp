@@ -134,12 +134,6 @@ Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const 
           {"log_tail", log_tail(log)}};
 }
 
-double total_seconds(const fs::path& cell) {
-  const fs::path file = cell / "timing.json";
-  const Json timing = read_json(file);
-  return JsonReader(timing, file.string()).at("total_s").number();
-}
-
 void add_phases(const fs::path& cell, TimeSpent& time) {
   const fs::path file = cell / "timing.json";
   const Json timing = read_json(file, Links::refused);
@@ -249,7 +243,7 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
     const CellState state = cell_state(directory, key(*cell), build_of(*cell, catalogue));
     const bool there = state.complete && plan.existing != Existing::fresh;
     (there ? complete : missing).push_back(cell);
-    if (there) costs.learn(*cell, total_seconds(directory));
+    if (there) costs.learn(*cell, recorded_seconds(directory));
   }
   return forecast(complete, missing, costs, plan.pool.jobs);
 }
@@ -279,7 +273,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   RunOutcome outcome;
   outcome.reused = complete.size();
   Schedule schedule(missing);
-  for (const Cell* cell : complete) schedule.learn(*cell, total_seconds(directory.cell(key(*cell))));
+  for (const Cell* cell : complete) schedule.learn(*cell, recorded_seconds(directory.cell(key(*cell))));
 
   const Forecast expected = forecast(complete, missing, schedule.costs(), plan.pool.jobs);
   if (!missing.empty()) {

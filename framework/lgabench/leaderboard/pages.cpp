@@ -23,7 +23,7 @@ using report::reading;
 using report::Section;
 using report::Span;
 
-using Suites = std::map<std::string, std::vector<NamedTable>>;
+using Suites = std::vector<std::pair<std::string, std::vector<NamedTable>>>;
 constexpr std::size_t first_rows = 10, all_rows = 1'000'000;
 
 // The rows of a table, at most so many; `board` is where its links find the board.
@@ -142,12 +142,26 @@ std::string with_tables(const fs::path& file, const fs::path& board, const Suite
   return out + text.substr(at);
 }
 
+bool ranks_entries(const NamedTable& table) {
+  return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
+}
+
+// By name; suites for diagnosis, without a rank, come last.
+Suites suites_of(const std::vector<Entry>& entries) {
+  std::map<std::string, std::vector<NamedTable>> by_name;
+  for (const auto& table : tables(entries)) by_name[table.front()->setting.suite].push_back(named_table(table));
+  Suites suites(by_name.begin(), by_name.end());
+  std::stable_partition(suites.begin(), suites.end(), [](const auto& suite) {
+    return std::any_of(suite.second.begin(), suite.second.end(), ranks_entries);
+  });
+  return suites;
+}
+
 }  // namespace
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents) {
-  Suites suites;
-  for (const auto& table : tables(entries)) suites[table.front()->setting.suite].push_back(named_table(table));
+  const Suites suites = suites_of(entries);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(index(suites, all_rows));
   files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");

@@ -7,6 +7,7 @@
 #include <set>
 
 #include <lgabench/core/random.hpp>
+#include <lgabench/report/resampled_mean.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -66,10 +67,17 @@ std::vector<double> resampled_means(const Samples& scenarios, double other_side,
   const double scenes = distinct_scenes(scenarios);
   std::vector<double> means(static_cast<std::size_t>(resamples)), sums;
   std::vector<std::uint32_t> drawn;
+  std::vector<std::optional<ResampledMean>> fast;
+  for (const Outcomes::Sample& sample : scenarios) {
+    fast.emplace_back();
+    if (ResampledMean::pays(sample, resamples)) fast.back().emplace(sample);
+  }
   for (double& resampled : means) {
     double sum = 0;
-    for (const Outcomes::Sample& sample : scenarios)
-      sum += sample.shared ? crossed_mean(sample, random, drawn, sums) : nested_mean(sample, random);
+    for (std::size_t s = 0; s < scenarios.size(); ++s)
+      sum += fast[s]               ? fast[s]->draw(random)
+             : scenarios[s].shared ? crossed_mean(scenarios[s], random, drawn, sums)
+                                   : nested_mean(scenarios[s], random);
     const int one = times_drawn(random), other = times_drawn(random);
     resampled =
         (sum / static_cast<double>(scenarios.size()) * scenes + one + other_side * other) / (scenes + one + other);
