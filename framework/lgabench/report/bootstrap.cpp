@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include <lgabench/core/random.hpp>
@@ -67,7 +68,7 @@ std::vector<double> resampled_means(const Samples& scenarios, double other_side,
   const double scenes = distinct_scenes(scenarios);
   std::vector<double> means(static_cast<std::size_t>(resamples)), sums;
   std::vector<std::uint32_t> drawn;
-  std::vector<std::optional<ResampledMean>> fast;
+  std::vector<std::optional<ResampledMean>> fast;  // of each scenario where that pays
   for (const Outcomes::Sample& sample : scenarios) {
     fast.emplace_back();
     if (ResampledMean::pays(sample, resamples)) fast.back().emplace(sample);

@@ -1,6 +1,7 @@
 // The mean of a scenario whose scenes and policies are drawn again, by few random numbers.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -9,11 +10,11 @@
 
 namespace lgabench::report {
 
-/// The sum of as many draws with replacement from whole numbers as there are: one random number, with which the sum's
-/// distribution is inverted.
+/// The sum of n draws with replacement from n whole numbers, by one random number: the inverse of the sum's
+/// distribution function.
 class ResampledSum {
  public:
-  /// Takes n^2 / 2 (span + 1) span additions for n values. @pre not empty
+  /// Takes n^2 / 2 span (span + 1) additions for n values that differ by up to `span`. @pre not empty
   explicit ResampledSum(const std::vector<int>& values);
   int draw(RandomStream& random) const;
 
@@ -23,8 +24,8 @@ class ResampledSum {
   std::vector<std::size_t> guide_;  // [g]: the first i with up_to_[i] above g / size (Chen and Asau 1974)
 };
 
-/// As bootstrap.hpp says of one scenario, crossed or nested, for outcomes that are whole numbers. Same distribution as
-/// drawing scene by scene, other random numbers. One thread; the sample must outlive it.
+/// A scenario's mean in a resample, crossed or nested as bootstrap.hpp says: for outcomes that are whole numbers, the
+/// distribution of drawing scene by scene. One thread; the sample must outlive the object.
 class ResampledMean {
  public:
   /// Whether outcomes are whole numbers, and the sums' distributions cost less than drawing so many resamples.
