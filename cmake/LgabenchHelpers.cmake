@@ -87,7 +87,7 @@ function(lgabench_link_data)
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
-               python:python)
+               python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)
@@ -107,6 +107,7 @@ function(lgabench_link_data)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/archive/${name} SYMBOLIC)
     install(FILES ${PROJECT_SOURCE_DIR}/${source} DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/archive)
   endforeach()
-  # cmake/encoder puts the sentence encoder's weights there; too large to install.
+  # Where cmake/build fetches the sentence encoder's weights; there are none without network.
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/.deps/encoder ${share}/encoder SYMBOLIC)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/.deps/encoder/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/encoder OPTIONAL)
 endfunction()

@@ -94,6 +94,15 @@ class Package(Consumer):
         self.assertIn("mujoco", self.lgabench("list").stdout)
         self.runs("lga", self.prefix, "--set", "lga.epochs=2")
 
+    def test_a_command_of_ones_own_is_read_by_policies(self):
+        """README, "Your own task", with nothing but the installation."""
+        self.lgabench("new-scenario", "round", "--command", "Bring me something round.", "--types", "round,ring")
+        self.assertRegex(self.lgabench("check-scenario", "round.json", "--scenes", "2").stdout, "ok +sentences")
+        out = self.dir / "round"
+        self.lgabench("run", "q1", "--scenarios", "round", "--scenario-path", ".", "--answers", "none", "--methods",
+                      "human,gcbc_seg", "--demos", "2", "--seeds", "0", "--episodes", "2", "--set", "*.epochs=2", "--out", out)
+        self.assertEqual({row["n_error"] for row in json.loads((out / "summary.json").read_text())["rows"]}, {0})
+
     def test_every_public_header_compiles(self):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         self.assertGreater(len(headers), 30)

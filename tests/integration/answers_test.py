@@ -128,6 +128,13 @@ class Cassettes(Asking):
         self.call(*run[:-4], "--out", "edited", *run[-2:])
         self.assertFalse(set(self.cells("edited")) & set(self.cells("out")))
 
+    def test_every_method_that_asks_runs_on_another_models_answers(self):
+        """Words made of answers that nobody has seen have no committed embedding."""
+        self.ask()
+        self.call("run", self.suite, *RUN[2:], "--methods", "lga,lga_s,lga_l", "--set", "*.epochs=2", "--answers",
+                  "cassette:tape.jsonl", "--out", "own", "--no-reference")
+        self.assertEqual({status["status"] for _, status in self.cells("own").values()}, {"ok"})
+
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):

@@ -11,7 +11,7 @@ import unittest
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line
 
 VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "cluster", "status",
-         "leaderboard", "new-plugin", "check-plugin", "study", "cache"]
+         "leaderboard", "new-plugin", "check-plugin", "study", "encoder", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",
@@ -235,6 +235,20 @@ class CacheCommand(Case):
         build = json.loads(next((self.dir / "out/cells").glob("*/status.json")).read_text())["build"]
         programs = ("engine", "lgabench-worker", "liblgabench_core.so", "liblgabench_env_tabletop.so")
         self.assertEqual(seal["made_from"]["builds"], {name: build[name] for name in programs})
+
+
+class EncoderCommand(Case):
+    def test_tells_whether_it_is_there(self):
+        self.assertIn("all-MiniLM-L6-v2", self.call("encoder").stdout)
+        self.environment["LGABENCH_ENCODER"] = str(self.dir / "none")
+        self.assertIn("no model.safetensors; to fetch it: lgabench encoder fetch", self.call("encoder", expect=1).stdout)
+
+    def test_fetches_what_is_missing_or_says_why_not(self):
+        self.call("encoder", "fetch")  # at once: it is there
+        self.environment.update(LGABENCH_ENCODER=str(self.dir / "none"), PIP_INDEX_URL="http://127.0.0.1:9/", PIP_RETRIES="0")
+        said = self.call("encoder", "fetch", expect=3).stderr
+        self.assertRegex(said, r"^the sentence encoder could not be fetched: .*\n$")
+        self.assertFalse((self.dir / "none").exists())
 
 
 class Completion(Case):

@@ -42,6 +42,18 @@ class OwnScenario(Case):
         done = self.call("run", "q1", "--scenarios", "round", *words, expect=3)
         self.assertIn('asks a language model about "Bring me something round.", and --answers none', done.stderr)
 
+    def test_where_the_sentence_encoder_is_missing_that_is_said_first(self):
+        self.environment["LGABENCH_ENCODER"] = str(self.dir / "none")
+        lacks = '"Bring me something round." has no committed embedding, and the sentence encoder is not in'
+        self.assertIn("First: " + lacks, self.new(*NAME).stdout)
+        self.assertIn(lacks, self.call("check-scenario", "round.json", "--scenes", "2").stdout)
+        run = ("run", "q1", "--scenario-path", ".", *SMALL, "--answers", "none", "--methods", "human")
+        self.assertIn("note: " + lacks, self.call(*run, "--scenarios", "round", "--out", "own").stderr)
+        self.assertNotIn("encoder", self.call(*run, "--scenarios", "heart", "--out", "shipped").stderr)
+        del self.environment["LGABENCH_ENCODER"]
+        (self.dir / "round.json").unlink()
+        self.assertNotIn("encoder", self.new(*NAME).stdout)
+
     def test_scenarios_beside_a_suite_are_found(self):
         self.new(*NAME)
         suite = {"id": "mine", "environment": "tabletop", "scenarios": ["round"], "layouts": ["cells"],

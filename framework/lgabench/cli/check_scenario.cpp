@@ -17,6 +17,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/missing_encoder.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -95,6 +96,14 @@ void judge_answers(const Scenario& scenario, CheckReport& report) {
                 "ask a model (docs/language-models.md), or run methods that ask none with --answers none");
 }
 
+void judge_sentences(const Scenario& scenario, CheckReport& report) {
+  const std::string missing = missing_encoder(scenario.utterances());
+  if (missing.empty())
+    report.ok("sentences", "every command can be read by a policy");
+  else
+    report.note("sentences", missing, "or run methods that see a mask alone, such as human");
+}
+
 int check_scenario(const Arguments& a) {
   const Scenario scenario = scenario_of(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
@@ -113,6 +122,7 @@ int check_scenario(const Arguments& a) {
   for (const std::string& layout : layouts)
     for (const std::string& arm : arms) judge_arm(scenario, layout, arm, a.scenes, *environment, report);
   judge_answers(scenario, report);
+  judge_sentences(scenario, report);
   to_stdout("{}\n", scenario.id);
   if (!has_problem(report)) {
     const fs::path picture = a.out.empty() ? fs::path(scenario.id + ".png") : a.out;

@@ -53,6 +53,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
   add_study(app, exit);
+  add_encoder(app, exit);
   add_cache(app, exit);
 }
 
@@ -64,7 +65,7 @@ void arrange_commands(CLI::App& app) {
       {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
       {"To run a user study", {"study"}},
-      {"To clean up", {"cache"}}};
+      {"To look after an installation", {"encoder", "cache"}}};
   for (const auto& [title, names] : titles)
     for (const char* name : names)
       for (CLI::App* verb : app.get_subcommands([&](CLI::App* one) { return one->get_name() == name; }))

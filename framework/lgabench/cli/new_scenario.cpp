@@ -13,6 +13,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/missing_encoder.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -100,6 +101,9 @@ void new_scenario(Arguments a) {
             file.string());
   to_stdout("To run it:\n  lgabench run q1 --scenarios {} --scenario-path {} --answers none --methods human,gcbc_seg\n",
             a.name, path);
+  Words commands = a.commands;
+  commands.insert(commands.end(), a.unseen.begin(), a.unseen.end());
+  if (const std::string missing = missing_encoder(commands); !missing.empty()) to_stdout("\nFirst: {}\n", missing);
 }
 
 }  // namespace

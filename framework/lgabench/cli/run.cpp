@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/debug_cell.hpp>
+#include <lgabench/harness/missing_encoder.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -50,8 +52,17 @@ void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
     to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
+Words commands_of(const RunPlan& plan) {
+  std::set<std::string> commands;
+  for (const Cell& cell : plan.cells)
+    for (const Json& command : cell.scenario->at("commands")) commands.insert(command.at("utterance"));
+  return {commands.begin(), commands.end()};
+}
+
 int run(const RunArguments& a) {
   const auto [catalogue, plan] = plan_run(a);
+  if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
+    to_stderr("note: {}\n", missing);
   if (a.dry_run) return print_forecast(plan, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   const RunOutcome outcome = run_suite(plan, catalogue);

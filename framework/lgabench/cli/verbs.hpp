@@ -41,6 +41,7 @@ void add_leaderboard(CLI::App& app, int& exit);
 void add_new_plugin(CLI::App& app, int& exit);
 void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
+void add_encoder(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
 void add_study(CLI::App& app, int& exit);
 

@@ -160,6 +160,11 @@ fs::path data_directory() {
   return program_directory().parent_path() / "share" / "lgabench";
 }
 
+fs::path encoder_directory() {
+  const char* named = std::getenv("LGABENCH_ENCODER");
+  return named && *named ? fs::path(named) : data_directory() / "encoder";
+}
+
 fs::path shipped_plugin_directory() { return program_directory().parent_path() / "lib" / "lgabench" / "plugins"; }
 
 }  // namespace lgabench

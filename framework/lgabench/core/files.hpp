@@ -56,6 +56,9 @@ fs::path data_directory();
 /// Plugins shipped with the program: ../lib/lgabench/plugins from it.
 fs::path shipped_plugin_directory();
 
+/// Where the sentence encoder's weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.
+fs::path encoder_directory();
+
 /// Directory of the running program.
 fs::path program_directory();
 

@@ -4,7 +4,6 @@
 
 #include <boost/dll/import.hpp>
 #include <boost/dll/runtime_symbol_info.hpp>
-#include <cstdlib>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
@@ -27,11 +26,6 @@ decltype(&make_sentence_encoder) load_encoder() {
 }
 
 }  // namespace
-
-fs::path encoder_directory() {
-  const char* named = std::getenv("LGABENCH_ENCODER");
-  return named && *named ? fs::path(named) : data_directory() / "encoder";
-}
 
 SentenceEmbeddings::SentenceEmbeddings() {
   const fs::path directory = data_directory() / "embeddings";
@@ -62,7 +56,7 @@ const std::vector<float>& SentenceEmbeddings::of(const std::string& sentence) {
     if (!fs::exists(directory / "model.safetensors"))
       throw InputError(fmt::format(
           "\"{}\": expected a sentence with a committed embedding, or the sentence encoder's weights in {}; "
-          "cmake/encoder fetches them, $LGABENCH_ENCODER names another directory",
+          "lgabench encoder fetch gets them, $LGABENCH_ENCODER names another directory",
           sentence, directory.string()));
     encode_ = load_encoder()(directory);
   }

@@ -1,16 +1,12 @@
 // Sentences as vectors: committed embeddings of what is shipped, computed once with all-MiniLM-L6-v2; its encoder for
 // the rest.
 #pragma once
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace lgabench {
-
-/// Where the encoder's weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.
-std::filesystem::path encoder_directory();
 
 /// One thread.
 class SentenceEmbeddings {

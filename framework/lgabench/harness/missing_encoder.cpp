@@ -1,0 +1,30 @@
+#include <lgabench/harness/missing_encoder.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+std::string missing_encoder(const std::vector<std::string>& commands) {
+  std::error_code error;
+  if (fs::exists(encoder_directory() / "model.safetensors", error)) return "";
+  const fs::path directory = data_directory() / "embeddings";
+  std::set<std::string> committed;
+  for (const std::string& name : json_names(directory, error)) {
+    const Json file = read_json(directory / (name + ".json"));
+    for (const auto& embedding : file.at("embeddings").items()) committed.insert(embedding.key());
+  }
+  const auto first = std::find_if(commands.begin(), commands.end(), [&](const auto& c) { return !committed.count(c); });
+  if (first == commands.end()) return "";
+  return fmt::format(
+      "\"{}\" has no committed embedding, and the sentence encoder is not in {}: methods that read the command fail; "
+      "lgabench encoder fetch gets it",
+      *first, encoder_directory().string());
+}
+
+}  // namespace lgabench
