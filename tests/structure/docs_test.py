@@ -40,8 +40,30 @@ def anchors(page):
             for head in re.findall(r"^#+ (.*)$", page.read_text(), re.M)}
 
 
+def q1_table():
+    """Row -> success rates at 10 to 50 demonstrations, as docs/results.md prints those of q1's paper preset."""
+    table = (SOURCE / "docs/results.md").read_text().split("## q1: success")[1].split("\n**C1")[0]
+    return {name: [float(number) for number in re.findall(r"\| (\.\d\d|1\.00)\b", row)]
+            for name, row in re.findall(r"^\| \*?([\w -]+?)\*?(?: \([^)]*\))? (\| \.\d.*)$", table, re.M)}
+
+
 class Pages(unittest.TestCase):
     page = (SOURCE / "docs/add-a-method.md").read_text()
+
+    def test_the_figure_and_the_text_beside_it_are_the_table(self):
+        figure, table = (SOURCE / "docs/pictures/success.svg").read_text(), q1_table()
+        rows = ["LGA", "LGA-HILL", "Human", "LGA-S", "LGA-L", "GCBC-SEG", "GCBC-DART"]
+        point = r"[ML][\d.]+ ([\d.]+)"
+        lines = re.findall(rf'<path d="({point * 5})" class="s-series f-none" fill="none" stroke="currentColor" stroke-width="2"/>', figure)
+        self.assertEqual(len(lines), len(rows))
+        bottom, top = (float(re.search(rf'y="([\d.]+)">{rate}</text>', figure)[1]) for rate in ("0.0", "1.0"))
+        for row, (_, *heights) in zip(rows, lines):
+            for shown, height in zip(table[row], heights):  # the axis' words stand 4 below its lines
+                self.assertAlmostEqual(shown, (bottom - 4 - float(height)) / (bottom - top), delta=.0055, msg=row)
+        result = (SOURCE / "README.md").read_text().split("## The result")[1].split("\n## ")[0]
+        for row, words in ("LGA", "in .57 of"), ("GCBC-SEG", "in .16 ("), ("GCBC-DART", ".09 ("), ("random visible object", "in .43."):
+            self.assertIn(words, " ".join(result.split()))
+            self.assertIn(f"{table[row][-1]:.2f}"[1:], words)
 
     def test_shown_code_is_the_example(self):
         for page, name, lines in ("method", "select_only", 25), ("network", "own_network", 90):
