@@ -104,7 +104,7 @@ TEST_F(WithoutWeights, TheShippedCommandsAndSelectionsHaveEmbeddings) {
     }
   }
   EXPECT_GT(dot("Bring me the heart.", "Bring me the red heart."), dot("Bring me the heart.", "Rotate the block."));
-  EXPECT_SAYS(message_of<InputError>([&] { embeddings.of("Bring me the moon."); }), "cmake/encoder");
+  EXPECT_SAYS(message_of<InputError>([&] { embeddings.of("Bring me the moon."); }), "lgabench encoder fetch");
 }
 
 TEST(SentenceEmbeddings, OfOtherSentencesComeFromTheEncoder) {
