@@ -13,10 +13,10 @@ namespace lgabench {
 /// One demonstration a scene. Its first step is clean. With needs.noisy_per_clean = n > 0, recovery (docs/protocol.md,
 /// section 5; DART: Laskey et al. 2017): rollout k of n resets the scene, executes the oracle's action with Gaussian
 /// noise of sigma = noise_max k / n (x std .25 sigma, y std .5 sigma, yaw std pi sigma, on both poses), and the state
-/// that this led to is added with the oracle's action for it. A rollout that left the workspace, touched the obstacle
-/// or did not come to rest is dropped. Labels are noiseless and have the precision of a file. A function of its
-/// arguments: the noise is a random stream per scene and k. `utterances`: of the scenario's commands, as Scene::command
-/// counts them.
+/// that this led to is added with the oracle's action for it; its first step would be the clean one again. A rollout
+/// that left the workspace, touched the obstacle or did not come to rest is dropped. Labels are noiseless and have the
+/// precision of a file. A function of its arguments: the noise is a random stream per scene and k. `utterances`: of the
+/// scenario's commands, as Scene::command counts them.
 /// @throws EngineError if the engine fails.
 std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
                                        const std::vector<std::string>& utterances);

@@ -25,7 +25,8 @@ struct Arguments {
   std::vector<fs::path> plugin_path;
 };
 
-// The Selections of a cell's selection.json, one for each of the scenario's commands.
+// The Selections of a cell's selection.json, one for each of the scenario's commands. The method is not asked again: it
+// might answer otherwise.
 std::vector<Selection> selections_of(const std::string& file, const Scenario& scenario) {
   const Json json = read_json(file);
   const JsonReader list = JsonReader(json, file).at("commands");

@@ -1,4 +1,5 @@
-// Contact sheets: all that a scene can show, side by side, for a person to look at.
+// Contact sheets: all that a scene can show, side by side, for a person to look at. Without text, since a font would be
+// the longest file of the verb: names are in a table beside the sheet.
 #pragma once
 #include <string>
 

@@ -217,6 +217,7 @@ fs::path RunDirectory::scratch(const std::string& key) const {
 void RunDirectory::keep(const std::string& key) const {
   const fs::path made = hidden(key, ""), old = hidden(key, ".old"), there = cell(key);
   std::error_code error;
+  // Exchanged: between two renames a kill would lose both.
   if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, there.c_str(), RENAME_EXCHANGE) != 0) {
     if (fs::exists(there)) fs::rename(there, old, error);  // a file system that cannot exchange
     if (!error) fs::rename(made, there, error);

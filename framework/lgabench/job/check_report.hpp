@@ -7,7 +7,8 @@
 
 namespace lgabench {
 
-/// What was found in one respect.
+/// What was found in one respect. A note is no fault: a sound method may leave out a sweep's obstacle, say, and fail
+/// those cells.
 struct Finding {
   enum class State { ok, note, problem } state = State::ok;
   std::string check;   // what was looked at, in a word or two

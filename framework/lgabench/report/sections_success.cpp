@@ -119,7 +119,8 @@ Grid success_grid(const Material& material, const Table& table, const std::vecto
   return grid;
 }
 
-// Success of a mean or a scenario along the demonstrations or, with a single number of them, over the arms.
+// Success of a mean or a scenario along the demonstrations or, with a single number of them, over the arms: as points,
+// not bars, so that a method has the same mark in every figure.
 Chart chart_of(const Material& material, const Table& table, const std::string& arm, const std::string& scenario) {
   const std::vector<int> demonstrations = table.demonstrations();
   const bool joined = demonstrations.size() > 1;
