@@ -2,7 +2,9 @@
 
 # Warnings and the flags that results depend on.
 function(lgabench_target target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wnon-virtual-dtor
+                                           # Files that are compiled as one see each other's names.
+                                           "$<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,-Wshadow=local;-Wno-subobject-linkage,-Wshadow>"
                                            $<$<BOOL:${LGABENCH_WERROR}>:-Werror>
                                            $<$<BOOL:${LGABENCH_NATIVE}>:-march=native>)
   # A fused multiply-add on one machine and not on another would make two results of one computation.

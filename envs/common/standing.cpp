@@ -4,14 +4,14 @@
 namespace lgabench::common {
 namespace {
 
-Drawing soda_can() {
+Drawing standing_soda_can() {
   Drawing drawing;
   add_solid(drawing, disc(.033), {{0, .008}, {.008, 0}, {.108, 0}, {.118, .008}});
   add_solid(drawing, disc(.0265), {{.116, 0}, {.122, 0}});
   return drawing;
 }
 
-Drawing water_bottle() {
+Drawing standing_water_bottle() {
   Drawing drawing;
   add_solid(drawing, disc(.034),
             {{0, .004}, {.006, 0}, {.062, 0}, {.068, .004}, {.078, .004}, {.084, 0}, {.12, 0}, {.16, .02}});
@@ -20,7 +20,7 @@ Drawing water_bottle() {
   return drawing;
 }
 
-Drawing juice_box() {
+Drawing standing_juice_box() {
   Drawing drawing{{}, {}, {-.008, 0}};
   add_solid(drawing, rectangle(-.034, -.024, .034, .024), {{0, 0}, {.104, 0}, {.108, .004}});
   // A straw with a bend, whose end reaches .004 beyond the outline.
@@ -34,7 +34,8 @@ Drawing juice_box() {
 }  // namespace
 
 const std::vector<Shape>& standing_shapes() {
-  static const std::vector<Shape> all{{"soda can", soda_can}, {"water bottle", water_bottle}, {"juice box", juice_box}};
+  static const std::vector<Shape> all{
+      {"soda can", standing_soda_can}, {"water bottle", standing_water_bottle}, {"juice box", standing_juice_box}};
   return all;
 }
 

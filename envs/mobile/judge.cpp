@@ -3,9 +3,9 @@
 namespace lgabench::mobile {
 namespace {
 
-constexpr double fallen_m = .70;     // the height of a centre below which it has left the table
-constexpr double moved_m = .05;      // of a centre: more is not where it was
-constexpr double above_rim_m = .12;  // a tall thing's centre, where it leans in the vessel
+constexpr double fallen_m = .70;   // the height of a centre below which it has left the table
+constexpr double moved_m = .05;    // of a centre: more is not where it was
+constexpr double leaning_m = .12;  // a tall thing's centre, where it leans in the vessel
 
 Vec3 centre_of(const SceneObject& object, const Pose& pose) {
   return pose.position_m + rotated(Vec3{0, 0, standing_model(object.object_type).height_m / 2}, pose.rotation);
@@ -13,7 +13,7 @@ Vec3 centre_of(const SceneObject& object, const Pose& pose) {
 
 bool rests_in(const Vessel& vessel, Vec3 centre) {
   return vessel.outer().contains({centre.x, centre.y}) && centre.z > vessel.floor_m &&
-         centre.z < vessel.rim_m + above_rim_m;
+         centre.z < vessel.rim_m + leaning_m;
 }
 
 }  // namespace

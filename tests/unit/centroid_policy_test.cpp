@@ -11,15 +11,13 @@
 #include <lgabench/learning/centroid_policy.hpp>
 #include <tabletop/two_poses.hpp>
 
+#include "native_picture.hpp"
+
 namespace lgabench {
 namespace {
 
 using tabletop::TwoPoses;
 using tabletop::Workspace;
-
-constexpr PictureSize native_size = Workspace::picture;
-constexpr int rows = Workspace::rows, columns = Workspace::columns;
-constexpr double pixel = 1.0 / columns;  // m
 
 using Roles = std::vector<std::uint8_t>;
 
@@ -41,14 +39,13 @@ Roles target_at(Vec2 middle) {
 }
 
 // The object's middle on a corner of pixels.
-Vec2 place(int row, int column) { return {Workspace::x_min + row * pixel, Workspace::y_min + column * pixel}; }
 
 void expect_at(Vec2 actual, Vec2 expected, double tolerance = 1e-6) {
   EXPECT_NEAR(actual.x, expected.x, tolerance);
   EXPECT_NEAR(actual.y, expected.y, tolerance);
 }
 
-const Vec2 here = place(40, 60), there = place(90, 200), elsewhere = place(64, 128), goal{.5, .3};
+const Vec2 here = place(40, 60), there = place(90, 200), elsewhere = place(64, 128);
 
 // What the rule learns from, and its actions, without the rows of numbers between.
 class Rule {

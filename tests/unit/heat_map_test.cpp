@@ -13,22 +13,16 @@
 #include <lgabench/learning/training.hpp>
 #include <tabletop/two_poses.hpp>
 
+#include "native_picture.hpp"
+
 namespace lgabench {
 namespace {
 
 using tabletop::TwoPoses;
-using tabletop::Workspace;
-
-constexpr PictureSize native_size = Workspace::picture;
-constexpr int rows = Workspace::rows, columns = Workspace::columns;
-constexpr double pixel = 1. / columns;  // m
-const Vec2 goal{.5, .3};
 
 struct Silent : TrainingLog {
   void epoch(int, long long, double) override {}
 };
-
-Vec2 place(int row, int column) { return {Workspace::x_min + row * pixel, Workspace::y_min + column * pixel}; }
 
 void set_label(Samples& samples, int row, const TwoPoses& action) {
   const Action values = recorded(tabletop::two_poses(), action);

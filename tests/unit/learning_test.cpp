@@ -18,16 +18,13 @@
 #include <lgabench/plugin/loader.hpp>
 #include <tabletop/two_poses.hpp>
 
+#include "native_picture.hpp"
 #include "testing.hpp"
 
 namespace lgabench {
 namespace {
 
 using tabletop::TwoPoses;
-using tabletop::Workspace;
-
-constexpr PictureSize native_size = Workspace::picture;
-constexpr int rows = Workspace::rows, columns = Workspace::columns;
 
 // Length over which small pixel `small` of `count` lies on native pixel `pixel` of `native`, in native pixels.
 double overlap(int small, int count, int pixel, int native) {

@@ -10,7 +10,7 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double near_m = 0.1;          // of where the target was
+constexpr double in_place_m = 0.1;      // of where the target was
 constexpr double undisturbed_m = 0.02;  // how far a distractor may move
 constexpr double angle_tolerance_deg = 15;
 constexpr const char *angle = "angle_deg", *direction = "direction", *bad_angle = "bad_angle";
@@ -55,7 +55,7 @@ class Rotate final : public Task {
   }
 
   Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
-    if (norm(target.centre_m - target.object.position_m) > near_m) return failure::bad_placement;
+    if (norm(target.centre_m - target.object.position_m) > in_place_m) return failure::bad_placement;
     for (const Final& f : finals)
       if (f.object.role == role::distractor && norm(f.centre_m - f.object.position_m) > undisturbed_m)
         return failure::bad_placement;

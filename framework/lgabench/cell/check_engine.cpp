@@ -16,7 +16,7 @@ namespace lgabench {
 namespace {
 
 constexpr int scenes_a_task = 4;
-constexpr std::uint64_t seed = 7;
+constexpr std::uint64_t engine_seed = 7;
 
 // A scene played by the oracle: what was seen before and after, and how it was judged, bit for bit.
 struct Played {
@@ -66,7 +66,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < scenes_a_task; ++i) {
     scenes.push_back(test_scene(scenario, task_info.layouts[static_cast<std::size_t>(i) % task_info.layouts.size()],
-                                scenario.tests.front().id, seed, i));
+                                scenario.tests.front().id, engine_seed, i));
     forwards.push_back(play(*environment, scenes.back()));
     won += forwards.back().success;
     all += forwards.back().bytes;

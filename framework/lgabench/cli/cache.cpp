@@ -64,11 +64,11 @@ fs::path default_cache() {
 }
 
 void add_cache(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct CacheArguments {
     std::string what = "size", directory;
     bool json = false;
   };
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CacheArguments>();
   CLI::App* verb = app.add_subcommand("cache", "Show how large the cache of demonstrations is, or empty it");
   verb->add_option("what", a->what, "size, or clear: remove its files")->check(one_of("action", {"size", "clear"}));
   verb->add_option("--cache", a->directory, "Where it is (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");

@@ -22,7 +22,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct CheckPluginArguments {
   std::string file, python = "python3", environment;
   std::vector<std::string> settings;
   double timeout_s = 600;
@@ -40,7 +40,7 @@ Json options_of(const PluginInfo& plugin, const std::vector<std::string>& settin
 }
 
 // Two processes use the plugin: their findings, and whether they agree.
-CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Arguments& a) {
+CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a) {
   CheckReport report;
   report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
   for (const PluginInfo& other : catalogue.plugins)
@@ -94,7 +94,7 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ar
   return report;
 }
 
-int check_plugin(const Arguments& a) {
+int check_plugin(const CheckPluginArguments& a) {
   CheckReport report;
   PluginInfo plugin;
   try {
@@ -124,7 +124,7 @@ int check_plugin(const Arguments& a) {
 }  // namespace
 
 void add_check_plugin(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CheckPluginArguments>();
   CLI::App* verb = app.add_subcommand("check-plugin", "Check a plugin for mistakes, and say how to mend them");
   verb->add_option("file", a->file, "The plugin's library, FILE.so, or a method in Python, FILE.py:CLASS")
       ->required()

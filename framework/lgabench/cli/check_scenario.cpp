@@ -24,7 +24,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct CheckScenarioArguments {
   std::string file, engine;
   std::vector<std::string> layouts;
   fs::path out;
@@ -40,13 +40,13 @@ Scenario scenario_of(const std::string& word) {
   return load_scenario(file.stem().string());
 }
 
-struct Played {
+struct Tally {
   int successes = 0;
   std::map<std::string, int> failures;  // word -> how often
 };
 
-Played play(Environment& environment, const std::vector<TestScene>& scenes, const char* who) {
-  Played played;
+Tally play(Environment& environment, const std::vector<TestScene>& scenes, const char* who) {
+  Tally played;
   for (const Episode& e : evaluate(environment, scenes, reference_actor(who), [](int) {}))
     e.failure == failure::none ? ++played.successes : ++played.failures[e.failure];
   return played;
@@ -67,8 +67,8 @@ void judge_arm(const Scenario& scenario, const std::string& layout, const std::s
     return report.problem(where, reason.size() > most ? reason.substr(0, most) + "..." : reason,
                           "the sets of target, avoid and distractors must leave something to show");
   }
-  const Played oracle = play(environment, scenes, "oracle");
-  const Played any = play(environment, scenes, "random_object");
+  const Tally oracle = play(environment, scenes, "oracle");
+  const Tally any = play(environment, scenes, "random_object");
   std::string fault;
   for (const auto& [failure, times] : oracle.failures)
     if (100 * (count - oracle.successes) > 2 * count)
@@ -104,7 +104,7 @@ void judge_sentences(const Scenario& scenario, CheckReport& report) {
     report.note("sentences", missing, "or run methods that see a mask alone, such as human");
 }
 
-int check_scenario(const Arguments& a) {
+int check_scenario(const CheckScenarioArguments& a) {
   const Scenario scenario = scenario_of(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
@@ -136,7 +136,7 @@ int check_scenario(const Arguments& a) {
 }  // namespace
 
 void add_check_scenario(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<CheckScenarioArguments>();
   CLI::App* verb = app.add_subcommand("check-scenario", worker_summary("check-scenario"));
   verb->add_option("scenario", a->file, "The scenario's file, or its id")->required();
   verb->add_option("--scenes", a->scenes, "How many of each arm and layout")

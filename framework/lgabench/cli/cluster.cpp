@@ -15,7 +15,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct ClusterArguments {
   RunArguments run;
   int elements = 0, cpus = 4;
   std::string time, partition;
@@ -64,7 +64,7 @@ Costs costs_of(const fs::path& run) {
 }
 
 // Seconds of the element that is expected to take longest.
-double longest_s(const RunPlan& plan, const Arguments& a) {
+double longest_s(const RunPlan& plan, const ClusterArguments& a) {
   const Costs costs = costs_of(a.timings);
   double longest = 0;
   for (int i = 1; i <= a.elements; ++i) {
@@ -74,14 +74,15 @@ double longest_s(const RunPlan& plan, const Arguments& a) {
   return longest;
 }
 
-std::string header(const Arguments& a, const std::string& name, const std::string& time, const fs::path& out,
+std::string header(const ClusterArguments& a, const std::string& name, const std::string& time, const fs::path& out,
                    const char* log) {
   return fmt::format(
       "#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --ntasks=1\n#SBATCH --time={}\n#SBATCH --output={}/logs/{}\n{}",
       name, time, out.string(), log, a.partition.empty() ? "" : fmt::format("#SBATCH --partition={}\n", a.partition));
 }
 
-std::string array_script(const Arguments& a, const std::string& program, const fs::path& out, double memory_gib) {
+std::string array_script(const ClusterArguments& a, const std::string& program, const fs::path& out,
+                         double memory_gib) {
   return header(a, "lgabench-" + a.run.suite, a.time, out, "%A_%a.txt") +
          fmt::format(
              R"(#SBATCH --array=1-{0}
@@ -106,7 +107,7 @@ exit $status
              joined({out.string()}), memory_gib);
 }
 
-std::string merge_script(const Arguments& a, const std::string& program, const fs::path& out) {
+std::string merge_script(const ClusterArguments& a, const std::string& program, const fs::path& out) {
   const std::string where = joined({out.string()});
   return header(a, "lgabench-merge", "01:00:00", out, "merge_%j.txt") +
          fmt::format("{0} status {1}\nexec {0} merge {1}/whole {1}/part-*/\n", program, where);
@@ -127,7 +128,7 @@ void expect_repeatable(const RunArguments& run) {
     if (given) throw InputError(fmt::format("{}: of run alone; an element goes on where it stopped", option));
 }
 
-int write_scripts(Arguments a) {
+int write_scripts(ClusterArguments a) {
   expect_repeatable(a.run);
   const double limit_s = seconds_of(a.time);
   const fs::path out = fs::absolute(a.run.out.empty() ? "runs/" + a.run.suite + "-cluster" : a.run.out);
@@ -157,7 +158,7 @@ int write_scripts(Arguments a) {
 }  // namespace
 
 void add_cluster(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ClusterArguments>();
   CLI::App* verb = app.add_subcommand("cluster", "Write scripts that compute a run as a Slurm job array");
   add_run_options(*verb, a->run);
   verb->add_option("--elements", a->elements,

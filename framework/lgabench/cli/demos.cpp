@@ -17,7 +17,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct DemosArguments {
   std::string scenario, layout, engine, out, inspect, selection;
   int n = 10, noisy = 0;
   double noise = .2;
@@ -44,7 +44,7 @@ std::vector<Selection> selections_of(const std::string& file, const Scenario& sc
   return all;
 }
 
-void write(const Arguments& a) {
+void write(const DemosArguments& a) {
   if (a.scenario.empty() || a.out.empty())
     throw InputError("demos: expected SCENARIO and --out FILE.hdf5, or --inspect FILE");
   const Scenario scenario = load_scenario(a.scenario);
@@ -79,7 +79,7 @@ void inspect(const std::string& file) {
 }  // namespace
 
 void add_demos(CLI::App& app, int&) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<DemosArguments>();
   CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--selection", a->selection,

@@ -177,12 +177,12 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
 }  // namespace
 
 void add_info(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct InfoArguments {
     std::string name;
     bool json = false;
     std::vector<fs::path> directories;
   };
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<InfoArguments>();
   CLI::App* verb =
       app.add_subcommand("info", "Show everything known about a method, engine, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");

@@ -21,7 +21,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct LeaderboardArguments {
   std::string action, what, about, against, reason, python = "python3";
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
@@ -35,7 +35,7 @@ int print_all(const std::vector<std::string>& lines, const char* before) {
   return lines.empty() ? ok : regression;
 }
 
-int add(const Arguments& a) {
+int add(const LeaderboardArguments& a) {
   if (a.what.empty() || a.about.empty()) throw InputError("leaderboard add: expected RUN, and --entry META.json");
   expect_run(a.what);
   const leaderboard::Added added = leaderboard::add_run(a.board, a.what, leaderboard::read_about(a.about), a.rows);
@@ -55,7 +55,7 @@ void expect_board(const fs::path& board) {
 }
 
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
-int verify(Arguments a) {
+int verify(LeaderboardArguments a) {
   if (a.replay.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
   Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
@@ -96,14 +96,14 @@ int verify(Arguments a) {
   return differs ? regression : unverified > 0 ? usage : ok;
 }
 
-int withdraw(const Arguments& a) {
+int withdraw(const LeaderboardArguments& a) {
   if (a.what.empty() || a.reason.empty()) throw InputError("leaderboard withdraw: expected ENTRY, and --reason WORDS");
   leaderboard::withdraw(a.board, a.what, a.reason, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
   to_stdout("withdrawn; its files remain\n");
   return ok;
 }
 
-int check(const Arguments& a) {
+int check(const LeaderboardArguments& a) {
   const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
   for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
   to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
@@ -111,7 +111,7 @@ int check(const Arguments& a) {
   return print_all(checked.problems, "");
 }
 
-int build(const Arguments& a) {
+int build(const LeaderboardArguments& a) {
   for (const fs::path& file : leaderboard::build(a.board, a.documents)) to_stdout("{}\n", file.string());
   if (a.archive.empty()) return ok;
   if (const int found = check(a); found != ok) return found;
@@ -123,7 +123,7 @@ int build(const Arguments& a) {
 }  // namespace
 
 void add_leaderboard(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<LeaderboardArguments>();
   CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
   const Words actions{"add", "verify", "build", "check", "withdraw"};
   verb->add_option("ACTION", a->action, "add, verify, build, check or withdraw")

@@ -62,7 +62,7 @@ Json listing(const Catalogue& catalogue) {
   return all;
 }
 
-void print(const Json& all) {
+void print_list(const Json& all) {
   for (const char* section : sections) {
     to_stdout("{}\n", section);
     std::size_t width = 0;
@@ -86,11 +86,11 @@ Json reference_rows() {
 }
 
 void add_list(CLI::App& app, int& exit) {
-  struct Arguments {
+  struct ListArguments {
     bool json = false;
     std::vector<fs::path> directories;
   };
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand(
       "list", "List methods, engines, environments, suites and scenarios, and plugins that were refused");
   verb->footer("Example: lgabench list --plugin-path my/build");
@@ -102,7 +102,7 @@ void add_list(CLI::App& app, int& exit) {
     if (arguments->json)
       to_stdout("{}\n", all.dump(2));
     else
-      print(all);
+      print_list(all);
     exit = ok;
   });
 }

@@ -16,7 +16,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct NewPluginArguments {
   std::string name, kind = "method";
   fs::path directory;
 };
@@ -40,7 +40,7 @@ void expect_name(const std::string& name) {
         "new-plugin: \"{}\": expected at most 63 lower-case letters, digits and underscores, a letter first", name));
 }
 
-void new_plugin(const Arguments& a) {
+void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
   if (std::error_code error; fs::exists(directory, error))
@@ -69,7 +69,7 @@ void new_plugin(const Arguments& a) {
 }  // namespace
 
 void add_new_plugin(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<NewPluginArguments>();
   CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project of a new plugin, for you to change");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
   verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")

@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-struct Arguments {
+struct NewScenarioArguments {
   std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
   Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
   std::optional<double> angle_deg;
@@ -63,7 +63,7 @@ Json range_of(const std::string& text) {
   return {fewest, most};
 }
 
-Json scenario_json(const Arguments& a) {
+Json scenario_json(const NewScenarioArguments& a) {
   Json truth{{"target", set_of(a.types, a.textures)}};
   const EnvironmentType& environment = find_environment(environment_id);
   const std::optional<SecondRole>& second = find_task(environment, a.task).second;
@@ -87,7 +87,7 @@ Json scenario_json(const Arguments& a) {
   return json;
 }
 
-void new_scenario(Arguments a) {
+void new_scenario(NewScenarioArguments a) {
   const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
     throw InputError(fmt::format("{}: is there already; nothing was written", file.string()));
@@ -109,7 +109,7 @@ void new_scenario(Arguments a) {
 }  // namespace
 
 void add_new_scenario(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<NewScenarioArguments>();
   CLI::App* verb =
       app.add_subcommand("new-scenario", "Write a tabletop scenario of your own: a command, what it means, its scenes");
   const auto list = [verb](const char* name, Words& words, const char* help) {

@@ -122,7 +122,7 @@ std::string targets(const Scene& scene, const Observation& seen) {
   });
 }
 
-struct Played {
+struct Replayed {
   Cell cell;
   Scenario scenario;
 };
@@ -135,7 +135,7 @@ class Pictures {
   // and what the oracle would do (null without the cell's engine). @throws InputError where the scene is not the one
   // asked for.
   Json draw(const PictureRequest& request) {
-    const Played& played = cell(request.cell.string());
+    const Replayed& played = cell(request.cell.string());
     const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
                                    request.index, played.cell.scenes_of_seed());
     if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
@@ -201,16 +201,16 @@ class Pictures {
     return made.get();
   }
 
-  const Played& cell(const std::string& file) {
+  const Replayed& cell(const std::string& file) {
     const auto known = cells_.find(file);
     if (known != cells_.end()) return *known->second;
     Cell read = read_cell(read_json(file), file);
     Scenario scenario = read_scenario(*read.scenario, file + ": /scenario");
-    return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
+    return *(cells_[file] = std::make_unique<Replayed>(Replayed{std::move(read), std::move(scenario)}));
   }
 
   std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space
-  std::map<std::string, std::unique_ptr<Played>> cells_;                             // by file
+  std::map<std::string, std::unique_ptr<Replayed>> cells_;                           // by file
 };
 
 }  // namespace

@@ -18,7 +18,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct RenderArguments {
   std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, out;
   std::uint64_t seed = 0;
   int index = 0;
@@ -52,7 +52,7 @@ struct Panels {
   }
 };
 
-void render_gallery(const Arguments& arguments) {
+void render_gallery(const RenderArguments& arguments) {
   const Sheet sheet = gallery(arguments.gallery);
   const fs::path file = arguments.out.empty() ? fmt::format("{}.png", arguments.gallery) : arguments.out;
   write_file(file, sheet.png);
@@ -60,7 +60,7 @@ void render_gallery(const Arguments& arguments) {
   to_stdout("{}\n\n{}", file.string(), sheet.legend);
 }
 
-void render(const Arguments& arguments) {
+void render(const RenderArguments& arguments) {
   const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
@@ -89,7 +89,7 @@ void render(const Arguments& arguments) {
 }  // namespace
 
 void add_render(CLI::App& app, int&) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
   std::vector<std::string> galleries{"objects", "textures", "scenes"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);

@@ -24,7 +24,7 @@ namespace {
 constexpr double frame_s = .05;  // of simulated time
 constexpr int zoom = 3;
 
-struct Arguments {
+struct ReplayArguments {
   fs::path run, out;
   std::string episode;
   std::vector<fs::path> plugin_path;
@@ -53,7 +53,7 @@ fs::path cell_of(const fs::path& run, const std::string& key) {
 }
 
 // KEY/ARM/INDEX, or KEY/INDEX of the first arm.
-Recorded recorded(const Arguments& a) {
+Recorded recorded(const ReplayArguments& a) {
   const std::size_t first = a.episode.find('/'), last = a.episode.rfind('/');
   Recorded episode;
   if (first == std::string::npos || !CLI::detail::lexical_cast(a.episode.substr(last + 1), episode.index))
@@ -119,7 +119,7 @@ Picture filmstrip(const std::vector<Picture>& frames) {
   return strip;
 }
 
-void replay(const Arguments& a) {
+void replay(const ReplayArguments& a) {
   const std::string ending = a.out.extension().string();
   if (ending != ".gif" && ending != ".png") throw InputError("replay: expected --out FILE.gif or FILE.png");
   const Recorded episode = recorded(a);
@@ -155,7 +155,7 @@ void replay(const Arguments& a) {
 }  // namespace
 
 void add_replay(CLI::App& app, int&) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ReplayArguments>();
   CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
   verb->add_option("run", a->run, "The run's directory")->required();
   verb->add_option(

@@ -21,7 +21,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct SelectArguments {
   std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
                               model, cassette;
   int concurrency = 4, max_queries = -1;
@@ -43,7 +43,7 @@ struct Answerer {
   std::unique_ptr<LanguageModel> model;
 };
 
-Answerer make_answerer(const Arguments& a) {
+Answerer make_answerer(const SelectArguments& a) {
   Answerer answerer;
   const bool live = a.answers == "openai";
   const std::string file = live ? a.cassette : cassette_of(a.answers);
@@ -89,7 +89,7 @@ std::vector<Asked> commands_of(const Scenario& scenario) {
 
 // All commands of the suite, or of the scenario of that id, or the one with that utterance; else the words alone, which
 // have no truth.
-std::vector<Asked> find_commands(const Arguments& arguments) {
+std::vector<Asked> find_commands(const SelectArguments& arguments) {
   const Truth truth = read_truth(arguments.truth);
   if (!arguments.suite.empty()) {
     std::vector<Asked> all;
@@ -137,7 +137,7 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
 }
 
-void select(const Asked& asked, LanguageModel* model, const Arguments& arguments) {
+void select(const Asked& asked, LanguageModel* model, const SelectArguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
   if (!model)
     model = &recorded.emplace(asked.space, asked.answers_of,
@@ -169,7 +169,7 @@ void select(const Asked& asked, LanguageModel* model, const Arguments& arguments
 }  // namespace
 
 void add_select(CLI::App& app, int&) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SelectArguments>();
   CLI::App* verb = app.add_subcommand("select", worker_summary("select"));
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);

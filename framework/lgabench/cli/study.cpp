@@ -22,7 +22,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct StudyArguments {
   std::string what, host, protocol = "paper";
   fs::path path, out;
   std::string bind = "127.0.0.1";
@@ -30,7 +30,7 @@ struct Arguments {
   bool pin = false, rehearsal = false, behind_tls_proxy = false;
 };
 
-int new_study(const Arguments& a) {
+int new_study(const StudyArguments& a) {
   const fs::path templates = data_directory() / "protocols";
   const fs::path shipped = templates / (a.protocol + ".json.in");
   if (a.protocol.find('/') != a.protocol.npos || !fs::exists(shipped))
@@ -56,7 +56,7 @@ int new_study(const Arguments& a) {
 // A protocol, or the directory of one.
 fs::path protocol_file(const fs::path& path) { return fs::is_directory(path) ? path / "protocol.json" : path; }
 
-int check(const Arguments& a) {
+int check(const StudyArguments& a) {
   const fs::path file = protocol_file(a.path);
   const study::Protocol protocol = study::read_protocol(file);
   const std::vector<std::string> blanks = study::blanks(protocol);
@@ -87,7 +87,7 @@ void serve_until_stopped(study::Server& server) {
   stopper.join();
 }
 
-int serve(const Arguments& a) {
+int serve(const StudyArguments& a) {
   const fs::path file = protocol_file(a.path);
   study::Protocol protocol = study::read_protocol(file);
   const study::Kind kind = a.rehearsal ? study::Kind::rehearsal : study::Kind::people;
@@ -111,7 +111,7 @@ int serve(const Arguments& a) {
   return ok;
 }
 
-int rehearse(const Arguments& a) {
+int rehearse(const StudyArguments& a) {
   const fs::path file = protocol_file(a.path);
   ::umask(077);
   study::Study study(a.out, study::read_protocol(file), file, study::Kind::rehearsal);
@@ -131,13 +131,13 @@ int rehearse(const Arguments& a) {
   return ok;
 }
 
-int report_study(const Arguments& a) {
+int report_study(const StudyArguments& a) {
   to_stdout("{}", report::terminal(study::write_report(a.path), a.path));
   to_stderr("{}\n", (a.path / "report.html").string());
   return ok;
 }
 
-int carry_out(const Arguments& a) {
+int carry_out(const StudyArguments& a) {
   if (a.out.empty() && (a.what == "serve" || a.what == "rehearse"))
     throw InputError(fmt::format("study {}: expected --out DIR", a.what));
   if (a.what == "new") return new_study(a);
@@ -150,7 +150,7 @@ int carry_out(const Arguments& a) {
 }  // namespace
 
 void add_study(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<StudyArguments>();
   const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
   CLI::App* verb = app.add_subcommand("study", "Run a user study in a browser, for the rows Human and LGA-HILL");
   verb->add_option("what", a->what,

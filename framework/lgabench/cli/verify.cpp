@@ -28,7 +28,7 @@
 namespace lgabench::cli {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   fs::path run;
   int sample = 3, jobs = 0;  // jobs 0: as many as there are cores
   std::optional<std::uint32_t> seed;
@@ -178,8 +178,8 @@ Json by_plugin(const Json& build, const Cell& cell) {
   return named;
 }
 
-void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
-           const std::set<std::string>& why, const std::vector<Recomputed>& verdicts) {
+void print_verdicts(const VerifyArguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
+                    const std::set<std::string>& why, const std::vector<Recomputed>& verdicts) {
   if (a.json) {
     Json cells = Json::array();
     for (const Recomputed& v : verdicts)
@@ -219,7 +219,7 @@ void print(const Arguments& a, const Inventory& inventory, std::uint32_t seed, s
   if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
 }
 
-int verify(const Arguments& a) {
+int verify(const VerifyArguments& a) {
   expect_run(a.run);
   const Json record = read_json(a.run / "run.json", Links::refused);
   const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
@@ -276,7 +276,7 @@ int verify(const Arguments& a) {
       why.insert(excuses[i].begin(), excuses[i].end());
     }
   }
-  print(a, inventory, seed, of, why, verdicts);
+  print_verdicts(a, inventory, seed, of, why, verdicts);
   const std::vector<report::PooledAgreement> pools = pooled(verdicts);
   const bool beyond_chance = std::any_of(pools.begin(), pools.end(), [](const auto& pool) { return pool.differs(); });
   if (differing(verdicts) > 0 || beyond_chance || !inventory.edited.empty()) return regression;
@@ -287,7 +287,7 @@ int verify(const Arguments& a) {
 }  // namespace
 
 void add_verify(CLI::App& app, int& exit) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<VerifyArguments>();
   CLI::App* verb = app.add_subcommand(
       "verify", "Compute cells of a finished run again with this build, and say whether they are what was recorded");
   verb->add_option("RUN", a->run, "The run's directory")->required();

@@ -9,16 +9,13 @@
 
 #include <lgabench/core/random.hpp>
 #include <lgabench/report/resampled_mean.hpp>
+#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::report {
 namespace {
 
 // One unit's outcomes by scene: their sum over its policies, and how many played it.
 using ByScene = std::map<std::string, std::pair<double, int>>;
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
 
 bool one_policy(const Samples& scenarios) { return scenarios.size() == 1 && scenarios.front().units.size() == 1; }
 

@@ -22,7 +22,7 @@ std::string plain(const std::string& text) {
   return out;
 }
 
-std::string text_of(const Spans& spans) {
+std::string markdown_text(const Spans& spans) {
   std::string text;
   for (const Span& span : spans) {
     const std::string words = span.numeric ? span.text : plain(span.text);
@@ -40,9 +40,9 @@ std::string row_of(const std::vector<std::string>& cells) { return fmt::format("
 std::string grid_text(const Grid& grid) {
   const auto line = [&grid](const Cell& group, const std::vector<Cell>& cells) {
     std::vector<std::string> texts;
-    if (!grid.group_head.empty()) texts.push_back(text_of(group.spans));
+    if (!grid.group_head.empty()) texts.push_back(markdown_text(group.spans));
     for (std::size_t i = 0; i < cells.size(); ++i)
-      if (i != grid.bars) texts.push_back(text_of(cells[i].spans));
+      if (i != grid.bars) texts.push_back(markdown_text(cells[i].spans));
     return row_of(texts);
   };
   std::vector<std::string> rules;
@@ -52,12 +52,12 @@ std::string grid_text(const Grid& grid) {
   return text;
 }
 
-std::string block_text(const Block& block) {
+std::string markdown_block(const Block& block) {
   std::string text;
   if (const auto* heading = std::get_if<Heading>(&block.content)) text = "### " + plain(heading->text) + '\n';
-  if (const auto* paragraph = std::get_if<Paragraph>(&block.content)) text = text_of(paragraph->spans) + '\n';
+  if (const auto* paragraph = std::get_if<Paragraph>(&block.content)) text = markdown_text(paragraph->spans) + '\n';
   if (const auto* list = std::get_if<List>(&block.content))
-    for (const Spans& item : list->items) text += "- " + text_of(item) + '\n';
+    for (const Spans& item : list->items) text += "- " + markdown_text(item) + '\n';
   if (const auto* facts = std::get_if<Facts>(&block.content))
     for (const auto& [name, value] : facts->items) text += fmt::format("- {}: {}\n", plain(name), plain(value));
   if (const auto* grid = std::get_if<Grid>(&block.content)) text = grid_text(*grid);
@@ -72,13 +72,13 @@ std::string block_text(const Block& block) {
 std::string markdown(const Section& section) {
   std::string text;
   for (const Block& block : section.blocks)
-    if ((block.in & in_markdown) != 0) text += '\n' + block_text(block);
+    if ((block.in & in_markdown) != 0) text += '\n' + markdown_block(block);
   return text;
 }
 
 std::string markdown(const Document& document) {
   std::string text = fmt::format("# {}\n\n", plain(document.title));
-  if (!document.headline.empty()) text += text_of(document.headline) + "\n\n";
+  if (!document.headline.empty()) text += markdown_text(document.headline) + "\n\n";
   for (const Note& note : document.notes)
     if (note.kind != Note::source)
       text +=

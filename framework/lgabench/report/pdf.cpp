@@ -10,7 +10,7 @@
 namespace lgabench::report {
 namespace {
 
-constexpr std::array<const char*, 6> colours{"#000000", "#1b1f24", "#59626d", "#d5dae0", "#ffffff", ""};
+constexpr std::array<const char*, 6> rgb_colours{"#000000", "#1b1f24", "#59626d", "#d5dae0", "#ffffff", ""};
 
 // "0.106 0.122 0.141"
 std::string rgb(const std::string& colour) {
@@ -20,7 +20,7 @@ std::string rgb(const std::string& colour) {
 }
 
 // A string of PDF in the encoding WinAnsi, which is Latin-1 for all that a chart holds.
-std::string quoted(const std::string& text) {
+std::string pdf_string(const std::string& text) {
   std::string out = "(";
   for (char32_t c : characters(text)) {
     if (c == 0x2019) c = '\'';
@@ -58,7 +58,7 @@ class Pdf : public Canvas {
     // The page's y axis is turned over; text is turned back.
     content_ +=
         fmt::format("BT /{} {:g} Tf {} rg {:.4f} {:.4f} {:.4f} {:.4f} {:.2f} {:.2f} Tm {} Tj ET\n", bold ? "B" : "R",
-                    size, rgb(colour(ink)), c, s, s, -c, x - before * c, y - before * s, quoted(words));
+                    size, rgb(colour(ink)), c, s, s, -c, x - before * c, y - before * s, pdf_string(words));
   }
   std::string file(double width, double height) const {
     const std::string content = fmt::format("1 0 0 -1 0 {:.0f} cm\n{}", height, content_);
@@ -87,7 +87,9 @@ class Pdf : public Canvas {
   }
 
  private:
-  std::string colour(Ink ink) const { return ink == Ink::series ? series_ : colours[static_cast<std::size_t>(ink)]; }
+  std::string colour(Ink ink) const {
+    return ink == Ink::series ? series_ : rgb_colours[static_cast<std::size_t>(ink)];
+  }
 
   std::string content_, series_ = "#000000";
 };

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double z = 1.959963984540054;  // standard normal quantile at .975
 
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 // Probability that, of the ranks 1..n with random signs, the positive ones sum to `sum` at most.
 double signed_rank_tail(std::size_t n, std::size_t sum) {
   std::vector<double> ways(n * (n + 1) / 2 + 1);  // whole numbers up to 2^25
@@ -35,6 +31,10 @@ Change student(double m, double error, double freedom) {
 }
 
 }  // namespace
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
 
 Interval wilson(double successes, int episodes) {
   const double n = episodes, p = successes / n;

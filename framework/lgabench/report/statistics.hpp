@@ -5,6 +5,9 @@
 
 namespace lgabench::report {
 
+/// @pre there is a value
+double mean(const std::vector<double>& values);
+
 struct Interval {
   double low = 0, high = 1;
 };

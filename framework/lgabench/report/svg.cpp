@@ -9,10 +9,10 @@
 namespace lgabench::report {
 namespace {
 
-constexpr std::array<const char*, 6> colours{"none", "#1b1f24", "#59626d", "#d5dae0", "#ffffff", "currentColor"};
+constexpr std::array<const char*, 6> css_colours{"none", "#1b1f24", "#59626d", "#d5dae0", "#ffffff", "currentColor"};
 constexpr std::array<const char*, 6> names{"none", "ink", "soft", "rule", "paper", "series"};
 
-std::string colour(Ink ink) { return colours[static_cast<std::size_t>(ink)]; }
+std::string colour(Ink ink) { return css_colours[static_cast<std::size_t>(ink)]; }
 std::string name(Ink ink) { return names[static_cast<std::size_t>(ink)]; }
 
 // Without "-0.0".

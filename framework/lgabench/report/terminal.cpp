@@ -18,7 +18,7 @@ std::string padded(const std::string& text, std::size_t width) {
 
 std::string text_of(const Spans& spans) { return Cell(spans).text(); }
 
-std::string block_text(const Block& block) {
+std::string terminal_block(const Block& block) {
   if (const Grid* grid = std::get_if<Grid>(&block.content)) return terminal(*grid) + '\n';
   std::string text;
   if (const List* list = std::get_if<List>(&block.content))
@@ -63,7 +63,7 @@ std::string terminal(const Grid& grid) {
 std::string terminal(const Section& section) {
   std::string text;
   for (const Block& block : section.blocks)
-    if ((block.in & in_terminal) != 0) text += block_text(block);
+    if ((block.in & in_terminal) != 0) text += terminal_block(block);
   return text;
 }
 

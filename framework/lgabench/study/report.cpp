@@ -17,10 +17,8 @@ namespace {
 
 using namespace lgabench::report;
 
-constexpr std::array both{Condition::human, Condition::lga_hill};
 constexpr const char* simulated_words = "rehearsal, not people";
 
-std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
 std::string name(Condition condition) { return display_name(to_string(condition)); }
 std::string seconds(double s) { return fixed(s, 1); }
 std::string seconds(const std::optional<double>& s) { return s ? seconds(*s) : "–"; }
@@ -58,7 +56,7 @@ Chart seconds_chart(const StudyResults& results) {
   double highest = 0;
   chart.alternative = "Mean seconds a command:";
   const auto paper = published();
-  for (const Condition condition : both) {
+  for (const Condition condition : conditions) {
     const double x = condition == Condition::human ? .3 : .7;
     chart.ticks.push_back({x, name(condition)});
     if (const auto& s = results.seconds[index(condition)]) {
@@ -103,7 +101,7 @@ Grid by_condition(const std::string& name_of_table, const std::string& caption, 
   grid.heads = {"condition"};
   grid.heads.insert(grid.heads.end(), heads.begin(), heads.end());
   grid.align = "l" + std::string(heads.size(), 'r');
-  for (const Condition condition : both) {
+  for (const Condition condition : conditions) {
     std::vector<Cell> cells{name(condition)};
     for (const std::string& value : values(condition)) cells.emplace_back(value);
     grid.rows.push_back({{}, std::move(cells)});
@@ -135,7 +133,7 @@ Section seconds_section(const StudyResults& results) {
     tests.items.push_back(
         {fmt::format("The same on active seconds (without loss of focus, and without pauses over {:g} s): {}, {}",
                      idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
-  for (const Condition condition : both)
+  for (const Condition condition : conditions)
     if (const auto& first = results.by_first[index(condition)])
       tests.items.push_back({fmt::format("Who began with {}: {} s{}", name(condition), signed_text(first->mean, 1),
                                          first->sd ? fmt::format(" (sd {})", seconds(first->sd)) : "")});
@@ -312,7 +310,7 @@ Json to_json(const StudyResults& results) {
             {"conditions", Json::object()},
             {"commands", Json::array()},
             {"crossover", nullptr}};
-  for (const Condition condition : both)
+  for (const Condition condition : conditions)
     json["conditions"][to_string(condition)] = {{"seconds", spread_json(results.seconds[index(condition)])},
                                                 {"active_seconds", spread_json(results.active_s[index(condition)])},
                                                 {"phi", quality_json(results.phi[index(condition)])}};

@@ -8,9 +8,6 @@
 namespace lgabench::study {
 namespace {
 
-constexpr std::array both{Condition::human, Condition::lga_hill};
-std::size_t index(Condition condition) { return static_cast<std::size_t>(condition); }
-
 class MeanOf {
  public:
   void add(const Json& value) {
@@ -59,7 +56,7 @@ std::vector<CommandResult> commands_of(const StudyResults& results) {
       for (const PersonResult& person : results.people) {
         if (!person.excluded.empty()) continue;
         std::array<std::optional<double>, 2> s;
-        for (const Condition condition : both)
+        for (const Condition condition : conditions)
           for (const Trial* trial : person.counted[index(condition)])
             if (trial->item == &item) s[index(condition)] = trial->raw_s;
         for (const std::size_t c : {0, 1})
@@ -114,7 +111,7 @@ void compare(StudyResults& results) {
   std::vector<CrossoverPerson> crossed;
   for (const PersonResult& person : results.people) {
     if (!person.excluded.empty()) continue;
-    for (const Condition condition : both) {
+    for (const Condition condition : conditions) {
       raw[index(condition)].push_back(person.mean_s(condition));
       active[index(condition)].push_back(person.mean_s(condition, &Trial::active_s));
     }
@@ -173,7 +170,7 @@ StudyResults results_of(const Record& record) {
   }
   compare(results);
   results.commands = commands_of(results);
-  for (const Condition condition : both) results.phi[index(condition)] = quality_of(results, condition);
+  for (const Condition condition : conditions) results.phi[index(condition)] = quality_of(results, condition);
   return results;
 }
 
