@@ -135,6 +135,18 @@ class PythonMethods(Case):
         said = self.call(*RUN, "--methods", "lga,mine.py:Mine", "--set", "lga.epochs=5", "--out", "out", expect=2)
         self.assertIn("python differs", said.stderr)
 
+    def test_its_options_are_its_own_whatever_they_are_called(self):
+        """q1 sets a network and a loss for all methods that train the framework's."""
+        own = METHOD.replace('options = {', 'options = {"loss": {"default": "huber", "values": ["huber"], "help": "", '
+                             '"source": "test"}, "network": {"default": 5, "help": "layers", "source": "test"}, ')
+        (self.dir / "mine.py").write_text(own)
+        self.call(*RUN, "--methods", "mine.py:Mine", "--out", "out")
+        (cell, _), = self.cells("out").values()
+        self.assertEqual(cell["method"]["options"], {"how": "", "loss": "huber", "network": 5})
+        (self.dir / "mine.py").write_text(own.replace('"source"', '"framework": True, "source"', 1))
+        self.assertIn('options: /loss: unknown member "framework"',
+                      self.call(*RUN, "--methods", "mine.py:Mine", "--out", "other", expect=4).stderr)
+
     def test_a_package_beside_the_file_is_part_of_the_build(self):
         (self.dir / "pack").mkdir()
         (self.dir / "pack/__init__.py").write_text("from pack.inner import x\n")

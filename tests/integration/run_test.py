@@ -40,6 +40,8 @@ class BadInput(Case):
             (["q1", "--episodes", "0"], r"--episodes: .*got 0"),
             (["q1", "--seeds", "3:1"], r"--seeds: .*3:1 has 0"),
             (["q1", "--layout", "moon"], r'--layout: no layout "moon", expected one of: .*cells, continuous, released'),
+            (["q1", "--layout", "table"], r'scenario red_heart \(tabletop\): no layout "table", expected one of: cells, continuous, released'),
+            (["mobile", "--layout", "cells", "--dry-run"], r'scenario \w+ \(mobile\): no layout "cells", expected one of: table'),
             (["q1", "--preset", "nope"], r'q1.json: no preset "nope", expected one of: leaderboard, paper, paper_text, smoke'),
             (["q1", "--set", "lga.epocs=3"], r'unknown member "epocs" \(did you mean "epochs"\?\), expected one of: .*epochs'),
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
@@ -112,6 +114,33 @@ class BadInput(Case):
         self.refused("demos", "heart", "--out", "not.hdf5/x", says=r"not.hdf5/x: cannot be written: Not a directory")
         self.refused("demos", "nope", "--out", "x.hdf5", says=r'no scenario "nope", expected one of: ')
         self.refused("demos", "heart", "--n=-1", "--out", "x.hdf5", says=r"--n")
+
+
+class OptionsOfOthers(Case):
+    """A plugin whose options have names of the framework's, and mean something else."""
+    PLUGINS = ["--plugin-path", FIXTURES / "good", "--plugin-path", FIXTURES / "faulty"]
+
+    def test_every_shipped_suite_takes_it(self):
+        names = sorted((BUILD / "share/lgabench/suites").glob("*.json"))
+        self.assertGreater(len(names), 5)
+        for file in names:
+            for preset in [None, *json.loads(file.read_text())["presets"]]:
+                with self.subTest(suite=file.stem, preset=preset):
+                    self.call("run", file.stem, *(["--preset", preset] if preset else []), *self.PLUGINS, "--methods",
+                              "fixture_own_loss,fixture_own_network", "--dry-run")
+
+    def test_it_keeps_its_own_and_none_is_mistaken(self):
+        run = ["run", "q1", "--scenarios", "heart", *self.PLUGINS, "--demos", "10", "--seeds", "0", "--episodes", "2",
+               "--set", "*.epochs=2", "--no-reference", "--out", "out", "--methods"]
+        self.call(*run, "fixture_own_loss,fixture_own_network", expect=3)
+        found = {cell["method"]["id"]: (cell["method"]["options"], status) for cell, status in self.cells("out").values()}
+        options, status = found["fixture_own_loss"]
+        self.assertEqual((options["loss"], options["batches"], status["state"]), ("huber", "drawn", "ok"))
+        options, status = found["fixture_own_network"]
+        self.assertEqual((options["network"], status["state"]), ("resnet", "failed"))
+        self.assertIn('options: /network: expected one of text, released, plain, spot, got "resnet"', status["reason"])
+        self.assertIn('--set: /*/loss: expected one of ["huber"]',
+                      self.call(*run, "fixture_own_loss", "--set", "*.loss=norm", expect=2).stderr)
 
 
 class Variants(Case):

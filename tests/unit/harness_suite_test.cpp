@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <ctime>
 #include <fstream>
 #include <set>
@@ -21,7 +22,9 @@ namespace lgabench {
 namespace {
 
 PluginInfo plugin(const std::string& kind, const std::string& id) {
-  const auto option = [](const Json& usual) { return Json{{"default", usual}, {"help", "help"}, {"source", "test"}}; };
+  const auto option = [](const Json& usual) {
+    return Json{{"default", usual}, {"help", "help"}, {"source", "test"}, {"framework", true}};
+  };
   const Json options{{"epochs", option(750)}, {"rate", option(.5)}, {"loss", option("norm")}};
   return {"/none/" + id + ".so", kind, id, "0.1", "", "", options, sha256(id)};
 }
@@ -234,6 +237,56 @@ TEST(GridOptions, AreRefusedWithTheirPlace) {
   EXPECT_SAYS(refusal_of_options({{"*", {{"epoks", 5}}}}), "q1.json: /presets/p/options/*: unknown member \"epoks\"");
   EXPECT_SAYS(refusal_of_options({{"*", {{"epochs", "few"}}}}),
               "q1.json: /presets/p/options/*/epochs: expected a whole number");
+}
+
+// As plugin(), with an option `loss` of its own that takes one value.
+Catalogue with_a_strangers(const std::string& id) {
+  Catalogue known = catalogue();
+  known.plugins.push_back(plugin("method", id));
+  known.plugins.back().options["loss"] = {
+      {"default", "huber"}, {"values", {"huber"}}, {"help", "its own"}, {"source", "test"}};
+  return known;
+}
+
+TEST(GridOptions, OfASuitesStarReachTheFrameworksOptionsAlone) {
+  Suite suite = load_suite("q1");
+  Grid grid{{"heart"}, {"cells"}, {"e"}, {"a", "mine"}, {10}, {0}, 5, 7, false};
+  grid.options = {{"*", {{"loss", "squared"}, {"epochs", 5}}}};
+  const auto cells_with = [&](const Json& settings) {
+    return expand(suite, grid, {"recorded", settings, false}, with_a_strangers("mine"));
+  };
+  const std::vector<Cell> cells = cells_with(Json::object());
+  EXPECT_EQ(cells.at(0).method.options, Json({{"epochs", 5}, {"rate", .5}, {"loss", "squared"}}));
+  EXPECT_EQ(cells.at(1).method.options, Json({{"epochs", 5}, {"rate", .5}, {"loss", "huber"}}));
+  EXPECT_SAYS(message_of<InputError>([&] {
+                cells_with({{"*", {{"loss", "squared"}}}});
+              }),
+              "--set: /*/loss: expected one of [\"huber\"]");
+  EXPECT_EQ(cells_with({{"*", {{"loss", "huber"}}}}).at(0).method.options.at("loss"), "huber")
+      << "the command line knows whom it speaks to";
+  grid.options = {{"mine", {{"loss", "squared"}}}};
+  EXPECT_SAYS(message_of<InputError>([&] { cells_with(Json::object()); }), "/options/mine/loss: expected one of");
+
+  Catalogue strangers = with_a_strangers("mine");
+  for (PluginInfo& info : strangers.plugins)
+    if (info.id != "mine") info.options.erase("loss");
+  grid.options = {{"*", {{"loss", "huber"}}}};
+  EXPECT_SAYS(message_of<InputError>([&] { expand(suite, grid, {}, strangers); }),
+              "/options/*: unknown member \"loss\"");
+}
+
+TEST(Layouts, ThatAScenarioLacksAreRefusedBeforeAnythingRuns) {
+  for (const auto& [id, wrong, there] :
+       {std::array{"mobile", "cells", "table"}, std::array{"q1", "table", "cells, continuous, released"}}) {
+    const Suite suite = load_suite(id);
+    Grid grid = suite.grid;
+    grid.methods = {"a"}, grid.engines = {"e"}, grid.options = Json::object();
+    EXPECT_NO_THROW(expand(suite, grid, {}, catalogue()));
+    grid.layouts.push_back(wrong);
+    const std::string said = message_of<InputError>([&] { expand(suite, grid, {}, catalogue()); });
+    EXPECT_SAYS(said, fmt::format("scenario {} (", grid.scenarios.front()));
+    EXPECT_SAYS(said, fmt::format("no layout \"{}\", expected one of: {}", wrong, there));
+  }
 }
 
 TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {

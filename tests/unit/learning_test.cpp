@@ -1,4 +1,5 @@
 // Inputs, loss, training and cloning methods.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -336,6 +337,19 @@ Trained learn(const PolicyInputs& seen, const std::vector<Demonstration>& data, 
 
 Action act(const Trained& trained, const Observation& observation) {
   return trained.policy->act(observation, instruction());
+}
+
+TEST(Options, ThatNameNothingKnownAreNeverTakenForADefault) {
+  for (const auto& [option, known] : {std::pair{"network", "text, released, plain, spot"},
+                                      {"loss", "norm, squared"},
+                                      {"batches", "drawn, shuffled"},
+                                      {"policy", "regression, centroid, heat_map"}}) {
+    const auto with_another = [&, name = option] {
+      learn({{Picture::mask}}, demonstrations(2), 1, 0, {{name, "resnet"}});
+    };
+    EXPECT_SAYS(message_of<InputError>(with_another),
+                fmt::format("options: /{}: expected one of {}, got \"resnet\"", option, known));
+  }
 }
 
 // Counts its calls; its one parameter is the sum of the learning rates.

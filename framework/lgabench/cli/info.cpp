@@ -29,6 +29,7 @@ void print(const PluginInfo& plugin) {
               option["source"].get<std::string>());
     if (option.contains("min")) to_stdout("      {} or more\n", canonical(option["min"]));
     if (option.contains("values")) to_stdout("      one of {}\n", canonical(option["values"]));
+    if (option.value("framework", false)) to_stdout("      the framework's: a suite may set it for all methods\n");
     if (option.contains("needs"))
       for (const auto& [value, others] : option["needs"].items())
         for (const auto& [other, values] : others.items())

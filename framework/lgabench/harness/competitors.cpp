@@ -23,31 +23,48 @@ Json own_options(const std::string& method) {
   return options;
 }
 
-// The layer's values for the method: those of its id, then those of "*" for options that it has.
-Json layer_for(const PluginInfo& info, const Json& layer) {
-  const Json any = layer.value("*", Json::object());
-  Json values = Json::object();
-  for (const auto& [option, value] : any.items())
-    if (info.options.contains(option)) values[option] = value;
-  values.update(layer.value(info.id, Json::object()));
-  return values;
-}
+// Options by method id or "*", where they stand, and which of a method's options its "*" reaches. A suite knows no
+// plugin of others, whose option of the same name may mean something else: its "*" is for the framework's.
+struct Layer {
+  const Json& options;
+  std::string file, place;
+  enum class Reach { framework, all } reach;
 
-// Throws for an option in "*" that no plugin has, and for a value that a method of the run does not take.
-void check_layer(const Json& layer, const std::string& file, const std::string& place,
-                 const std::vector<const PluginInfo*>& methods, const Catalogue& catalogue) {
-  const Json any = layer.value("*", Json::object());
-  std::set<std::string> known;
-  for (const PluginInfo& plugin : catalogue.plugins)
-    if (plugin.kind == "method")
-      for (const auto& option : plugin.options.items()) known.insert(option.key());
-  JsonReader(any, file, place + "/*").only({known.begin(), known.end()});
-  for (const PluginInfo* info : methods) {
-    const Json of_any = layer_for(*info, {{"*", any}}), own = layer.value(info->id, Json::object());
-    check_options(*info, JsonReader(of_any, file, place + "/*"));
-    check_options(*info, JsonReader(own, file, place + "/" + info->id));
+  bool reaches(const PluginInfo& info, const std::string& option) const {
+    return info.options.contains(option) && (reach == Reach::all || info.options.at(option).value("framework", false));
   }
-}
+  // The part of "*" that is for the method.
+  Json of_any(const PluginInfo& info) const {
+    const Json all = any();
+    Json values = Json::object();
+    for (const auto& [option, value] : all.items())
+      if (reaches(info, option)) values[option] = value;
+    return values;
+  }
+  Json own(const PluginInfo& info) const { return options.value(info.id, Json::object()); }
+  Json any() const { return options.value("*", Json::object()); }
+  // The values for the method: those of its id, then those of "*".
+  Json of(const PluginInfo& info) const {
+    Json values = of_any(info);
+    values.update(own(info));
+    return values;
+  }
+  // Throws for an option in "*" that reaches no plugin, and for a value that a method of the run does not take.
+  void check(const std::vector<const PluginInfo*>& methods, const Catalogue& catalogue) const {
+    std::set<std::string> known;
+    for (const PluginInfo& plugin : catalogue.plugins)
+      if (plugin.kind == "method")
+        for (const auto& option : plugin.options.items())
+          if (reaches(plugin, option.key())) known.insert(option.key());
+    const Json all = any();
+    JsonReader(all, file, place + "/*").only({known.begin(), known.end()});
+    for (const PluginInfo* info : methods) {
+      const Json shared = of_any(*info), its_own = own(*info);
+      check_options(*info, JsonReader(shared, file, place + "/*"));
+      check_options(*info, JsonReader(its_own, file, place + "/" + info->id));
+    }
+  }
+};
 
 std::string named(const PluginInfo& info, const Json& options, const Json& usual, const std::set<std::string>& told) {
   std::string name = info.id;
@@ -71,12 +88,14 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));
   }
-  check_layer(grid.options, suite.file, grid.options_place, infos, catalogue);
-  check_layer(settings, "--set", "", infos, catalogue);
+  const Layer of_suite{grid.options, suite.file, grid.options_place, Layer::Reach::framework};
+  const Layer of_command{settings, "--set", "", Layer::Reach::all};
+  of_suite.check(infos, catalogue);
+  of_command.check(infos, catalogue);
   for (std::size_t i = 0; i < infos.size(); ++i) {
     const PluginInfo& info = *infos[i];
-    Json given = layer_for(info, grid.options);
-    given.update(layer_for(info, settings));
+    Json given = of_suite.of(info);
+    given.update(of_command.of(info));
     usual[info.id] = check_options(info, JsonReader(given, info.id));
     given.update(own_options(grid.methods[i]));
     methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});

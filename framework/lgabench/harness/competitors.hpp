@@ -11,9 +11,9 @@
 namespace lgabench {
 
 /// The grid's methods, in its order. An option's value is the first that is given by: the row itself, `settings` for
-/// its id, `settings` for "*", the grid for its id, the grid for "*", the plugin's default. A row is named by its id,
-/// followed by "+option=value" (sorted) for each option in which the grid's rows of that id differ and it has another
-/// value than without options of its own.
+/// its id, `settings` for "*", the grid for its id, the grid for "*" where the option is the framework's, the plugin's
+/// default. A row is named by its id, followed by "+option=value" (sorted) for each option in which the grid's rows of
+/// that id differ and it has another value than without options of its own.
 /// @throws PluginError for an unknown method, InputError for an unknown option, for a method that is not written
 /// ID+OPTION=VALUE+..., for two that name one row, for the id of a reference row, and for settings of a method that is
 /// not on the grid.

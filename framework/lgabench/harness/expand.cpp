@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/harness/competitors.hpp>
 
 namespace lgabench {
@@ -34,6 +36,15 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
 // Training seeds of cells that play different test scenes: all, or 0 alone where all play the same.
 std::vector<std::uint64_t> scene_sets(const Grid& grid) {
   return grid.test_scenes == "per_seed" ? grid.seeds : std::vector<std::uint64_t>{0};
+}
+
+// A suite's scenarios may be of several tasks, each with layouts of its own.
+void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
+  const std::vector<std::string>& there = layouts_of(scenario);
+  for (const std::string& layout : layouts)
+    if (std::find(there.begin(), there.end(), layout) == there.end())
+      throw InputError(
+          fmt::format("scenario {} ({}): {}", scenario.id, scenario.environment, none_named("layout", layout, there)));
 }
 
 }  // namespace
@@ -77,6 +88,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth);
+    expect_layouts(scenario, grid.layouts);
     Cell cell = unplayed_cell(suite, grid, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
       cell.method = method;

@@ -31,8 +31,8 @@ bool learns(const Competitor& row);
 
 /// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
-/// @throws as competitors(); PluginError for an unknown engine, InputError for a method that no participant answered at
-/// all, and for participants whom no method asks.
+/// @throws as competitors(); PluginError for an unknown engine, InputError for a layout that a scenario lacks, for a
+/// method that no participant answered at all, and for participants whom no method asks.
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
 
 }  // namespace lgabench

@@ -20,7 +20,7 @@ struct Grid {
   std::uint64_t scene_seed = 0;        // of the test scenes
   bool smoke = false;                  // stamped as not for the leaderboard
   std::string test_scenes = "shared";  // by every training seed; or per_seed: each seed plays its own
-  /// Method id, or "*" for each method that has the option -> option -> value.
+  /// Method id, or "*" for each method that has the framework's option of that name -> option -> value.
   Json options = Json::object();
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };

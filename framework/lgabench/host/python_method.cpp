@@ -64,6 +64,9 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
     plugin.asks = reader.at("asks").string();
     plugin.sha256 = reader.at("sha256").string();
     plugin.options = read_options(canonical(reader.at("options").json()));
+    for (const auto& option : plugin.options.items())  // a CloningMethod's alone
+      JsonReader(option.value(), "options", "/" + option.key())
+          .only({"default", "help", "source", "values", "min", "needs"});
     for (const char* member : {"class", "interpreter", "reads", "user_base", "versions"})
       plugin.python[member] = reader.at(member).json();
     plugin.fingerprint = canonical(plugin.python["versions"]);

@@ -85,7 +85,8 @@ TrainingOptions training_options(const Services& services) {
   training.epochs = static_cast<int>(options.at("epochs").integer(1, 1'000'000));
   training.batch_size = static_cast<int>(options.at("batch_size").integer(1, 1'000'000));
   training.learning_rate = options.at("learning_rate").number();
-  training.batches = options.at("batches").string() == "drawn" ? Batches::drawn : Batches::shuffled;
+  training.batches =
+      named<Batches>(options.at("batches"), {{"drawn", Batches::drawn}, {"shuffled", Batches::shuffled}});
   return training;
 }
 

@@ -9,48 +9,51 @@
 
 /// Members of a descriptor's options that every cloning method has: LGABENCH_METHOD(..., "{" LGABENCH_TRAINING_OPTIONS
 /// "}").
-#define LGABENCH_TRAINING_OPTIONS                                                                                    \
-  R"("epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},)"   \
-  R"("batch_size": {"default": 10, "min": 1, "help": "samples per step", "source": "docs/protocol.md, section 5"},)" \
-  R"("learning_rate": {"default": 0.001, "min": 0, "help": "of Adam", "source": "docs/protocol.md, section 5"},)"    \
-  R"("batches": {"default": "drawn", "values": ["drawn", "shuffled"],)"                                              \
-  R"("help": "each batch drawn with replacement, or each sample once per pass",)"                                    \
+#define LGABENCH_TRAINING_OPTIONS                                                                       \
+  R"("epochs": {"framework": true, "default": 750, "min": 1, "help": "passes over the training data",)" \
+  R"("source": "paper, appendix"},)"                                                                    \
+  R"("batch_size": {"framework": true, "default": 10, "min": 1, "help": "samples per step",)"           \
+  R"("source": "docs/protocol.md, section 5"},)"                                                        \
+  R"("learning_rate": {"framework": true, "default": 0.001, "min": 0, "help": "of Adam",)"              \
+  R"("source": "docs/protocol.md, section 5"},)"                                                        \
+  R"("batches": {"framework": true, "default": "drawn", "values": ["drawn", "shuffled"],)"              \
+  R"("help": "each batch drawn with replacement, or each sample once per pass",)"                       \
   R"("source": "drawn: released code"})"
 
 /// Those of one that trains the paper's network, which reads all of them.
 #define LGABENCH_CLONING_OPTIONS                                                                                  \
   LGABENCH_TRAINING_OPTIONS                                                                                       \
-  R"(,"loss": {"default": "norm", "values": ["norm", "squared"], "help": "L2 norm of the error, or its square",)" \
-  R"("source": "norm: released code; squared: paper"},)"                                                          \
-  R"("network": {"default": "text", "values": ["text", "released", "plain", "spot"],)"                            \
+  R"(,"loss": {"framework": true, "default": "norm", "values": ["norm", "squared"],)"                             \
+  R"("help": "L2 norm of the error, or its square", "source": "norm: released code; squared: paper"},)"           \
+  R"("network": {"framework": true, "default": "text", "values": ["text", "released", "plain", "spot"],)"         \
   R"("help": "batch normalisation before each ReLU, after it, or none; spot: none, and a linear layer of 1000, )" \
   R"(with an action's numbers scaled to their bounds",)"                                                          \
   R"("source": "text: paper, appendix; released: released code; spot: the notebook released for section 6"})"
 
 /// One more, of methods that see the goal mask alone unless it is asked for: options as in Services say whether the
 /// picture has a tower beside the mask's.
-#define LGABENCH_PICTURE_OPTION                                                                       \
-  R"("picture": {"default": "none", "values": ["none", "rgb"], "help": "seen beside the goal mask",)" \
-  R"("source": "rgb: paper, appendix"})"
+#define LGABENCH_PICTURE_OPTION                                                     \
+  R"("picture": {"framework": true, "default": "none", "values": ["none", "rgb"],)" \
+  R"("help": "seen beside the goal mask", "source": "rgb: paper, appendix"})"
 
 /// Those of a method whose policy sees a goal mask, beside the former.
 #define LGABENCH_MASK_OPTIONS                                                                                    \
-  R"("instances": {"default": "all", "values": ["all", "first"], )"                                              \
+  R"("instances": {"framework": true, "default": "all", "values": ["all", "first"], )"                           \
   R"("help": "if several visible instances match one role: all are in the mask, or the first, row by row",)"     \
   R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'"},)"           \
-  R"("mask": {"default": "binary", "values": ["binary", "signed"], )"                                            \
+  R"("mask": {"framework": true, "default": "binary", "values": ["binary", "signed"], )"                         \
   R"("help": "1 on all that matters; signed: -1 on what is to be avoided and is not the target",)"               \
   R"("source": "signed: paper, footnote on cost maps", "needs": {"signed": {"policy": ["regression"]}}},)"       \
-  R"("policy": {"default": "regression", "values": ["regression", "centroid", "heat_map"], )"                    \
+  R"("policy": {"framework": true, "default": "regression", "values": ["regression", "centroid", "heat_map"], )" \
   R"("help": "regression: the network; heat_map: one that keeps spatial positions; centroid: no training, the )" \
   R"(middle of the target. The latter two see target and avoid set apart, and ignore options of the training",)" \
   R"("source": "regression: paper; the others: not the paper's"})"
 
 /// Those of a method whose policy sees none, in their place: it says why it lacks them.
-#define LGABENCH_NO_MASK_OPTIONS                                                              \
-  R"("policy": {"default": "regression", "values": ["regression", "heat_map"], )"             \
-  R"("help": "regression: the network; heat_map: one that keeps spatial positions, and )"     \
-  R"(ignores options of the training. centroid needs a goal mask, which this method lacks",)" \
+#define LGABENCH_NO_MASK_OPTIONS                                                                     \
+  R"("policy": {"framework": true, "default": "regression", "values": ["regression", "heat_map"], )" \
+  R"("help": "regression: the network; heat_map: one that keeps spatial positions, and )"            \
+  R"(ignores options of the training. centroid needs a goal mask, which this method lacks",)"        \
   R"("source": "regression: paper; heat_map: not the paper's"})"
 
 namespace lgabench {

@@ -1,7 +1,6 @@
 #include <lgabench/learning/policies.hpp>
 
 #include <algorithm>
-#include <array>
 
 #include <lgabench/learning/centroid_policy.hpp>
 #include <lgabench/learning/heat_map.hpp>
@@ -13,21 +12,23 @@ namespace {
 
 using Picture = PolicyInputs::Picture;
 
-Architecture architecture_of(const std::string& network) {
-  if (network == "plain" || network == "spot") return Architecture::plain;
-  return network == "released" ? Architecture::released : Architecture::text;
+Architecture architecture_of(const JsonReader& network) {
+  return named<Architecture>(network, {{"text", Architecture::text},
+                                       {"released", Architecture::released},
+                                       {"plain", Architecture::plain},
+                                       {"spot", Architecture::plain}});
 }
 
 std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& options, std::uint64_t seed) {
-  const std::string name = options.at("network").string();
-  const bool spot = name == "spot";
-  NetworkShape shape{{}, rows.text, architecture_of(name), static_cast<int>(rows.actions.size()), spot};
+  const Architecture architecture = architecture_of(options.at("network"));
+  const bool spot = options.at("network").string() == "spot";
+  const Loss loss = named<Loss>(options.at("loss"), {{"norm", Loss::norm}, {"squared", Loss::squared}});
+  NetworkShape shape{{}, rows.text, architecture, static_cast<int>(rows.actions.size()), spot};
   for (const SampleShape::Picture& picture : rows.pictures) {
     if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
     shape.channels.push_back(picture.channels);
   }
-  auto network =
-      std::make_unique<Network>(shape, seed, options.at("loss").string() == "squared" ? Loss::squared : Loss::norm);
+  auto network = std::make_unique<Network>(shape, seed, loss);
   if (spot) return std::make_unique<ScaledLearner>(std::move(network), rows.actions);
   return network;
 }
@@ -64,18 +65,15 @@ PolicyInputs places(PolicyInputs inputs, PictureSize native) {
 }
 
 struct Choice {
-  const char* name;
   PolicyInputs (*inputs)(PolicyInputs, PictureSize native);
   std::unique_ptr<Learner> (*make)(const SampleShape&, const JsonReader& options, std::uint64_t seed);
 };
 
-const Choice& choice(const std::string& policy) {
-  static const std::array choices{Choice{"regression", as_they_are, regression}, Choice{"centroid", one_mask, centroid},
-                                  Choice{"heat_map", places, heat_map}};
-  const auto found =
-      std::find_if(choices.begin(), choices.end(), [&](const Choice& one) { return policy == one.name; });
-  if (found == choices.end()) throw InputError("options: /policy: unknown: " + policy);
-  return *found;
+Choice choice(const std::string& policy) {
+  static const std::vector<std::pair<std::string, Choice>> choices{
+      {"regression", {as_they_are, regression}}, {"centroid", {one_mask, centroid}}, {"heat_map", {places, heat_map}}};
+  const Json name = policy;
+  return named(JsonReader(name, "options", "/policy"), choices);
 }
 
 }  // namespace
