@@ -9,23 +9,14 @@
 #include <mobile/mobile.hpp>
 #include <mobile/plan.hpp>
 #include <mobile/renderer.hpp>
-#include <mobile/sampler.hpp>
 
 #include "../engine_under_test.hpp"
+#include "mobile_scenes.hpp"
 
 namespace lgabench::mobile {
 namespace {
 
 const char* const ids[] = {"bring_fruit", "throw_away_drink"};
-
-const Scenario& scenario(const std::string& id) {
-  static const Scenario bring = load_scenario("bring_fruit"), throw_away = load_scenario("throw_away_drink");
-  return id == bring.id ? bring : throw_away;
-}
-
-Scene test_scene(const std::string& id, const std::string& arm, int index, std::uint64_t training_seed = 0) {
-  return sample_scene(scenario(id), {layout, "test", arm, 0, {}, training_seed}, index);
-}
 
 Environment& environment() {
   static const auto made = make_environment(make_engine());
