@@ -30,6 +30,9 @@ class Server(http.server.ThreadingHTTPServer):
     def __init__(self, yes):
         super().__init__(("127.0.0.1", 0), Handler)
         self.yes, self.asked, self.seconds, self.out_of_order = yes, [], 0, False
+        self.bodies = []
+        self.odd = {}  # candidate -> what is not as usual in its reply: "seconds", or members of the choice
+        self.refuses_temperature = False
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
 
@@ -38,13 +41,19 @@ class Handler(http.server.BaseHTTPRequestHandler):
         request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         question = request["messages"][1]["content"]
         self.server.asked.append(question)
+        self.server.bodies.append(request)
+        if self.server.refuses_temperature and "temperature" in request:
+            self.send_error(400, "Unsupported value: temperature")
+            return
         if self.server.out_of_order:
             self.send_error(400, "out of order")
             return
         time.sleep(self.server.seconds)
         candidate = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)[1]
         text = "Final answer: " + ("yes" if candidate in self.server.yes else "no")
-        body = json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop"}],
+        odd = dict(self.server.odd.get(candidate, {}))
+        time.sleep(odd.pop("seconds", 0))
+        body = json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop", **odd}],
                            "usage": {"total_tokens": 9}}).encode()
         self.send_response(200)
         self.send_header("Content-Type", "application/json")
@@ -128,6 +137,52 @@ class Cassettes(Asking):
         self.call(*run[:-4], "--out", "edited", *run[-2:])
         self.assertFalse(set(self.cells("edited")) & set(self.cells("out")))
 
+    def test_a_reply_without_an_answer_stops_no_other_question(self):
+        self.server.odd = {
+            "star": {"message": {"content": "It is"}, "finish_reason": "length"},
+            "red": {"message": {"content": None, "refusal": "I cannot say."}},
+            "blue": {"message": {"content": None}},
+            "moon": {"seconds": 3},
+            "green": {"finish_reason": None}, "heart": {"finish_reason": "eos_token"}}
+        candidates = [c for c in self.server.odd if c not in ("green", "heart")]
+        said = self.ask("--reply-timeout", "1", expect=3).stderr
+        asked = [re.search(r'"([^"]*)"\?', question)[1] for question in self.server.asked]
+        known = [c for c in candidates if c in asked]
+        self.assertGreater(len(known), 2)
+        self.assertEqual(len(self.server.asked), 224, "each once, both commands")
+        listed = re.findall(r'^no answer: "([^"]*)", asked about "([^"]*)": (.*)$', said, re.M)
+        self.assertEqual(sorted((about, why) for _, about, why in listed), sorted(2 * [(c, {
+            "star": "the reply was cut off: finish_reason is length", "red": "the model refused: I cannot say.",
+            "blue": "the reply is empty", "moon": "no reply within 1 s (--reply-timeout)"}[c]) for c in known]))
+        self.assertIn(f"{2 * len(known)} questions have no answer; all others are answered in tape.jsonl", said)
+        self.assertEqual(len((self.dir / "tape.jsonl").read_text().splitlines()), 224 - 2 * len(known))
+        self.server.odd = {}
+        self.ask()
+        self.assertEqual(len(self.server.asked), 224 + 2 * len(known), "these alone are asked again")
+
+    def test_a_server_that_refuses_a_field_is_asked_without_it(self):
+        self.server.refuses_temperature = True
+        self.assertIn("status 400", self.ask(expect=3).stderr)
+        patch = '{"temperature": null, "reasoning_effort": "low"}'
+        self.ask("--request", patch)
+        self.assertEqual({(body["reasoning_effort"], "temperature" in body) for body in self.server.bodies[-200:]}, {("low", False)})
+        self.server.shutdown()
+        model = 'made-up-1 {"reasoning_effort":"low","temperature":null}'
+        run = ["run", self.suite, *RUN, "--no-reference", "--out", "out", "--answers", "cassette:tape.jsonl"]
+        self.call(*run)
+        self.assertEqual(json.loads((self.dir / "out/run.json").read_text())["answers"][0]["model"], model)
+        self.assert_matches_schemas("out")
+        self.assertIn("bit-identical", self.call("verify", "out", "--all").stdout)
+        # What another request was answered is not mixed with it.
+        line = json.loads((self.dir / "tape.jsonl").read_text().splitlines()[0])
+        line["request"]["temperature"] = 0
+        del line["request"]["reasoning_effort"]
+        with (self.dir / "tape.jsonl").open("a") as tape:
+            tape.write(json.dumps(dict(line, key="k")) + "\n")
+        self.assertIn(f"expected replies of one model, it has those of made-up-1, {model}", self.call(*run, expect=2).stderr)
+        self.assertIn("expected --answers openai with them",
+                      self.call("select", "heart", "--request", "{}", expect=2).stderr)
+
     def test_every_method_that_asks_runs_on_another_models_answers(self):
         """Words made of answers that nobody has seen have no committed embedding."""
         self.ask()
@@ -142,7 +197,7 @@ class Cassettes(Asking):
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
-        line = {"key": "k", "request": {}, "reply": "Final answer: no", "tokens": 1, "seconds": 1.0}
+        line = {"key": "k", "request": {"temperature": 0}, "reply": "Final answer: no", "tokens": 1, "seconds": 1.0}
         (self.dir / "two.jsonl").write_text("".join(json.dumps(dict(line, model=m, key=m)) + "\n" for m in "ab"))
         self.assertIn("it has those of a, b", self.call(*run, "cassette:two.jsonl", expect=2).stderr)
         self.assertIn("expected a command", self.call("select", expect=2).stderr)
@@ -246,6 +301,30 @@ class Live(Asking):
                       self.call(*self.run_it, "--answers", "openai", expect=2).stderr)
         self.assertIn("expected --answers openai with them", self.call(*self.run_it, "--model", "m", expect=2).stderr)
 
+    def test_a_reply_without_an_answer_is_named_and_the_rest_is_kept(self):
+        self.server.odd = {"star": {"message": {"content": "It is"}, "finish_reason": "length"}}
+        said = self.play(expect=3).stderr
+        self.assertIn('1 of 112 questions have no answer from made-up-1: "star"; the first: ', said)
+        for _, status in self.cells("out").values():
+            self.assertEqual((status["state"], status["fault"]), ("failed", "host"))
+        self.assertEqual(len((self.dir / "tape.jsonl").read_text().splitlines()), 2 * 111)
+
+    def test_the_request_is_part_of_what_the_answers_are(self):
+        self.server.refuses_temperature = True
+        self.play("--request", '{"temperature": null}')
+        asked = len(self.server.asked)
+        self.assertEqual({cell["answers"] for cell, _ in self.cells("out").values()}, {'openai:made-up-1 {"temperature":null}'})
+        self.assert_matches_schemas("out")
+        (selection, *_), *_ = selections(self.dir / "out").values()
+        self.assertEqual(selection["source"], 'made-up-1 {"temperature":null}')
+        self.assertIn("4 bit-identical", self.call("verify", "out", "--all").stdout)
+        self.play("--request", '{ "temperature" :null, "seed": null}')
+        self.assertEqual(len(self.server.asked), asked, "the same patch in other words")
+        self.assertIn("out: holds another run (answers", self.play("--request", '{"temperature":null,"seed":1}', expect=2).stderr)
+        self.assertIn("out: holds another run (answers", self.play(expect=2).stderr)
+        self.assertIn("--request: /model: expected it to be left to lgabench", self.play("--request", '{"model":"n"}', expect=2).stderr)
+        self.assertIn("expected --answers openai with them", self.call(*self.run_it, "--request", "{}", expect=2).stderr)
+
     def test_a_worker_that_is_killed_leaves_a_cassette_that_goes_on(self):
         self.server.seconds = 0.05
         run = self.start(*self.run_it, *self.ANSWERS, "--out", "out")
@@ -275,7 +354,7 @@ class Recorded(Case):
     def test_select_refuses_options_of_a_server_without_one(self):
         self.assertIn("--model: expected --answers openai or cassette:FILE with it, not recorded",
                       self.call("select", "heart", "--model", "m", expect=2).stderr)
-        self.assertIn("--max-queries: expected --answers openai with it",
+        self.assertIn("expected --answers openai with them",
                       self.call("select", "heart", "--max-queries", "5", expect=2).stderr)
 
     def test_a_scenario_without_answers_is_played_by_methods_that_ask_no_model(self):

@@ -244,13 +244,19 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
   };
   EXPECT_SAYS(failure_of(completion("Final answer: yes", "length")), "cut off: finish_reason is length");
   EXPECT_SAYS(failure_of(completion("Final answer: yes", "content_filter")), "finish_reason is content_filter");
+  EXPECT_SAYS(failure_of(completion("Final answer: yes", "tool_calls")), "finish_reason is tool_calls");
   EXPECT_SAYS(failure_of(completion("I would say so.")), "expected a last line \"Final answer: yes\"");
   EXPECT_SAYS(failure_of(completion("Final answer: yes\nor rather not")),
               "that ends \"Final answer: yes\nor rather not\"");
   EXPECT_SAYS(failure_of("not JSON"), "language model's reply");
   EXPECT_SAYS(failure_of("{\"choices\": []}"), "/choices: expected one choice");
-  EXPECT_SAYS(failure_of("{\"choices\": [{\"finish_reason\": \"stop\", \"message\": {\"content\": null}}]}"),
-              "content");
+  const auto null_content = [](const Json& refusal) {
+    return Json{{"choices", {{{"finish_reason", "stop"}, {"message", {{"content", nullptr}, {"refusal", refusal}}}}}}}
+        .dump();
+  };
+  EXPECT_SAYS(failure_of(null_content(nullptr)), "the reply is empty");
+  EXPECT_SAYS(failure_of(completion(" \n")), "the reply is empty");
+  EXPECT_SAYS(failure_of(null_content("I cannot help with hearts.")), "the model refused: I cannot help with hearts.");
   EXPECT_EQ(read_file(tape()), "") << "what cannot be read is not kept";
 }
 
@@ -266,7 +272,8 @@ TEST_F(Chat, AReplyWithoutAnAnswerIsAskedForAgain) {
   {
     Server never(evasive_until(1000));
     EXPECT_SAYS(failure(never),
-                "1 of 5 questions have no answer, asked 3 times each; the first: m, asked about \"star\"");
+                "1 of 5 questions have no answer from m: \"star\"; the first: \"Bring me the red heart.\", asked about "
+                "\"star\": language model: expected a last line");
     EXPECT_EQ(never.requests, 4 + 3) << "the others are asked and kept";
   }
   about_star = 0;
@@ -274,6 +281,117 @@ TEST_F(Chat, AReplyWithoutAnAnswerIsAskedForAgain) {
   const OpenAiOptions options = late.options();
   EXPECT_EQ(ask(&options).target.object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(late.requests, 3) << "about the star alone";
+}
+
+TEST_F(Chat, AReplyWithoutAnAnswerStopsNoOtherQuestion) {
+  // Each of two questions, in its own way and always the same, as at temperature 0.
+  const auto misbehave = [](int, const httplib::Request& request, httplib::Response& response) {
+    if (request.body.find("\\\"star\\\"?") != std::string::npos)
+      response.set_content(completion("It is", "length"), "application/json");
+    else if (request.body.find("\\\"blue\\\"?") != std::string::npos)
+      response.set_content("<html>", "text/html");
+    else
+      return false;
+    return true;
+  };
+  Server server(misbehave);
+  const OpenAiOptions options = server.options();
+  for (const int requests : {5, 7}) {
+    try {
+      ask(&options, {"m", 1, -1, {}});
+      ADD_FAILURE() << "no answer was taken for one";
+    } catch (const Unanswered& e) {
+      EXPECT_SAYS(std::string(e.what()), "questions have no answer from m: \"star\", \"blue\"; the first: ");
+      ASSERT_EQ(e.questions.size(), 2u);
+      EXPECT_EQ(e.questions[0],
+                "\"Bring me the red heart.\", asked about \"star\": the reply was cut off: finish_reason is length");
+      EXPECT_SAYS(e.questions[1], "asked about \"blue\": language model's reply: ");
+    }
+    EXPECT_EQ(server.requests, requests) << "each once, and what was answered not again";
+  }
+}
+
+TEST_F(Chat, AWholeReplyIsReadWhateverTheServerCallsIt) {
+  const Json plain{{"role", "assistant"}, {"content", "Final answer: yes"}},
+      parts{{"content", {{{"type", "text"}, {"text", "Final "}}, {{"type", "text"}, {"text", "answer: yes"}}}}};
+  const std::vector<Json> choices{{{"message", plain}},
+                                  {{"message", plain}, {"finish_reason", nullptr}},
+                                  {{"message", parts}},
+                                  {{"message", plain}, {"finish_reason", "eos_token"}},
+                                  {{"message", plain}, {"finish_reason", "STOP"}}};
+  for (const Json& usage : {Json(), Json{{"total_tokens", 640.0}}, Json{{"total_tokens", "many"}}, Json::array()})
+    for (const Json& choice : choices) {
+      fs::remove(tape());
+      Server server([&](int, const auto&, httplib::Response& response) {
+        response.set_content(Json{{"choices", {choice}}, {"usage", usage}}.dump(), "application/json");
+        return true;
+      });
+      const OpenAiOptions options = server.options();
+      const Selection selection = ask(&options);
+      EXPECT_EQ(selection.target.object_types, space.object_types) << choice;
+      EXPECT_EQ(selection.cost.lm_tokens, usage.is_object() && usage["total_tokens"].is_number() ? 5 * 640 : 0);
+    }
+}
+
+TEST_F(Chat, ASlowReplyIsWaitedForAndALateOneConcernsItsQuestionAlone) {
+  Server server([](int, const httplib::Request& request, httplib::Response&) {
+    if (request.body.find("\\\"star\\\"?") != std::string::npos) std::this_thread::sleep_for(std::chrono::seconds(2));
+    return false;
+  });
+  OpenAiOptions options = server.options();
+  EXPECT_EQ(OpenAiOptions().timeout_s, 600);
+  options.timeout_s = 1;
+  EXPECT_SAYS(message_of<Unanswered>([&] { ask(&options); }), "\"star\": no reply within 1 s (--reply-timeout)");
+  EXPECT_EQ(server.requests, 5) << "a server that is slow is not asked twice";
+  options.timeout_s = 3;  // no byte comes for more than half of it
+  expect_red_hearts(ask(&options));
+  EXPECT_EQ(server.requests, 6);
+}
+
+TEST_F(Chat, FieldsOfTheRequestAreLeftOutAndAdded) {
+  Server server([](int, const httplib::Request& request, httplib::Response& response) {
+    if (!Json::parse(request.body).contains("temperature")) return false;
+    response.status = 400;
+    response.set_content(R"({"error": {"message": "Unsupported value: 'temperature'"}})", "application/json");
+    return true;
+  });
+  const OpenAiOptions options = server.options();
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "Unsupported value: 'temperature'");
+  const std::string model =
+      to_text(asked_model("m", R"({"reasoning": {"effort": "low"}, "seed": 1, "temperature": null})"));
+  EXPECT_EQ(model, R"(m {"reasoning":{"effort":"low"},"seed":1,"temperature":null})");
+  EXPECT_EQ(to_text(read_asked_model(model)), model);
+  const auto ask_with = [&](ChatClient* client) {
+    Cassette cassette(tape());
+    ChatLanguageModel asked(cassette, client, {client ? model : cassette.only_model()});
+    return select_features(command, space, asked);
+  };
+  OpenAiClient client(options);
+  EXPECT_EQ(ask_with(&client).source, model);
+  const Json sent = Json::parse(server.bodies.back());
+  EXPECT_FALSE(sent.contains("temperature"));
+  EXPECT_EQ(sent.at("seed"), 1);
+  EXPECT_EQ(sent.at("reasoning"), Json({{"effort", "low"}}));
+  EXPECT_EQ(sent.at("model"), "m");
+  const Selection replayed = ask_with(nullptr);
+  EXPECT_EQ(replayed.target, (FeatureSet{{"heart"}, {"red"}}));
+  EXPECT_EQ(replayed.source, model) << "the cassette tells";
+  EXPECT_SAYS(message_of<InputError>([&] { ask(nullptr); }), "5 of 5 are missing") << "another request, another answer";
+}
+
+TEST(AskedModel, IsItsNameAndWhatIsNotTheUsualRequest) {
+  for (const char* nothing : {"", "{}", R"({"temperature": 0})", R"({"seed": null})"})
+    EXPECT_EQ(to_text(asked_model("a/b:8b", nothing)), "a/b:8b") << nothing;
+  EXPECT_EQ(to_text(asked_model("m", R"({"stop": ["x", null]})")), R"(m {"stop":["x",null]})");
+  EXPECT_EQ(command_words(asked_model("m", R"({"user": "d'Arc"})")), R"(--model m --request '{"user":"d\u0027Arc"}')");
+  EXPECT_EQ(command_words(read_asked_model("m")), "--model m");
+  for (const auto& [patch, complaint] : {std::pair{"[]", "--request: /: expected an object"},
+                                         {"{", "--request: byte"},
+                                         {R"({"model": "n"})", "--request: /model: expected it to be left to lgabench"},
+                                         {R"({"messages": []})", "--request: /messages: expected"},
+                                         {R"({"stream": true})", "--request: /stream: expected"}})
+    EXPECT_SAYS(message_of<InputError>([patch = patch] { asked_model("m", patch); }), complaint);
+  EXPECT_SAYS(message_of<InputError>([] { asked_model("m {}", ""); }), "--model m {}: expected no \" {\" in it");
 }
 
 TEST_F(Chat, AReplyWithoutEndOrBottomIsRefused) {
@@ -305,8 +423,12 @@ TEST_F(Chat, TheKeyIsInNoMessageAndNoReply) {
     };
   };
   {
-    Server server(server_that_says("Final answer: yes", std::string("no credit on ") + key));
-    EXPECT_SAYS(failure(server), "finish_reason is no credit on (key)");
+    Server server([](int, const auto&, httplib::Response& response) {
+      const Json message{{"content", nullptr}, {"refusal", std::string("no credit on ") + key}};
+      response.set_content(Json{{"choices", {{{"message", message}}}}}.dump(), "application/json");
+      return true;
+    });
+    EXPECT_SAYS(failure(server), "the model refused: no credit on (key)");
   }
   {
     Server server(server_that_says(std::string("You are ") + key, "stop"));
@@ -396,7 +518,7 @@ TEST_F(Chat, ASlowTrickleEnds) {
   OpenAiOptions options = server.options();
   options.attempts = 1;
   options.timeout_s = 1;
-  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "given up after 1 attempts");
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "no reply within 1 s");
 }
 
 TEST_F(Chat, NoServerAndNoTlsAreSaid) {

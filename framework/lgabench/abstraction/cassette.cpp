@@ -9,6 +9,7 @@
 #include <cstring>
 #include <string_view>
 
+#include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -30,7 +31,7 @@ bool Cassette::read() {
     reader.only({"key", "model", "request", "reply", "tokens", "seconds"});
     replies_[reader.at("key").string()] = {reader.at("reply").string(), reader.at("tokens").integer(0, 1LL << 40),
                                            reader.at("seconds").number()};
-    models_.insert(reader.at("model").string());
+    models_.insert(to_text(AskedModel::of(reader.at("model").string(), reader.at("request"))));
   }
   return size_ == text.size();
 }
@@ -75,7 +76,7 @@ void Cassette::add(const std::string& key, const Json& request, const ChatReply&
   size_ += bytes.size();
   ++lines_;
   replies_[key] = reply;
-  models_.insert(model);
+  models_.insert(to_text(AskedModel::of(model, JsonReader(request, "request"))));
 }
 
 std::set<std::string> Cassette::models() const {

@@ -52,9 +52,9 @@ class Cassette {
 
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
-  /// Names of the models that replied, sorted.
+  /// Who replied: to_text() of each model and request, sorted.
   std::set<std::string> models() const;
-  /// @throws InputError where they are not of exactly one.
+  /// @throws InputError where it is not exactly one.
   std::string only_model() const;
 
  private:

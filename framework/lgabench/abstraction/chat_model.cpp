@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <exception>
 #include <iterator>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -16,12 +17,7 @@ namespace {
 
 constexpr int most_tries = 3;  // of a question whose reply has no final answer
 
-struct NoFinalAnswer : MethodError {
-  using MethodError::MethodError;
-};
-
-// What can be read. @throws NoFinalAnswer where the last of the tries cannot be; tokens and seconds are those of all
-// tries.
+// What can be read. @throws NoAnswer where the last of the tries cannot be; tokens and seconds are those of all tries.
 ChatReply complete(ChatClient& client, const Json& request) {
   ChatReply all;
   for (int attempt = 1;; ++attempt) {
@@ -33,7 +29,7 @@ ChatReply complete(ChatClient& client, const Json& request) {
       final_answer(reply.text);
       return all;
     } catch (const MethodError& e) {
-      if (attempt == most_tries) throw NoFinalAnswer(e.what());
+      if (attempt == most_tries) throw NoAnswer(fmt::format("{} (asked {} times)", e.what(), most_tries));
     }
   }
 }
@@ -41,37 +37,38 @@ ChatReply complete(ChatClient& client, const Json& request) {
 }  // namespace
 
 ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options)
-    : cassette_(cassette), client_(client), options_(std::move(options)) {}
+    : cassette_(cassette),
+      client_(client),
+      options_(std::move(options)),
+      asked_model_(read_asked_model(options_.model)) {}
 
 // Several at once. A server that fails stops the rest, which has not begun; a question without an answer does not.
-void ChatLanguageModel::ask(const std::vector<Request>& requests) {
+void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::string& utterance) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::condition_variable changed;
-  std::size_t finished = 0, working = 0, unanswered = 0;
-  std::string first_unanswered;
+  std::size_t finished = 0, working = 0;
+  std::map<std::size_t, std::string> unanswered;  // by request: why
   std::exception_ptr failure;
   const auto work = [&] {
     for (std::size_t i; (i = next++) < requests.size();) {
       std::exception_ptr thrown;
       std::string no_answer;
-      const auto said = [&](const std::exception& e) {
-        return fmt::format("{}, asked about \"{}\": {}", options_.model, requests[i].candidate, e.what());
-      };
       try {
         cassette_.add(requests[i].key, requests[i].json, complete(*client_, requests[i].json));
-      } catch (const NoFinalAnswer& e) {
-        no_answer = said(e);  // and is not kept, but asked again another time
+      } catch (const NoAnswer& e) {
+        no_answer = e.what();  // and is not kept, but asked again another time
       } catch (const MethodError& e) {
-        thrown = std::make_exception_ptr(MethodError(said(e)));
+        thrown = std::make_exception_ptr(
+            MethodError(fmt::format("{}, asked about {}: {}", asked_model_.name, requests[i].candidate, e.what())));
       } catch (...) {
         thrown = std::current_exception();
       }
       if (thrown) next = requests.size();
       const std::lock_guard lock(mutex);
       if (thrown && !failure) failure = thrown;
-      if (!no_answer.empty() && unanswered++ == 0) first_unanswered = no_answer;
-      if (!thrown && no_answer.empty()) ++finished;
+      if (!no_answer.empty()) unanswered[i] = no_answer;
+      if (!thrown) ++finished;
       changed.notify_one();
     }
     const std::lock_guard lock(mutex);
@@ -95,9 +92,15 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests) {
   for (std::thread& thread : threads) thread.join();
   asked_ += static_cast<int>(finished);
   if (failure) std::rethrow_exception(failure);
-  if (unanswered > 0)
-    throw MethodError(fmt::format("{} of {} questions have no answer, asked {} times each; the first: {}", unanswered,
-                                  requests.size(), most_tries, first_unanswered));
+  if (unanswered.empty()) return;
+  std::vector<std::string> candidates, lines;
+  for (const auto& [i, why] : unanswered) {
+    candidates.push_back(requests[i].candidate);
+    lines.push_back(fmt::format("\"{}\", asked about {}: {}", utterance, requests[i].candidate, why));
+  }
+  throw Unanswered(fmt::format("{} of {} questions have no answer from {}: {}; the first: {}", unanswered.size(),
+                               requests.size(), asked_model_.name, fmt::join(candidates, ", "), lines.front()),
+                   lines);
 }
 
 std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
@@ -105,11 +108,12 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
   std::vector<Request> requests;
   for (const Question& question : questions) {
     const Prompt prompt = template_.fill(command, space, question);
-    const Json request{
-        {"model", options_.model},
-        {"messages", {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}}},
-        {"temperature", 0}};
-    requests.push_back({Cassette::key(request, template_.version()), question.candidate, request});
+    const Json request = asked_model_.request(
+        {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}});
+    const bool of_target = question.about == Question::About::target || !command.second;
+    requests.push_back({Cassette::key(request, template_.version()),
+                        fmt::format("\"{}\"{}", question.candidate, of_target ? "" : " (" + command.second->id + ")"),
+                        request});
   }
   const auto without_reply = [&] {
     std::vector<Request> some;
@@ -121,15 +125,15 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
     if (!client_)
       throw InputError(fmt::format(
           "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
-          "--space {6} --answers openai --model {1} --cassette {0}",
+          "--space {6} --answers openai {7} --cassette {0}",
           cassette_.file().string(), options_.model, command.utterance, missing, questions.size(), command.task,
-          space.id));
+          space.id, command_words(asked_model_)));
     const Cassette::Turn turn(cassette_, options_.waiting);
     const std::vector<Request> open = without_reply();  // of those whose turn it was before
     if (options_.max_queries >= 0 && asked_ + static_cast<int>(open.size()) > options_.max_queries)
       throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, open.size(),
                                    options_.max_queries - asked_));
-    ask(open);
+    ask(open, command.utterance);
   }
 
   std::vector<bool> answers;

@@ -5,24 +5,39 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/abstraction/cassette.hpp>
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/language_model.hpp>
 
 namespace lgabench {
 
+/// A reply came, or did not in time, and cannot be an answer: cut off, refused, empty, no completion. Other questions
+/// are not concerned.
+struct NoAnswer : MethodError {
+  using MethodError::MethodError;
+};
+
+/// Questions about a command that have no answer, once all others were asked and their replies kept.
+struct Unanswered : MethodError {
+  /// what() names all candidates and the first reason.
+  Unanswered(const std::string& in_a_line, std::vector<std::string> which)
+      : MethodError(in_a_line), questions(std::move(which)) {}
+  std::vector<std::string> questions;  // a line each: the candidate, and why
+};
+
 /// A server of chat completions. complete() may be called from several threads at once.
 class ChatClient {
  public:
   virtual ~ChatClient() = default;
-  /// `request`: {"model", "messages", "temperature"}. @throws MethodError for a reply that is missing or cut off, or a
-  /// server that refuses; the message holds no secret.
+  /// `request`: the body, as AskedModel makes it. @throws NoAnswer for a reply that is none to this question,
+  /// MethodError for a server that fails or refuses to serve; the message holds no secret.
   virtual ChatReply complete(const Json& request) = 0;
 };
 
 /// Which model is asked, and how hard.
 struct ChatOptions {
-  std::string model;                                      // as the server names it
+  std::string model;                                      // to_text() of an AskedModel
   int concurrency = 4;                                    // requests under way at once
   int max_queries = -1;                                   // to the server, in the model's life; -1: no limit
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
@@ -36,13 +51,14 @@ class ChatLanguageModel : public LanguageModel {
   /// Both are borrowed and must outlive the model; `client` may be nullptr: then the cassette must hold every reply.
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
-  /// A reply without a final answer is asked for three times. @throws MethodError where the server fails, or, once all
-  /// are asked, for questions without an answer: they are never a no. The replies that came are in the cassette.
+  /// A reply without a final answer is asked for three times, one that is cut off, refused or empty once. @throws
+  /// MethodError where the server fails, Unanswered for questions without an answer: they are never a no. The replies
+  /// that came are in the cassette.
   /// InputError without a client where the cassette lacks a reply (names the command line that asks), or where
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
-  /// As in ChatOptions.
+  /// As in ChatOptions: what is not the usual request belongs to the name.
   std::string model() const override { return options_.model; }
   /// live once this object had a reply from the server, else cassette.
   Provenance provenance() const override { return asked_ > 0 ? Provenance::live : Provenance::cassette; }
@@ -53,11 +69,12 @@ class ChatLanguageModel : public LanguageModel {
     std::string key, candidate;
     Json json;
   };
-  void ask(const std::vector<Request>& requests);
+  void ask(const std::vector<Request>& requests, const std::string& utterance);
 
   Cassette& cassette_;
   ChatClient* client_;
   ChatOptions options_;
+  AskedModel asked_model_;
   PromptTemplate template_;
   int asked_ = 0;
   SelectionCost cost_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include <lgabench/core/error.hpp>
@@ -17,6 +18,7 @@ struct Response {
   std::string body, problem;
   double retry_after_s = 0;
   bool final = false;  // waiting will not help: no certificate that this machine trusts, or a reply without end
+  bool late = false;   // the request was sent, and no whole reply came in time
 };
 
 // Fewer bytes than were given end the transfer.
@@ -58,12 +60,15 @@ Response post(const OpenAiOptions& options, const std::string& body) {
   set(CURLOPT_ERRORBUFFER, problem);
   set(CURLOPT_NOSIGNAL, 1L);
   set(CURLOPT_TIMEOUT, options.timeout_s);
-  set(CURLOPT_LOW_SPEED_LIMIT, 1L);
-  set(CURLOPT_LOW_SPEED_TIME, std::max(options.timeout_s / 2, 1L));
+  set(CURLOPT_CONNECTTIMEOUT, std::min(options.timeout_s, 60L));
+  set(CURLOPT_TCP_KEEPALIVE, 1L);  // nothing else goes over the line while the server computes
   const CURLcode code = curl_easy_perform(easy.handle);
   if (code != CURLE_OK) {
     const bool untrusted = code == CURLE_PEER_FAILED_VERIFICATION, too_long = code == CURLE_WRITE_ERROR;
     response.final = untrusted || too_long;
+    long sent = 0;
+    curl_easy_getinfo(easy.handle, CURLINFO_REQUEST_SIZE, &sent);
+    response.late = code == CURLE_OPERATION_TIMEDOUT && sent > 0;
     const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
                                 : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
@@ -104,17 +109,44 @@ std::string complaint(const Response& response, const std::string& key) {
   return without_key(text, key);
 }
 
+// A message's content: a text, or a list of parts.
+std::string content_of(const JsonReader& message) {
+  const JsonReader content = message.at("content");
+  std::string text;
+  if (content.json().is_array()) {
+    for (const JsonReader& part : content.elements())
+      if (part.has("text")) text += part.at("text").string();
+  } else if (!content.json().is_null()) {
+    text = content.string();
+  }
+  return text;
+}
+
+// Servers count in ways of their own; no answer depends on it.
+long long tokens_of(const Json& body) {
+  const Json usage = body.value("usage", Json());
+  const Json total = usage.is_object() ? usage.value("total_tokens", Json()) : Json();
+  constexpr double most = 1e12;
+  const double tokens = total.is_number() ? total.get<double>() : 0;
+  return tokens >= 0 && tokens <= most ? std::llround(tokens) : 0;
+}
+
+// Words for a finish_reason differ from server to server: those are refused that say that the content is not whole.
 ChatReply read_completion(const std::string& body) {
   const Json json = parse_json(body, "language model's reply");
   const JsonReader reader(json, "language model's reply");
   const auto choices = reader.at("choices").elements();
   if (choices.size() != 1) reader.at("choices").fail("one choice");
-  const std::string reason = choices[0].at("finish_reason").string();
-  if (reason != "stop") throw MethodError(fmt::format("the reply was cut off: finish_reason is {}", reason));
-  ChatReply reply{choices[0].at("message").at("content").string(), 0, 0};
-  if (reader.has("usage") && reader.at("usage").has("total_tokens"))
-    reply.tokens = reader.at("usage").at("total_tokens").integer(0, 1LL << 40);
-  return reply;
+  const Json reason = choices[0].has("finish_reason") ? choices[0].at("finish_reason").json() : Json();
+  for (const char* cut : {"length", "content_filter", "tool_calls", "function_call"})
+    if (reason == cut) throw NoAnswer(fmt::format("the reply was cut off: finish_reason is {}", cut));
+  const JsonReader message = choices[0].at("message");
+  const std::string text = content_of(message);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    const bool says = message.has("refusal") && message.at("refusal").json().is_string();
+    throw NoAnswer(says ? "the model refused: " + message.at("refusal").string() : "the reply is empty");
+  }
+  return {text, tokens_of(json), 0};
 }
 
 }  // namespace
@@ -142,10 +174,11 @@ ChatReply OpenAiClient::complete(const Json& request) {
         reply.text = without_key(std::move(reply.text), options_.api_key);
         reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
         return reply;
-      } catch (const Error& e) {  // not what a completion looks like, or cut off
-        throw MethodError(without_key(e.what(), options_.api_key));
+      } catch (const Error& e) {  // not what a completion looks like, or none that could be an answer
+        throw NoAnswer(without_key(e.what(), options_.api_key));
       }
     }
+    if (response.late) throw NoAnswer(fmt::format("no reply within {} s (--reply-timeout)", options_.timeout_s));
     const std::string what = complaint(response, options_.api_key);
     if (!may_pass(response)) throw MethodError(what);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));

@@ -6,8 +6,8 @@
 namespace lgabench {
 
 /// POSTs to BASE/chat/completions. An attempt that finds no server or breaks off, or is answered 408, 409, 429 or 5xx,
-/// is followed by another, after the server's Retry-After where it names seconds. No message and no reply holds the
-/// key.
+/// is followed by another, after the server's Retry-After where it names seconds; one whose reply takes too long is
+/// not. No message and no reply holds the key.
 class OpenAiClient : public ChatClient {
  public:
   /// Longest reply; a longer one ends the request.
@@ -16,8 +16,8 @@ class OpenAiClient : public ChatClient {
   /// Connects to nothing yet.
   explicit OpenAiClient(OpenAiOptions options);
   /// @throws MethodError once the attempts are used up, for any other status, for a TLS certificate that this machine
-  /// does not trust (the key is then not sent), for a body that is too long or not a completion, and
-  /// for a reply whose finish_reason is not "stop": it was cut off.
+  /// does not trust (the key is then not sent), and for a body that is too long. NoAnswer for a body that is no
+  /// completion, a reply that is late, empty or a refusal, and one whose finish_reason says that it is not whole.
   ChatReply complete(const Json& request) override;
 
  private:

@@ -18,6 +18,7 @@ void run(const JsonReader& reader, const Messages& messages) {
   std::unique_ptr<ChatClient> server;
   if (job.live && job.live->asks) {
     OpenAiOptions options = openai_from_environment();
+    options.timeout_s = job.live->reply_timeout_s;
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     server = std::make_unique<OpenAiClient>(std::move(options));
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <thread>
 
+#include <lgabench/abstraction/asked_model.hpp>
 #include <lgabench/abstraction/cassette.hpp>
 #include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/abstraction/prompt.hpp>
@@ -100,19 +101,23 @@ Json participant_hashes(const std::vector<Participant>& participants) {
   return hashes;
 }
 
-// The server's model that --answers openai asks; none for other answers, which need no server.
-std::optional<LiveModel> live_model(const RunArguments& a, Json& about) {
+// The server's model that --answers openai asks, and how; none for other answers, which need no server. `answers` is
+// what cells say of it.
+std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers, Json& about) {
   if (a.answers != "openai") {
-    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0)
-      throw InputError("--model, --cassette and --max-queries: expected --answers openai with them");
+    if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() ||
+        a.reply_timeout_s != OpenAiOptions().timeout_s)
+      throw InputError(
+          "--model, --cassette, --max-queries, --request and --reply-timeout: expected --answers openai with them");
     return std::nullopt;
   }
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
     throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
   const Cassette readable(a.cassette);
-  about = {
-      {"model", a.model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
-  return LiveModel{a.cassette, true, a.max_queries};
+  const std::string model = to_text(asked_model(a.model, a.request));
+  answers = live_prefix + model;
+  about = {{"model", model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
+  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s};
 }
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
@@ -138,14 +143,12 @@ PlannedRun plan_run(RunArguments a) {
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan& plan = planned.plan;
-  plan.live = live_model(a, plan.live_about);
-  if (plan.live) {
-    variation.answers = live_prefix + a.model;
-  } else if (const std::string file = cassette_of(a.answers); !file.empty()) {
+  plan.live = live_model(a, variation.answers, plan.live_about);
+  if (const std::string file = cassette_of(a.answers); !file.empty()) {
     CassetteAnswers cassette = check_cassette(file, grid.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
-  } else if (a.answers != no_answers) {
+  } else if (!plan.live && a.answers != no_answers) {
     check_recorded(a.answers, grid.scenarios);
   }
   if (a.rehearsal && a.humans.empty()) throw InputError("--rehearsal: expected --humans DIR with it");
@@ -235,6 +238,13 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "With --answers openai: questions that a cell may ask the server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
+  verb.add_option("--request", a.request,
+                  "With --answers openai: a JSON merge patch of each request to the server, whose null leaves a field "
+                  "out: '{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
+  verb.add_option("--reply-timeout", a.reply_timeout_s,
+                  "With --answers openai: seconds that the server may take for a reply")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   verb.add_option("--truth", a.truth,
                   "The true distributions: those that the paper's authors released with their code, or those printed "
                   "in its appendix, where they differ")
@@ -271,6 +281,8 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--model", "MODEL"},
            {"--cassette", "FILE"},
            {"--max-queries", "N"},
+           {"--request", "JSON"},
+           {"--reply-timeout", "SECONDS"},
            {"--truth", "released|printed"},
            {"--humans", "DIR"},
            {"--rehearsal", ""},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/harness/run_suite.hpp>
@@ -12,12 +13,13 @@ namespace lgabench::cli {
 
 struct RunArguments {
   std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
-                             shard = "1/1", model, cassette;
+                             shard = "1/1", model, cassette, request;
   Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
+  long reply_timeout_s = OpenAiOptions().timeout_s;
   std::string program;  // as --version says
   bool unconfined = false, rehearsal = false, resume = false, fresh = false, dry_run = false, no_reference = false,
        json = false;

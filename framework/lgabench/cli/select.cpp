@@ -2,8 +2,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/openai_client.hpp>
@@ -23,7 +25,8 @@ namespace {
 
 struct SelectArguments {
   std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
-                              model, cassette;
+                              model, cassette, request;
+  long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
   bool json = false;
 };
@@ -43,6 +46,19 @@ struct Answerer {
   std::unique_ptr<LanguageModel> model;
 };
 
+// The one of those that replied that has the name, or the only one where there is none.
+std::string kept_model(const Cassette& cassette, const std::string& name) {
+  const std::set<std::string> all = cassette.models();
+  std::vector<std::string> named;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(named), [&name](const std::string& text) {
+    return name.empty() || name == text || name == read_asked_model(text).name;
+  });
+  if (named.size() != 1)
+    throw InputError(
+        fmt::format("--model: expected one; {} holds replies of: {}", cassette.file().string(), fmt::join(all, ", ")));
+  return named.front();
+}
+
 Answerer make_answerer(const SelectArguments& a) {
   Answerer answerer;
   const bool live = a.answers == "openai";
@@ -51,18 +67,18 @@ Answerer make_answerer(const SelectArguments& a) {
   if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
   if (file.empty() && !a.model.empty())
     throw InputError(fmt::format("--model: expected --answers openai or cassette:FILE with it, not {}", a.answers));
-  if (!live && a.max_queries >= 0) throw InputError("--max-queries: expected --answers openai with it");
+  if (!live && (a.max_queries >= 0 || !a.request.empty() || a.reply_timeout_s != OpenAiOptions().timeout_s))
+    throw InputError("--max-queries, --request and --reply-timeout: expected --answers openai with them");
   if (file.empty()) return answerer;
   answerer.cassette = std::make_unique<Cassette>(file);
-  ChatOptions options{a.model, a.concurrency, a.max_queries, {}};
-  if (options.model.empty()) {
-    const auto models = answerer.cassette->models();
-    if (live || models.size() != 1)
-      throw InputError(fmt::format("--model: expected one; {} holds replies of: {}", file, fmt::join(models, ", ")));
-    options.model = *models.begin();
-  }
+  if (live && a.model.empty()) throw InputError("--model: expected one with --answers openai");
+  ChatOptions options{live ? to_text(asked_model(a.model, a.request)) : kept_model(*answerer.cassette, a.model),
+                      a.concurrency,
+                      a.max_queries,
+                      {}};
   if (live) {
     OpenAiOptions server = openai_from_environment();
+    server.timeout_s = a.reply_timeout_s;
     server.waiting =
         options.waiting = [](const std::string& why) { to_stderr("{}{}\n", ::isatty(2) ? "\n" : "", one_line(why)); };
     answerer.client = std::make_unique<OpenAiClient>(std::move(server));
@@ -192,6 +208,13 @@ void add_select(CLI::App& app, int&) {
   verb->add_option("--concurrency", arguments->concurrency, "Questions asked at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
+  verb->add_option("--request", arguments->request,
+                   "With --answers openai: a JSON merge patch of each request, whose null leaves a field out: "
+                   "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
+  verb->add_option("--reply-timeout", arguments->reply_timeout_s,
+                   "With --answers openai: seconds that the server may take for a reply")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   verb->add_option("--max-queries", arguments->max_queries, "Most questions to ask a server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
@@ -210,7 +233,9 @@ void add_select(CLI::App& app, int&) {
            {"--model", "MODEL"},
            {"--cassette", "FILE"},
            {"--concurrency", "N"},
-           {"--max-queries", "N"}});
+           {"--max-queries", "N"},
+           {"--request", "JSON"},
+           {"--reply-timeout", "SECONDS"}});
   verb->footer(
       "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one "
       "question for each object type and texture. An interrupted command continues from the cassette.\n"
@@ -223,11 +248,21 @@ void add_select(CLI::App& app, int&) {
       throw InputError("select: expected a command, a scenario's id, or --suite");
     const Answerer answerer = make_answerer(*arguments);
     bool first = true;
+    std::vector<std::string> unanswered;
     for (const Asked& asked : find_commands(*arguments)) {
       if (!first && !arguments->json) to_stdout("\n");
       first = false;
-      select(asked, answerer.model.get(), *arguments);
+      try {
+        select(asked, answerer.model.get(), *arguments);
+      } catch (const Unanswered& e) {
+        unanswered.insert(unanswered.end(), e.questions.begin(), e.questions.end());
+      }
     }
+    if (unanswered.empty()) return;
+    for (const std::string& question : unanswered) to_stderr("no answer: {}\n", one_line(question));
+    throw MethodError(
+        fmt::format("{} questions have no answer; all others are answered in {}, and the same command asks these again",
+                    unanswered.size(), arguments->cassette));
   });
 }
 

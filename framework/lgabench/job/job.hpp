@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/job/cell.hpp>
@@ -26,6 +27,7 @@ struct LiveModel {
   std::filesystem::path cassette;
   bool asks = true;      // false: the cassette must hold every reply
   int max_queries = -1;  // of a cell to the server; -1: no limit
+  long reply_timeout_s = OpenAiOptions().timeout_s;
 };
 
 /// lgabench-worker cell
