@@ -22,8 +22,10 @@ HAS_NUMPY = has(PYTHON, "numpy") or os.environ.get("CI") == "true"
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
 METHOD = '''
+import getpass
 import os
 import socket
+import tempfile
 import numpy
 import helper
 from lgabench_method import Needs, Refused, SecondSet, Selection, select_features
@@ -56,6 +58,10 @@ class Mine:
             selection = Selection()
             selection.target.object_types, selection.target.textures = ["heart"], list(space.textures)
             return selection
+        if how == "user":
+            user = getpass.getuser()
+            for directory in os.path.expanduser("~"), tempfile.gettempdir(), os.environ["TORCHINDUCTOR_CACHE_DIR"]:
+                os.makedirs(os.path.join(directory, user), exist_ok=True)
         if how == "read":
             open(os.environ["LGABENCH_DATA"] + "/scenarios/heart.json")
         selection = select_features(command, space, services.lm)
@@ -213,6 +219,10 @@ class PythonMethods(Case):
             selection = json.loads((cell / "selection.json").read_text())["commands"][0]["selection"]
             provenance[how] = selection["provenance"], selection["source"].endswith(", edited by the method")
         self.assertEqual(provenance, {"": ("recorded", False), "rule": ("rule", False), "edit": ("recorded", True)})
+
+    def test_a_user_and_places_to_write(self):
+        """As PyTorch's compiler wants them when an optimiser is imported; the system's list of users cannot be read."""
+        self.how("user")
 
     def test_what_fails_costs_its_own_cell(self):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",

@@ -40,8 +40,9 @@ namespace {
 
 [[noreturn]] void fail(const char* what) { throw EngineError(fmt::format("{}: {}", what, std::strerror(errno))); }
 
-// Everything else of our environment stays here: secrets, and where a run lies. Huge pages: a page of its own for every
-// 4 KiB of demonstrations takes longer than copying them.
+// Everything else of our environment stays here: secrets, and where a run lies. A user's name: the list of them cannot
+// be read, and PyTorch names its cache by it. Huge pages: a page of its own for every 4 KiB of demonstrations takes
+// longer than copying them.
 std::vector<std::string> environment_of(const HostCommand& command) {
   const std::string scratch = command.scratch.string();
   std::vector<std::string> all{"OMP_NUM_THREADS=1",
@@ -52,6 +53,9 @@ std::vector<std::string> environment_of(const HostCommand& command) {
                                "PYTHONDONTWRITEBYTECODE=1",
                                "HOME=" + scratch,
                                "TMPDIR=" + scratch,
+                               "USER=lgabench",
+                               "LOGNAME=lgabench",
+                               "TORCHINDUCTOR_CACHE_DIR=" + scratch + "/torchinductor",
                                "LGABENCH_DATA=" + data_directory().string(),
                                "GLIBC_TUNABLES=glibc.malloc.hugetlb=1"};
   for (const char* name : {"PATH", "LD_LIBRARY_PATH", "OPENBLAS_CORETYPE"})
