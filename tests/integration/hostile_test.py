@@ -18,8 +18,8 @@ RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--
        "--memory", ".5", "--timeout", "60", "--python", PYTHON, "--plugin-path", FIXTURES / "good", "--plugin-path",
        FIXTURES / "faulty"]
 # What it tries -> the reason that its cell fails for; None where the cell goes well, as an honest one.
-KINDS = {"": None, "rounding": None, "others": None, "link": None, "daemon": None, "fork": None, "flood": None,
-         "descriptors": None, "shared_memory": "out of memory", "kill": r"signal 9 \(Killed\) in phase learn",
+KINDS = {"": None, "rounding": None, "others": None, "link": None, "directory_link": None, "daemon": None, "fork": None,
+         "flood": None, "descriptors": None, "shared_memory": "out of memory", "kill": r"signal 9 \(Killed\) in phase learn",
          "people": "expected a method declared as", "spoof": "sent a malformed frame", "input_error": "the disk is full",
          "exit_4": "exited with 4 in phase learn"}
 

@@ -11,6 +11,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -153,6 +154,34 @@ TEST(ReadFile, ReadsRegularFilesAlone) {
   fs::create_symlink(file, link);
   EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }),
               "link: a symbolic link; a run holds");
+}
+
+TEST(PlainDirectory, IsReadByNoWayThatLeadsOutOfIt) {
+  const TemporaryDirectory directory;
+  const fs::path files = directory.path / "files", secret = directory.path / "secret";
+  fs::create_directory(files);
+  fs::create_directory(secret);
+  write_file(secret / "key", "secret");
+  write_file(files / "own", "bytes");
+  fs::create_directory(files / "below");
+  fs::create_symlink(secret / "key", files / "link");
+  ASSERT_EQ(::mkfifo((files / "pipe").c_str(), 0600), 0);
+  const PlainDirectory before(files);
+  EXPECT_EQ(before.file_names(), std::vector<std::string>{"own"});
+  EXPECT_EQ(before.file_names(), std::vector<std::string>{"own"}) << "a second time";
+  EXPECT_EQ(before.read_file("own"), "bytes");
+  EXPECT_SAYS(message_of<InputError>([&] { before.read_file("link"); }), "files/link: a symbolic link");
+  EXPECT_SAYS(message_of<InputError>([&] { before.read_file("own", 4); }), "expected at most 4");
+
+  // A link takes its place: what was opened stays what it is, and what is opened now holds nothing.
+  fs::rename(files, directory.path / "away");
+  fs::create_directory_symlink(secret, files);
+  EXPECT_EQ(before.read_file("own"), "bytes");
+  for (const fs::path& nothing : {files, secret / "key", directory.path / "none"}) {
+    const PlainDirectory now(nothing);
+    EXPECT_TRUE(now.file_names().empty()) << nothing;
+    EXPECT_THROW(now.read_file("key"), InputError) << nothing;
+  }
 }
 
 TEST(Printable, LeavesNoControlSequence) {

@@ -1,5 +1,6 @@
 #include <lgabench/core/files.hpp>
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -11,6 +12,7 @@
 #include <random>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/plain_directory.hpp>
 
 namespace lgabench {
 namespace {
@@ -43,12 +45,11 @@ bool write_all(int fd, std::string_view bytes) {
   return true;
 }
 
-}  // namespace
-
-std::string read_file(const fs::path& file, Links links, std::uintmax_t most) {
+// `name`: the file's, within the directory; `file`: what a message calls it.
+std::string read_at(int directory, const fs::path& name, const fs::path& file, Links links, std::uintmax_t most) {
   // Without O_NONBLOCK opening a pipe waits for a writer.
   const int flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | (links == Links::refused ? O_NOFOLLOW : 0);
-  const Descriptor in{::open(file.c_str(), flags)};
+  const Descriptor in{::openat(directory, name.c_str(), flags)};
   if (in.fd < 0 && errno == ELOOP && links == Links::refused) refuse_link(file);
   struct stat about {};
   if (in.fd < 0 || ::fstat(in.fd, &about) != 0) fail(file, "cannot be read");
@@ -70,6 +71,37 @@ std::string read_file(const fs::path& file, Links links, std::uintmax_t most) {
     bytes.append(block, static_cast<std::size_t>(n));
     expect_within(bytes.size());
   }
+}
+
+}  // namespace
+
+std::string read_file(const fs::path& file, Links links, std::uintmax_t most) {
+  return read_at(AT_FDCWD, file, file, links, most);
+}
+
+PlainDirectory::PlainDirectory(const fs::path& path)
+    : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {}
+
+PlainDirectory::~PlainDirectory() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::vector<std::string> PlainDirectory::file_names() const {
+  std::vector<std::string> names;
+  // Opened anew: a duplicate would share the place at which reading goes on.
+  const int listed = descriptor_ < 0 ? -1 : ::openat(descriptor_, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  DIR* const stream = listed < 0 ? nullptr : ::fdopendir(listed);
+  if (!stream && listed >= 0) ::close(listed);
+  struct stat about {};
+  while (const dirent* entry = stream ? ::readdir(stream) : nullptr)
+    if (::fstatat(descriptor_, entry->d_name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(about.st_mode))
+      names.emplace_back(entry->d_name);
+  if (stream) ::closedir(stream);
+  return names;
+}
+
+std::string PlainDirectory::read_file(const std::string& name, std::uintmax_t most) const {
+  return read_at(descriptor_, name, path_ / name, Links::refused, most);
 }
 
 void expect_plain_entries(const fs::path& directory) {

@@ -12,16 +12,13 @@ const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "l
 const std::vector<std::string> cell_files{"cell.json",      "selection.json", "training.jsonl",
                                           "episodes.jsonl", "timing.json",    "log.txt"};
 
-std::vector<std::string> artefact_names(const fs::path& files) {
+std::vector<std::string> artefact_names(const PlainDirectory& files) {
   constexpr std::size_t most = 100, longest = 100;
   constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
   std::vector<std::string> names;
-  std::error_code none_there;
-  for (const auto& entry : fs::directory_iterator(files, none_there)) {
-    const std::string name = entry.path().filename();
-    const bool plain = name[0] != '.' && name.size() <= longest && name.find_first_not_of(allowed) == std::string::npos;
-    if (plain && entry.symlink_status(none_there).type() == fs::file_type::regular) names.push_back(name);
-  }
+  for (const std::string& name : files.file_names())
+    if (name[0] != '.' && name.size() <= longest && name.find_first_not_of(allowed) == std::string::npos)
+      names.push_back(name);
   std::sort(names.begin(), names.end());
   names.resize(std::min(names.size(), most));
   return names;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/plain_directory.hpp>
 
 namespace lgabench {
 
@@ -15,7 +16,11 @@ extern const std::vector<std::string> cell_files;
 
 /// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names
 /// are letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
-std::vector<std::string> artefact_names(const fs::path& files);
+std::vector<std::string> artefact_names(const PlainDirectory& files);
+
+/// Expects a line of training.jsonl: epoch, steps, loss, and curves, whose values lie within 1e100 of 0, so that means
+/// over cells are finite. The line's writer and its readers ask here. @throws InputError
+void expect_training_line(const JsonReader& line);
 
 /// 16 hexadecimal digits: the name of a cell's directory.
 bool is_cell_key(const std::string& text);

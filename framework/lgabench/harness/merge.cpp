@@ -258,9 +258,11 @@ void copy_cell(const fs::path& from, const fs::path& to) {
   const auto copy = [&](const std::string& name) {
     write_file(to / name, read_file(from / name, Links::refused), Sync::later);
   };
+  const PlainDirectory files(from / "files");
   for (const std::string& name : cell_files)
     if (fs::exists(from / name)) copy(name);
-  for (const std::string& name : artefact_names(from / "files")) copy("files/" + name);
+  for (const std::string& name : artefact_names(files))
+    write_file(to / "files" / name, files.read_file(name), Sync::later);
   copy("status.json");
 }
 

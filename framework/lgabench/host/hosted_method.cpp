@@ -251,8 +251,9 @@ std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
   constexpr std::uintmax_t most = 64 << 20;
   std::vector<std::pair<std::string, std::string>> all;
   std::uintmax_t bytes = 0;
-  for (const std::string& name : artefact_names(files_)) try {
-      all.emplace_back(name, read_file(files_ / name, Links::refused, most - bytes));
+  const PlainDirectory files(files_);  // which the method may have put something else in the place of
+  for (const std::string& name : artefact_names(files)) try {
+      all.emplace_back(name, files.read_file(name, most - bytes));
       bytes += all.back().second.size();
     } catch (const InputError& e) {  // too large, or changed by now
       to_stdout("files/{} is not kept: {}\n", name, e.what());

@@ -56,6 +56,11 @@ void do_harm(const std::string& how, const Services& services) {
   if (how == "rounding") std::fesetround(FE_TOWARDZERO);
   if (how == "others") damage(path("run"), path("cache"));
   if (how == "link") fs::create_symlink("/etc/passwd", services.files / "leak.txt");
+  if (how == "directory_link") {  // which leads to what its worker may read
+    fs::remove(services.files);
+    fs::create_directory_symlink("/etc", services.files);
+  }
+  if (how == "epoch") services.log.epoch(0, 1, 0);
   if (how == "shared_memory") fill_shared_memory();
   if (how == "daemon") leave_a_daemon();
   if (how == "fork" && ::fork() < 0) throw std::runtime_error("no process");  // both go on
@@ -80,7 +85,12 @@ class Hostile : public fixture::FixtureMethod<fixture::StayPolicy> {
     return services.options.at("how") == "people" ? services.human.specify(command) : Selection();
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    do_harm(services.options.at("how"), services);
+    const std::string how = services.options.at("how");
+    if (how == "loss") {  // so large that adding 1 changes nothing
+      services.log.epoch(1, 1, 1.8e19);
+      return std::make_unique<fixture::StayPolicy>();
+    }
+    do_harm(how, services);
     return FixtureMethod::learn(demonstrations, services);
   }
 };

@@ -93,6 +93,14 @@ class Hostile:
             damage(services.options["run"], services.options["cache"])
         elif how == "link":
             os.symlink("/etc/passwd", services.files + "/leak.txt")
+        elif how == "directory_link":  # which leads to what its worker may read
+            os.rmdir(services.files)
+            os.symlink("/etc", services.files)
+        elif how == "loss":  # so large that adding 1 changes nothing
+            services.log.epoch(1, 1, 1.8e19)
+            return Stay()
+        elif how == "epoch":
+            services.log.epoch(0, 1, 0)
         elif how == "shared_memory":
             fill_shared_memory()
         elif how == "daemon":
