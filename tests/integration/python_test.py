@@ -224,6 +224,42 @@ class PythonMethods(Case):
         """As PyTorch's compiler wants them when an optimiser is imported; the system's list of users cannot be read."""
         self.how("user")
 
+    def test_naming_a_method_runs_nothing_that_lies_beside_it(self):
+        planted = ("import os\ntry:\n    with open({!r} + __name__, 'w') as file:\n        file.write(str(dict(os.environ)))\n"
+                   "except OSError:\n    pass  # confined, as where the method runs\n").format(f"{self.dir}/ran_")
+        for name in "ast", "json", "hashlib", "inspect", "site", "sitecustomize", "usercustomize", "lgabench_method":
+            (self.dir / f"{name}.py").write_text(planted)
+        (self.dir / "path").mkdir()
+        (self.dir / "path/sitecustomize.py").write_text(planted)
+        self.environment.update(PYTHONPATH=str(self.dir / "path"), PYTHONSTARTUP=str(self.dir / "ast.py"))
+        for words in (("check-plugin", "mine.py:Mine", "--python", PYTHON), ("info", "q1"),
+                      (*RUN, "--methods", "mine.py:Mine", "--dry-run"), (*RUN, "--methods", "mine.py:Mine", "--out", "out")):
+            self.call(*words)
+            self.assertEqual([path.name for path in self.dir.glob("ran_*")], [], words)
+
+    def test_describing_sees_no_secret_and_any_way_to_name_the_interpreter(self):
+        """By an interpreter that writes its environment down before it is Python."""
+        (self.dir / "bin").mkdir()
+        teller = self.dir / "bin/teller"
+        teller.write_text(f'#!/bin/sh\nenv > "{self.dir}/told"\npwd >> "{self.dir}/told"\nexec {PYTHON} "$@"\n')
+        teller.chmod(0o755)
+        self.environment.update(OPENAI_API_KEY="sk-secret", GITHUB_TOKEN="ghp-secret",
+                                PATH=f"{self.dir}/bin:{self.environment['PATH']}")
+        for name in "teller", "bin/teller", str(teller):
+            self.call(*with_options(RUN, "--python", name), "--methods", "mine.py:Mine", "--dry-run")
+            told = (self.dir / "told").read_text()
+            self.assertNotIn("secret", told)
+            self.assertIn(f"HOME={os.environ['HOME']}\n", told)
+            self.assertNotIn(f"\n{self.dir}\n", told)
+            (self.dir / "told").unlink()
+
+    def test_a_virtual_environment_named_from_here(self):
+        subprocess.run([PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", self.dir / "venv"], check=True)
+        packages = next((self.dir / "venv/lib").glob("python3*")) / "site-packages"
+        (packages / "of_the_venv.py").write_text("x = 1\n")
+        (self.dir / "mine.py").write_text(METHOD.replace("import helper", "import of_the_venv"))
+        self.call(*with_options(RUN, "--python", "venv/bin/python"), "--methods", "mine.py:Mine", "--out", "out")
+
     def test_what_fails_costs_its_own_cell(self):
         reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",

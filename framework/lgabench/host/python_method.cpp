@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
@@ -21,18 +22,37 @@ struct Output {
   int status = 0;
 };
 
-// What the interpreter prints on the words, without a shell.
+// Nothing but the interpreter's own paths and lgabench's package: no module of the directory that it starts in.
+constexpr const char* start =
+    "import sys; sys.path[:] = [sys.argv.pop(1), *filter(None, sys.path)]; "
+    "from lgabench_method.__main__ import main; sys.exit(main(sys.argv[1:]))";
+
+// What an interpreter is found by, and its packages: no key or token of whoever names a stranger's method.
+std::vector<std::string> describing_environment() {
+  std::vector<std::string> all{"LC_ALL=C.UTF-8", "PYTHONDONTWRITEBYTECODE=1"};
+  for (const char* name :
+       {"PATH", "HOME", "LD_LIBRARY_PATH", "PYTHONUSERBASE", "PYTHONNOUSERSITE", "PYENV_ROOT", "PYENV_VERSION"})
+    if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));
+  return all;
+}
+
+// What the interpreter prints on the method, without a shell, started in an empty directory.
 Output output_of(const std::string& interpreter, const std::string& written) {
   const Scratch scratch("python");
   const std::string out = (scratch.path / "out").string(), error = (scratch.path / "error").string();
   const std::string package = fs::weakly_canonical(data_directory() / "python").string();
+  const bool is_path = interpreter.find('/') != std::string::npos;
+  const fs::path empty = scratch.path / "empty";
+  fs::create_directory(empty);
   const auto made = [](const std::string& file) {
     return Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
   };
   const Descriptor to_out = made(out), to_error = made(error);
-  const pid_t pid = start_process({{interpreter, "-m", "lgabench_method", written},
-                                   environment_with({"PYTHONPATH=" + package, "PYTHONDONTWRITEBYTECODE=1"}),
-                                   {{to_out.fd, 1}, {to_error.fd, 2}}});
+  const pid_t pid = start_process({{is_path ? fs::absolute(interpreter).string() : interpreter, "-c", start,
+                                    fs::absolute(package).string(), fs::absolute(written).string()},
+                                   describing_environment(),
+                                   {{to_out.fd, 1}, {to_error.fd, 2}},
+                                   empty});
   const int status = wait_for(pid);
   return {read_file(out), read_file(error), status};
 }
