@@ -21,7 +21,7 @@ RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--
 KINDS = {"": None, "rounding": None, "others": None, "link": None, "directory_link": None, "daemon": None, "fork": None,
          "flood": None, "descriptors": None, "shared_memory": "out of memory", "kill": r"signal 9 \(Killed\) in phase learn",
          "people": "expected a method declared as", "spoof": "sent a malformed frame", "input_error": "the disk is full",
-         "exit_4": "exited with 4 in phase learn"}
+         "exit_4": "exited with 4 in phase learn", "epoch": "training log: /epoch: expected a whole number from 1"}
 
 
 class Harm(Case):
@@ -86,6 +86,12 @@ class Hostile(Harm):
                     log = (directory / "log.txt").read_text()
                     self.assertEqual((log.count(": refused"), log.count(": reached")), (4, 0), log)
                 self.assertLess((directory / "log.txt").stat().st_size, 3 << 20)
+
+    def test_a_training_log_cannot_hold_a_report_up(self):
+        rows = [self.row(writer, "loss") for writer in self.writers]
+        self.call(*RUN, "--methods", ",".join(rows), "--out", "out", timeout=60)
+        for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]:
+            self.assertIsNotNone(row["success"])
 
     def test_bad_seeds_cannot_be_left_out_unseen(self):
         rows = [self.row(writer, "game") for writer in self.writers]

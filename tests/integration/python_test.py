@@ -267,7 +267,8 @@ class PythonMethods(Case):
                    "no_selection": "edit() was given str",
                    "second_target": "the second set has the role \"target\"",
                    "curve_name": "a curve's name", "read": "PermissionError"}
-        found, _ = self.how("", "nan", "short", "huge", *reasons, expect=3)
+        found, done = self.how("", "nan", "short", "huge", *reasons, expect=3)
+        self.assertNotIn("no report", done.stderr)
         for how in ("nan", "short", "huge"):
             episodes = [json.loads(line) for line in (found[how][0] / "episodes.jsonl").read_text().splitlines()]
             self.assertEqual({e["failure"] for e in episodes}, {"method_error"}, how)

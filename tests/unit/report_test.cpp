@@ -425,7 +425,8 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
     const fs::path cell = run.add({"lga", 15});
     run.save();
     write_file(cell / file, change(read_file(cell / file)));
-    return message_of<InputError>([&] { report::write_report(run.path); });
+    const report::RunResults results = report::read_run(run.path);
+    return results.unreadable.empty() ? results.cells.at(0).reason : results.unreadable.at(0);
   };
   const auto half = [](const std::string& text) { return text.substr(0, text.size() / 2); };
   const auto replacing = [](const std::string& from, const std::string& to) {
@@ -456,6 +457,34 @@ TEST(Run, CorruptFilesAreNamedWithTheirPlace) {
               "selection.json: /commands: expected an entry for each of the scenario's 1 commands");
   EXPECT_SAYS(broken("episodes.jsonl", replacing("0.5", "0.25")),
               "episodes.jsonl: differs from its checksum in status.json");
+}
+
+TEST(Run, ACellThatCannotBeReadTakesNothingFromOtherRows) {
+  FabricatedRun run;
+  run.add({"gcbc_dart", 5});
+  const fs::path torn = run.add({"lga", 15, "heart", 50, 0}), nameless = run.add({"lga", 15, "heart", 50, 1});
+  run.add({"lga", 10, "heart", 50, 2});
+  run.save();
+  write_file(torn / "episodes.jsonl", "{}\n");
+  write_file(nameless / "cell.json", "{}\n");
+  const Json summary = summary_of(run);
+  ASSERT_EQ(summary.at("failed_cells").size(), 1u);
+  EXPECT_EQ(summary.at("failed_cells")[0],
+            (Json{{"cell", torn.filename().string()},
+                  {"fault", "host"},
+                  {"reason", "cannot be read: episodes.jsonl: line 1: /: expected a member \"arm\""}}));
+  for (const Json& row : summary.at("rows")) {
+    const bool whole = row.at("method") == "gcbc_dart";
+    EXPECT_EQ(row.at("success"), whole ? .25 : .5);
+    EXPECT_EQ(row.at("marks").dump().find("incomplete") == std::string::npos, whole) << row.at("marks");
+  }
+  const std::string text = table_text(run.path);
+  EXPECT_SAYS(text, nameless.filename().string() + "/cell.json: /: expected a member \"scenario\"");
+  EXPECT_SAYS(read_file(run.path / "report.md"), "2 finished, 1 failed, 0 not run, 1 not to be read");
+  fs::remove_all(torn);
+  write_file(run.path / "cells" / run.run["cells"][0].get<std::string>() / "cell.json", "");
+  write_file(run.path / "cells" / run.run["cells"][3].get<std::string>() / "cell.json", "");
+  EXPECT_SAYS(message_of<InputError>([&] { report::write_report(run.path); }), "cell.json: ");
 }
 
 TEST(Run, TwoCellsOfOneMeasurementAreRefused) {

@@ -21,6 +21,14 @@ const report::Chart& chart_named(const report::Document& document, const std::st
   return **found;
 }
 
+// The cell's training.jsonl in another's words.
+void log(const fs::path& cell, const std::string& lines) {
+  write_file(cell / "training.jsonl", lines);
+  Json status = read_json(cell / "status.json");
+  status["files"]["training.jsonl"] = sha256(lines);
+  write_file(cell / "status.json", canonical(status) + "\n");
+}
+
 TEST(LearningCurves, AreMeansOfTheCellsWithTheMostDemonstrations) {
   FabricatedRun run;
   for (int seed = 0; seed < 2; ++seed) {
@@ -68,20 +76,58 @@ TEST(LearningCurves, ThatFallFarStandOnPowersOfTen) {
 
 TEST(LearningCurves, AreThereOnlyWhereSomethingWasLogged) {
   FabricatedRun run;
-  const fs::path cell = run.add({"lga", 15});
-  write_file(cell / "training.jsonl", "");
-  Json status = read_json(cell / "status.json");
-  status["files"]["training.jsonl"] = sha256("");
-  write_file(cell / "status.json", canonical(status) + "\n");
+  log(run.add({"lga", 15}), "");
   report::write_report(run.save().path);
   EXPECT_SILENT(read_file(run.path / "report.html"), "Learning curves");
 }
 
-TEST(LearningCurves, ALineThatIsNoneIsNamed) {
-  FabricatedRun run;
-  const fs::path cell = run.add({"lga", 15});
-  write_file(cell / "training.jsonl", "{\"epoch\":1,\"steps\":1,\"loss\":\"low\"}\n");
-  EXPECT_SAYS(message_of<InputError>([&] { report::read_run(run.save().path); }), "training.jsonl: line 1");
+TEST(LearningCurves, OfAnyNumbersHaveFewTicks) {
+  for (const auto& [lowest, highest] : {std::pair(1.8e19, 1.8e19),
+                                        {3e6, 3e6},
+                                        {-1e100, -1e100},
+                                        {1e100, 1e100},
+                                        {-1e100, 1e100},
+                                        {0., 1e100},
+                                        {5e-324, 1e100},
+                                        {0., 0.},
+                                        {.5, .5 + 1e-15},
+                                        {0., 5e-324},
+                                        {-3., 1.}}) {
+    SCOPED_TRACE(fmt::format("{} to {}", lowest, highest));
+    FabricatedRun run;
+    for (const auto& [method, value] : {std::pair("lga", lowest), {"gcbc_dart", highest}})
+      log(run.add({method, 15}), fmt::format("{{\"epoch\":9223372036854775807,\"loss\":{},\"steps\":1}}\n", value));
+    const report::Report report = report::write_report(run.save().path);
+    const report::Chart& chart = chart_named(report.document, "training_loss_cells_mujoco");
+    for (const auto* ticks : {&chart.ticks, &chart.levels}) {
+      EXPECT_GE(ticks->size(), 2u);
+      EXPECT_LE(ticks->size(), 30u);
+      for (std::size_t i = 1; i < ticks->size(); ++i) EXPECT_LT((*ticks)[i - 1].at, (*ticks)[i].at);
+    }
+    for (const report::Series& series : chart.series) {
+      EXPECT_LE(chart.bottom, series.points[0].y);
+      EXPECT_GE(chart.top, series.points[0].y);
+    }
+    EXPECT_TRUE(std::isfinite(chart.top - chart.bottom));
+    const std::string figure = read_file(run.path / "figures/training_loss_cells_mujoco.svg");
+    EXPECT_SILENT(figure, "nan");
+    EXPECT_SILENT(figure, "inf");
+  }
+}
+
+TEST(LearningCurves, ALineThatIsNoneCostsItsOwnCell) {
+  for (const char* line : {"{\"epoch\":1,\"loss\":\"low\",\"steps\":1}", "{\"epoch\":0,\"loss\":1,\"steps\":1}",
+                           "{\"epoch\":1,\"loss\":1e101,\"steps\":1}", "{\"epoch\":1,\"loss\":1}"}) {
+    FabricatedRun run;
+    const fs::path cell = run.add({"lga", 15});
+    run.add({"gcbc_dart", 15});
+    log(cell, std::string(line) + "\n");
+    const report::Report report = report::write_report(run.save().path);
+    ASSERT_EQ(report.summary.failed.size(), 1u) << line;
+    EXPECT_EQ(report.summary.failed[0].key, cell.filename());
+    EXPECT_SAYS(report.summary.failed[0].reason, "cannot be read: training.jsonl: line 1: /");
+    EXPECT_EQ(chart_named(report.document, "training_loss_cells_mujoco").series.size(), 1u);
+  }
 }
 
 TEST(Index, HasEveryRunAndItsMethodsBestFirst) {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <lgabench/cell/environments.hpp>
-#include <lgabench/core/json.hpp>
+#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
@@ -32,6 +32,11 @@ void TrainingLines::epoch(int epochs, long long steps, double loss) {
       throw MethodError(fmt::format("training diverged: the {} of epoch {} is {}", name, epochs, value.get<double>()));
   Json line = std::exchange(curves_, Json::object());
   line.update({{"epoch", epochs}, {"steps", steps}, {"loss", loss}});
+  try {
+    expect_training_line(JsonReader(line, "training log"));
+  } catch (const InputError& e) {
+    throw MethodError(e.what());
+  }
   lines += canonical(line) + '\n';
   if (counted_) counted_(epochs);
 }

@@ -28,7 +28,8 @@ class TrainingLines : public TrainingLog {
  public:
   /// `counted(epochs)` after each line.
   explicit TrainingLines(std::function<void(int epochs)> counted = {}) : counted_(std::move(counted)) {}
-  /// @throws MethodError for a value that is infinite or no number, and for a curve's name that is none.
+  /// @throws MethodError for a value that is infinite or no number, for what else a report refuses to read
+  /// (expect_training_line()), and for a curve's name that is none.
   void epoch(int epochs, long long steps, double loss) override;
   void curve(const std::string& name, double value) override;
 

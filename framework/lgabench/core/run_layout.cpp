@@ -1,6 +1,10 @@
 #include <lgabench/core/run_layout.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
 
 #include <lgabench/core/hash.hpp>
@@ -22,6 +26,16 @@ std::vector<std::string> artefact_names(const PlainDirectory& files) {
   std::sort(names.begin(), names.end());
   names.resize(std::min(names.size(), most));
   return names;
+}
+
+void expect_training_line(const JsonReader& line) {
+  constexpr double most = 1e100;
+  line.at("epoch").integer(1, std::numeric_limits<long long>::max());
+  line.at("steps").integer(0, std::numeric_limits<long long>::max());
+  line.at("loss");
+  for (const auto& item : line.json().items())
+    if (const JsonReader value = line.at(item.key()); !(std::abs(value.number()) <= most))
+      value.fail(fmt::format("a number from {:g} to {:g}", -most, most));
 }
 
 bool is_cell_key(const std::string& text) {

@@ -189,6 +189,7 @@ int other_cells(const Entry& there, const Entry& here) {
 void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
   if (run.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
   if (run.json.value("confinement", "").rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
+  for (const std::string& why : run.unreadable) reasons.add(why);
   if (run.not_run > 0) reasons.add(fmt::format("{} cells of the run have not been played", run.not_run));
   for (const CellResult& cell : run.cells)
     if (!cell.participant.empty()) {

@@ -25,7 +25,9 @@ void remove_others(const fs::path& directory, const Names& kinds, const Names& n
 RunResults read_cells(const fs::path& run) {
   RunResults results = read_run(run);
   if (results.cells.empty())
-    throw InputError((run / "cells").string() + ": no cell of the run has been played yet: nothing to report");
+    throw InputError(results.unreadable.empty()
+                         ? (run / "cells").string() + ": no cell of the run has been played yet: nothing to report"
+                         : results.unreadable.front());
   return results;
 }
 

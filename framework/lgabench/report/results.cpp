@@ -70,10 +70,11 @@ void read_training(const fs::path& file, CellResult& cell) {
   int line = 0;
   for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
-    const long long epoch = reader.at("epoch").integer(1, std::numeric_limits<long long>::max());
+    expect_training_line(reader);
+    const auto epoch = json.at("epoch").get<long long>();
     for (const auto& item : json.items())
       if (item.key() != "epoch" && item.key() != "steps")
-        cell.training[one_line(item.key())][epoch] = reader.at(item.key()).number();
+        cell.training[one_line(item.key())][epoch] = item.value().get<double>();
   }
 }
 
@@ -206,6 +207,26 @@ CellResult read_cell(const fs::path& directory) {
   return cell;
 }
 
+namespace {
+
+// The cell as read_cell() has it; else its configuration and why. @throws InputError where that cannot be read either.
+CellResult read_or_failed(const fs::path& directory) {
+  try {
+    return read_cell(directory);
+  } catch (const InputError& e) {
+    CellResult cell;
+    cell.key = directory.filename().string();
+    read_configuration(directory / "cell.json", cell);
+    cell.failed = true;
+    cell.fault = "host";
+    const std::string why = one_line(e.what()), where = one_line(directory.string()) + "/";
+    cell.reason = "cannot be read: " + (why.rfind(where, 0) == 0 ? why.substr(where.size()) : why);
+    return cell;
+  }
+}
+
+}  // namespace
+
 RunResults read_run(const fs::path& run) {
   RunResults results;
   results.directory = run;
@@ -236,8 +257,20 @@ RunResults read_run(const fs::path& run) {
       ++results.not_run;
     else
       played.push_back(key);
-  results.cells.resize(played.size());
-  in_parallel(played.size(), [&](std::size_t i) { results.cells[i] = read_cell(run / "cells" / played[i]); });
+  std::vector<CellResult> cells(played.size());
+  std::vector<std::string> refused(played.size());
+  in_parallel(played.size(), [&](std::size_t i) {
+    try {
+      cells[i] = read_or_failed(run / "cells" / played[i]);
+    } catch (const InputError& e) {
+      refused[i] = one_line(e.what());
+    }
+  });
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (refused[i].empty())
+      results.cells.push_back(std::move(cells[i]));
+    else
+      results.unreadable.push_back(std::move(refused[i]));
   for (CellResult& cell : results.cells) {
     if (cell.rehearsal) results.rehearsal = true;
     if (divided) cell.demonstrated_commands = 1;

@@ -48,9 +48,9 @@ struct CellResult {
   std::vector<CommandResult> commands;
   int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
   bool failed = false;
-  std::string fault, reason;                                   // where it failed; fault: plugin or host
-  std::vector<std::string> log_tail;                           // what a failed cell's worker printed last
-  std::string method_error;                                    // what the first episode of that failure threw
+  std::string fault, reason;          // where it failed; fault: plugin or host, which it is too where it cannot be read
+  std::vector<std::string> log_tail;  // what a failed cell's worker printed last
+  std::string method_error;           // what the first episode of that failure threw
   std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
   // Curves of training.jsonl: "loss", or a name of the method's own -> its values along the epochs.
   std::map<std::string, std::map<long long, double>> training;
@@ -68,22 +68,25 @@ struct RunResults {
   bool smoke = false;      // stamped as not for the leaderboard
   bool rehearsal = false;  // a cell is based on answers of a rehearsal, not people's
   int not_run = 0;         // asked for by run.json, not there
-  int foreign = 0;         // there, not asked for by run.json: ignored
+  std::vector<std::string> unreadable;  // why, of cells whose cell.json cannot be read: they are not among `cells`
+  int foreign = 0;                      // there, not asked for by run.json: ignored
 };
 
 /// What stands wherever answers of a rehearsal decide a number.
 constexpr const char* rehearsal_words = "rehearsal, not people";
 
-/// Reads a cell's directory. @throws InputError as read_run.
+/// Reads a cell's directory. @throws InputError naming file and line or place for a file that is missing, malformed, or
+/// not what status.json's checksums say.
 CellResult read_cell(const fs::path& directory);
 
 /// What a failure may be attributed to, in a fixed order: a failed episode in which the same policy succeeds with the
 /// true mask is the abstraction's, any other the policy's.
 constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
 
-/// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells.
-/// @throws InputError naming file and line or place for a file that is missing, malformed, or not what status.json's
-/// checksums say; and for two cells that measure the same.
+/// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells. A cell that
+/// read_cell() refuses counts as failed: what it holds may be a method's doing, and takes nothing from other rows.
+/// @throws InputError naming file and place for a run.json that is missing or malformed, and for two cells that measure
+/// the same.
 RunResults read_run(const fs::path& run);
 
 }  // namespace lgabench::report

@@ -30,8 +30,11 @@ Section what_was_run(const Material& material) {
   std::size_t episodes = 0;
   for (const CellResult& cell : run.cells)
     for (const auto& item : cell.episodes) episodes += item.second.size();
+  const std::string unreadable =
+      run.unreadable.empty() ? "" : fmt::format(", {} not to be read", run.unreadable.size());
   const std::pair<std::string, std::string> cells{
-      "cells", fmt::format("{} finished, {} failed, {} not run", run.cells.size() - failed, failed, run.not_run)};
+      "cells",
+      fmt::format("{} finished, {} failed, {} not run{}", run.cells.size() - failed, failed, run.not_run, unreadable)};
   section.add(on_page, Facts{{cells, {"episodes", std::to_string(episodes)}}});
   Facts known = facts(run);
   known.items.insert(known.items.begin(), cells);

@@ -25,13 +25,16 @@ std::map<long long, double> mean_curve(const std::vector<const std::map<long lon
   return means;
 }
 
-// Round numbers from low to high, both inclusive: about four.
+// Round numbers from low to high, both inclusive: about four, and at least two. What lies closer together than their
+// labels' digits tell apart is taken for one number: a method may log any.
 std::vector<Chart::Tick> round_ticks(double low, double high) {
-  const double rough = std::max(high - low, 1e-9) / 4, unit = std::pow(10, std::floor(std::log10(rough)));
+  const double range = std::max({high - low, 1e-9, 1e-4 * std::max(std::abs(low), std::abs(high))});
+  const double rough = range / 4, unit = std::pow(10, std::floor(std::log10(rough)));
   const double step = unit * (rough < 1.5 * unit ? 1 : rough < 3.5 * unit ? 2 : rough < 7.5 * unit ? 5 : 10);
+  const double first = std::floor(low / step + 1e-9);
+  const int steps = std::max(1, static_cast<int>(std::ceil(high / step - 1e-9) - first));
   std::vector<Chart::Tick> ticks;
-  for (double at = std::floor(low / step + 1e-9); at <= std::ceil(high / step - 1e-9); ++at)
-    ticks.push_back({at * step, fmt::format("{:g}", at == 0 ? 0. : at * step)});
+  for (int i = 0; i <= steps; ++i) ticks.push_back({(first + i) * step, fmt::format("{:g}", (first + i) * step + 0.)});
   return ticks;
 }
 
@@ -39,7 +42,8 @@ std::vector<Chart::Tick> round_ticks(double low, double high) {
 std::vector<Chart::Tick> power_ticks(double low, double high) {
   std::vector<Chart::Tick> ticks;
   const bool between = high - low < 2.5;
-  for (int power = static_cast<int>(std::floor(low)) - 1; power <= std::ceil(high); ++power)
+  const int apart = 1 + static_cast<int>(high - low) / 20, end = static_cast<int>(std::ceil(high)) + apart;
+  for (int power = static_cast<int>(std::floor(low)) - 1; power < end; power += apart)
     for (const double digit : {1., 2., 5.}) {
       if (!between && digit > 1) continue;
       ticks.push_back({power + std::log10(digit), fmt::format("{:g}", digit * std::pow(10, power))});
