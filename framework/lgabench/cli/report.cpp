@@ -14,12 +14,18 @@
 namespace lgabench::cli {
 namespace {
 
+// Names the cells that could not be read; their run is then an error, though its report is there.
+int exit_of(const report::RunResults& results, int otherwise) {
+  for (const std::string& why : results.unreadable) to_stderr("left out: {}\n", why);
+  return results.unreadable.empty() ? otherwise : usage;
+}
+
 int verdict_of(const report::RunResults& results, const std::vector<report::Claim>& claims) {
   if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
   if (results.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
-  return reversed ? regression : ok;
+  return exit_of(results, reversed ? regression : ok);
 }
 
 void print_section(const std::vector<report::Claim>& claims, const std::string& title) {
@@ -50,7 +56,7 @@ int print_difference(const report::RunResults& results, const std::vector<std::s
 }
 
 // Each run's report, and a page over those that are runs.
-void report_all(const std::vector<std::string>& directories, const std::string& index) {
+int report_all(const std::vector<std::string>& directories, const std::string& index) {
   std::vector<report::Report> reports;
   for (const std::string& directory : directories) {
     if (!fs::exists(fs::path(directory) / "run.json")) continue;
@@ -63,6 +69,9 @@ void report_all(const std::vector<std::string>& directories, const std::string& 
   const fs::path file = index.empty() ? beside / "index.html" : fs::path(index);
   put(stdout, printable(report::terminal(report::write_index(reports, file), "")));
   to_stderr("{}\n", file.string());
+  int exit = ok;
+  for (const report::Report& report : reports) exit = exit_of(report.run, exit);
+  return exit;
 }
 
 }  // namespace
@@ -107,8 +116,7 @@ void add_report(CLI::App& app, int& exit) {
     if (options->runs.size() > 1) {
       if (options->claims || !options->difference.empty() || options->format != "text")
         throw InputError("report: several runs have a page and a table; give one run for anything else");
-      report_all(options->runs, options->index);
-      exit = ok;
+      exit = report_all(options->runs, options->index);
       return;
     }
     if (!options->index.empty()) throw InputError("--index: expected several runs");
@@ -133,7 +141,7 @@ void add_report(CLI::App& app, int& exit) {
     else
       to_stdout("{}", read_file(run / ("summary." + options->format)));
     to_stderr("{}\n", (run / "report.html").string());
-    exit = ok;
+    exit = exit_of(report.run, ok);
   });
 }
 

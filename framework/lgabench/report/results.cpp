@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -209,20 +210,20 @@ CellResult read_cell(const fs::path& directory) {
 
 namespace {
 
-// The cell as read_cell() has it; else its configuration and why. @throws InputError where that cannot be read either.
-CellResult read_or_failed(const fs::path& directory) {
+// A cell as one that failed, since it cannot be read; none where nobody can say of which row it is.
+std::optional<CellResult> failed_cell(const fs::path& directory, const std::string& why) {
+  CellResult cell;
+  cell.key = directory.filename().string();
   try {
-    return read_cell(directory);
-  } catch (const InputError& e) {
-    CellResult cell;
-    cell.key = directory.filename().string();
     read_configuration(directory / "cell.json", cell);
-    cell.failed = true;
-    cell.fault = "host";
-    const std::string why = one_line(e.what()), where = one_line(directory.string()) + "/";
-    cell.reason = "cannot be read: " + (why.rfind(where, 0) == 0 ? why.substr(where.size()) : why);
-    return cell;
+  } catch (const InputError&) {
+    return {};
   }
+  cell.failed = true;
+  cell.fault = "host";
+  const std::string where = one_line(directory.string()) + "/";
+  cell.reason = "cannot be read: " + (why.rfind(where, 0) == 0 ? why.substr(where.size()) : why);
+  return cell;
 }
 
 }  // namespace
@@ -257,20 +258,21 @@ RunResults read_run(const fs::path& run) {
       ++results.not_run;
     else
       played.push_back(key);
-  std::vector<CellResult> cells(played.size());
+  std::vector<std::optional<CellResult>> cells(played.size());
   std::vector<std::string> refused(played.size());
   in_parallel(played.size(), [&](std::size_t i) {
+    const fs::path directory = run / "cells" / played[i];
     try {
-      cells[i] = read_or_failed(run / "cells" / played[i]);
+      cells[i] = read_cell(directory);
     } catch (const InputError& e) {
       refused[i] = one_line(e.what());
+      cells[i] = failed_cell(directory, refused[i]);
     }
   });
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (refused[i].empty())
-      results.cells.push_back(std::move(cells[i]));
-    else
-      results.unreadable.push_back(std::move(refused[i]));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i]) results.cells.push_back(std::move(*cells[i]));
+    if (!refused[i].empty()) results.unreadable.push_back(std::move(refused[i]));
+  }
   for (CellResult& cell : results.cells) {
     if (cell.rehearsal) results.rehearsal = true;
     if (divided) cell.demonstrated_commands = 1;

@@ -68,7 +68,7 @@ struct RunResults {
   bool smoke = false;      // stamped as not for the leaderboard
   bool rehearsal = false;  // a cell is based on answers of a rehearsal, not people's
   int not_run = 0;         // asked for by run.json, not there
-  std::vector<std::string> unreadable;  // why, of cells whose cell.json cannot be read: they are not among `cells`
+  std::vector<std::string> unreadable;  // why, of each cell that cannot be read; where cell.json can, it failed
   int foreign = 0;                      // there, not asked for by run.json: ignored
 };
 

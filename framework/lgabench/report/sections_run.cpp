@@ -30,15 +30,18 @@ Section what_was_run(const Material& material) {
   std::size_t episodes = 0;
   for (const CellResult& cell : run.cells)
     for (const auto& item : cell.episodes) episodes += item.second.size();
-  const std::string unreadable =
-      run.unreadable.empty() ? "" : fmt::format(", {} not to be read", run.unreadable.size());
   const std::pair<std::string, std::string> cells{
-      "cells",
-      fmt::format("{} finished, {} failed, {} not run{}", run.cells.size() - failed, failed, run.not_run, unreadable)};
+      "cells", fmt::format("{} finished, {} failed, {} not run", run.cells.size() - failed, failed, run.not_run)};
   section.add(on_page, Facts{{cells, {"episodes", std::to_string(episodes)}}});
   Facts known = facts(run);
   known.items.insert(known.items.begin(), cells);
   section.add(in_markdown, std::move(known));
+  if (!run.unreadable.empty()) {
+    section.add(reading, Paragraph{{"Cells that cannot be read; those whose cell.json can count as failed:"}});
+    List lines;
+    for (const std::string& why : run.unreadable) lines.items.push_back({why});
+    section.add(reading, std::move(lines));
+  }
 
   Grid grid;
   grid.name = "commands";

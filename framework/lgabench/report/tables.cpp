@@ -101,7 +101,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   if (run.not_run > 0)
     lines.push_back(fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run,
                                 run.json.at("cells").size()));
-  for (const std::string& why : run.unreadable) lines.push_back(fmt::format("A cell was left out: {}.", why));
+  if (!run.unreadable.empty())
+    lines.push_back(fmt::format("{} of {} cells cannot be read, and were left out.", run.unreadable.size(),
+                                run.json.at("cells").size()));
   if (run.foreign > 0)
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
   for (const Mark& mark : table_marks)
