@@ -161,6 +161,16 @@ class Runs(OneRun):
         self.refused("merge", "merged", "run", says=r"status.json: .*; left out", expect=0)
         self.assertRegex(self.call(*RUN, "--out", "run").stderr, r"status.json: .*100 levels; computed again")
 
+    def test_a_cell_that_cannot_be_read_takes_no_other_from_the_report(self):
+        cell = self.cell()
+        (cell / "training.jsonl").write_text('{"epoch":0,"loss":1,"steps":1}\n')
+        why = r"run/cells/\w+/training.jsonl: line 1: /epoch: expected a whole number from 1"
+        self.refused("report", "run", says=f"left out: {why}")
+        summary = json.loads((self.dir / "run/summary.json").read_text())
+        self.assertEqual([failed["cell"] for failed in summary["failed_cells"]], [cell.name])
+        self.assertTrue(any(row["success"] is not None for row in summary["rows"]))
+        self.refused("compare", "run", "run", says=f"lgabench: {why}")
+
     def test_members_of_another_type(self):
         def broken(change):
             self.copy_first("run")

@@ -8,6 +8,17 @@
 #include <lgabench/report/compare.hpp>
 
 namespace lgabench::cli {
+namespace {
+
+// A run all of whose cells can be read: a comparison of the others would say less than it seems to.
+report::RunResults read_whole(const fs::path& directory) {
+  expect_run(directory);
+  report::RunResults run = report::read_run(directory);
+  if (!run.unreadable.empty()) throw InputError(run.unreadable.front());
+  return run;
+}
+
+}  // namespace
 
 void add_compare(CLI::App& app, int& exit) {
   struct Options {
@@ -40,11 +51,9 @@ void add_compare(CLI::App& app, int& exit) {
     std::optional<report::RowPair> rows;
     if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};
     if (options->b.empty() && !rows) throw InputError("compare: expected A B, or A --rows ROW_A,ROW_B");
-    expect_run(options->a);
-    const report::RunResults a = report::read_run(options->a);
-    if (!options->b.empty()) expect_run(options->b);
+    const report::RunResults a = read_whole(options->a);
     const report::RunComparison comparison =
-        report::compare_runs(a, options->b.empty() ? a : report::read_run(options->b), rows);
+        report::compare_runs(a, options->b.empty() ? a : read_whole(options->b), rows);
     to_stdout("{}", options->json ? canonical(report::to_json(comparison)) + '\n'
                                   : report::comparison_text(comparison, options->times));
     exit = comparison.regressed() ? regression : ok;

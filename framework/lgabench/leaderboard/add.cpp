@@ -189,7 +189,6 @@ int other_cells(const Entry& there, const Entry& here) {
 void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
   if (run.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
   if (run.json.value("confinement", "").rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
-  for (const std::string& why : run.unreadable) reasons.add(why);
   if (run.not_run > 0) reasons.add(fmt::format("{} cells of the run have not been played", run.not_run));
   for (const CellResult& cell : run.cells)
     if (!cell.participant.empty()) {
@@ -215,10 +214,11 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   RunResults run;
   try {
     run = report::read_run(directory);
-  } catch (const InputError& e) {  // an edited file, among others
+    added.refused = run.unreadable;  // an edited file, among others
+  } catch (const InputError& e) {
     added.refused.emplace_back(e.what());
-    return added;
   }
+  if (!added.refused.empty()) return added;
   expect_run_of_the_board(run, reasons);
   std::optional<Installed> installed;
   try {
