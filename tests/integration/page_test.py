@@ -73,6 +73,7 @@ class PageInABrowser(BesideOneRun):
 
     def test_nothing_is_wider_than_its_place(self):
         wide = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrollWidth > f.clientWidth + 1)
+                  .filter((f) => innerWidth < 900 || f.tabIndex !== 0 || !f.querySelector("tbody .pinned"))
                   .map((f) => f.getAttribute("aria-label"))"""
         page = "return document.documentElement.scrollWidth"
         for width in (1280, 768, 390):

@@ -42,14 +42,14 @@ def drawn_colours():
     names = (SOURCE / "framework/lgabench/report/names.cpp").read_text()
     spare = re.search(r"spare\{([^}]*)\}", names)[1]
     colours |= {f"spare {c}": c for c in re.findall(r'"(#\w+)"', spare)}
-    colours |= dict(re.findall(r"\.(f\d|abstraction|policy) \{ --c: (#\w+); \}", CSS))
+    colours |= dict(re.findall(r"\.(f\d+|abstraction|policy|perception) \{ --c: (#\w+); \}", CSS))
     return colours
 
 
 class Contrast(unittest.TestCase):
     def test_lines_marks_and_bars(self):
         colours = drawn_colours()
-        self.assertGreaterEqual(len(colours), 6 + 4 + 10 + 2)
+        self.assertGreaterEqual(len(colours), 6 + 4 + 14 + 3)
         for name, scheme in schemes().items():
             lift = int(scheme["lift"].rstrip("%")) / 100
             lifted = {what: [c + (1 - c) * lift for c in rgb(colour)] for what, colour in colours.items()}
@@ -68,8 +68,8 @@ class Contrast(unittest.TestCase):
             self.assertGreaterEqual(contrast(rgb(scheme["ink"]), rgb(scheme["note"])), 4.5)
 
     def test_failures_have_colours_of_their_own(self):
-        failures = [c for name, c in drawn_colours().items() if re.fullmatch(r"f\d", name)]
-        self.assertEqual(len(set(failures)), 10)
+        failures = [c for name, c in drawn_colours().items() if re.fullmatch(r"f\d+", name)]
+        self.assertEqual(len(set(failures)), 14)
 
 
 if __name__ == "__main__":

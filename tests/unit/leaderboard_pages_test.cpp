@@ -62,17 +62,35 @@ TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
     EXPECT_SAYS(page, row);
 }
 
-TEST(Board, ASuiteWithoutARankComesAfterThoseWithRanks) {
+TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
   const TemporaryDirectory board;
-  for (const char* suite : {"z_ranked", "a_diagnosis", "b_ranked"}) {
+  for (const char* suite : {"z_ranked", "a_diagnosis", "mobile", "q1"}) {
     Setting setting = small_setting();
     setting.suite = suite;
     write_entry(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
   }
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
-  EXPECT_LT(page.find("## b_ranked"), page.find("## z_ranked"));
+  EXPECT_LT(page.find("## q1"), page.find("## mobile"));
+  EXPECT_LT(page.find("## mobile"), page.find("## z_ranked"));
   EXPECT_LT(page.find("## z_ranked"), page.find("## a_diagnosis"));
+}
+
+TEST(Board, ARowBelowTheRandomObjectSaysSoAndTheIndexSaysWhatItLeavesOut) {
+  const TemporaryDirectory board;
+  const Setting setting = small_setting();
+  write_entry(board.path, made_entry(setting, "random_object", .5, "reference"));
+  for (int i = 0; i < 12; ++i) write_entry(board.path, made_entry(setting, fmt::format("m{}", i), i == 0 ? .2 : .8));
+  build(board.path);
+  EXPECT_SAYS(read_file(board.path / "index.html"), "10 of 12 entries; <a href=\"q1.html\">all of them</a>");
+  EXPECT_SAYS(read_file(board.path / "index.html"), "random visible object") << "reference rows stay";
+  const std::string page = read_file(board.path / "README.md"), suite = read_file(board.path / "q1.html");
+  EXPECT_SILENT(page, "of 12 entries");
+  EXPECT_SAYS(page, "]§ |");
+  EXPECT_SAYS(page, "§ below the random visible object, which needs no demonstration.");
+  EXPECT_SAYS(suite, "<span title=\"below the random visible object, which needs no demonstration\">§</span>");
+  EXPECT_LT(suite.find("method_of_m1<"), suite.find("random visible object<"));
+  EXPECT_LT(suite.find("random visible object<"), suite.find("method_of_m0<"));
 }
 
 void replace_in(const fs::path& file, const std::string& old, const std::string& with) {

@@ -233,21 +233,26 @@ TEST(Standings, AHugeDifferenceBearsTheCorrectionForManyEntries) {
 TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   const Setting setting = small_setting();
   const std::vector<Entry> entries{made_entry(setting, "a", .8), made_entry(setting, "b", .8),
-                                   made_entry(setting, "c", .3), made_entry(setting, "oracle", 1, "reference")};
+                                   made_entry(setting, "c", .3), made_entry(setting, "oracle", 1, "reference"),
+                                   made_entry(setting, "random_object", .5, "reference")};
   std::vector<const Entry*> table;
   for (const Entry& entry : entries) table.push_back(&entry);
   const std::vector<Standing> all = standings(table);
-  ASSERT_EQ(all.size(), 4u);
-  EXPECT_EQ(all[0].rank, 1);
+  ASSERT_EQ(all.size(), 5u);
+  const auto by = [&](std::size_t i) { return all[i].entry->about.at("by").get<std::string>(); };
+  EXPECT_EQ(by(0), "oracle") << "reference rows stand among the others, by score";
+  EXPECT_EQ(by(3), "random_object");
+  for (const std::size_t reference : {0, 3}) EXPECT_FALSE(all[reference].rank) << "a reference row has no rank";
   EXPECT_EQ(all[1].rank, 1);
-  EXPECT_EQ(all[2].rank, 3);
-  EXPECT_EQ(all[2].entry->about.at("by"), "c");
-  EXPECT_FALSE(all[3].rank) << "a reference row has none";
+  EXPECT_EQ(all[2].rank, 1);
+  EXPECT_EQ(all[4].rank, 3);
+  EXPECT_EQ(by(4), "c");
+  for (const Standing& s : all) EXPECT_EQ(s.below_random, &s == &all[4]) << s.entry->about.at("by");
   for (const Standing& s : all) {
     EXPECT_LE(s.interval.low, s.score);
     EXPECT_GE(s.interval.high, s.score);
   }
-  EXPECT_DOUBLE_EQ(*all[0].precision, .5);
+  EXPECT_DOUBLE_EQ(*all[1].precision, .5);
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {

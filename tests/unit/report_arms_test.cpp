@@ -82,7 +82,7 @@ TEST(Arms, SameActionsAreMarkedForMethodsAlone) {
   EXPECT_FALSE(rows.at("q2_heart lga hard").at("shift").at("same_actions"));
   EXPECT_TRUE(rows.at("q2_heart constant_action texture").at("shift").at("same_actions"));
   const std::string text = table_text(run.path);
-  EXPECT_SAYS(text, "= same actions as in control: the policy saw the same input.");
+  EXPECT_SAYS(text, "= the same actions as in control.");
 
   // One policy of three that acts otherwise, in all its scenes: not the same.
   other.seed = 2;
@@ -90,7 +90,7 @@ TEST(Arms, SameActionsAreMarkedForMethodsAlone) {
   run.add(other);
   rows = rows_of(run);
   EXPECT_FALSE(rows.at("q2_heart lga texture").at("shift").at("same_actions"));
-  EXPECT_SILENT(table_text(run.path), "same actions");
+  EXPECT_SILENT(table_text(run.path), "the same actions");
 }
 
 TEST(Arms, NoActionIsNotTheSameAction) {

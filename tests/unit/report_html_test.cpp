@@ -7,7 +7,10 @@
 #include <regex>
 #include <set>
 
+#include <lgabench/core/environments.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/report.hpp>
+#include <lgabench/report/tables.hpp>
 #include <lgabench/report/writers.hpp>
 
 #include "report_run.hpp"
@@ -231,6 +234,13 @@ TEST(Html, ActionsAreDrawnWhereTheyWere) {
   const Json drawn = data_of(page).at("cells")[0].at("arms")[0].at("actions");
   EXPECT_EQ(drawn, (Json{{"19", {{204.8, 12.8}, {204.8, 12.8}}}}));
   EXPECT_SAYS(page, "Pictures: 1 of the 1 scenes");
+}
+
+TEST(Html, EveryFailureAndEveryCauseHasAColour) {
+  const std::string style = read_file(data_directory() / "page" / "page.css");
+  EXPECT_LE(failure_words().size(), static_cast<std::size_t>(report::failure_colours)) << "two would look alike";
+  for (std::ptrdiff_t i = 0; i < report::failure_colours; ++i) EXPECT_SAYS(style, fmt::format(".f{} {{ --c: #", i));
+  for (const char* cause : report::attributions) EXPECT_SAYS(style, fmt::format(".{} {{ --c: #", cause));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/report/names.hpp>
@@ -26,20 +27,26 @@ using report::Span;
 using Suites = std::vector<std::pair<std::string, std::vector<NamedTable>>>;
 constexpr std::size_t first_rows = 10, all_rows = 1'000'000;
 
-// The rows of a table, at most so many; `board` is where its links find the board.
+bool is_reference(const Standing& s) { return s.entry->identity.row.is_reference(); }
+
+// The reference rows of a table and at most so many entries; `board` is where its links find the board.
 Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board) {
   Grid grid;
   grid.name = table.setting.name();
   grid.caption = title_of(table.setting);
   grid.heads = {"rank", "entry", "success", "tier", "by", "id"};
   grid.align = "rlrlll";
-  for (std::size_t i = 0; i < std::min(most, table.standings.size()); ++i) {
+  std::size_t entries = 0;
+  for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
+    if (!is_reference(s) && ++entries > most) continue;
+    report::Spans success{Span::number(score_text(s))};
+    if (s.below_random) success.push_back(below_random_mark());
     grid.rows.push_back({{},
-                         {Span::number(rank_text(s)), Span(display_name(table.names[i])), Span::number(score_text(s)),
+                         {Span::number(rank_text(s)), Span(display_name(table.names[i])), success,
                           Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
                           Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
-                         s.entry->identity.row.is_reference()});
+                         is_reference(s)});
   }
   return grid;
 }
@@ -47,6 +54,7 @@ Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board
 void add_table(Section& section, const NamedTable& table, std::size_t most, const fs::path& board = "") {
   section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
   section.add<Grid>(reading, short_grid(table, most, board));
+  if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
 }
 
 Document index(const Suites& suites, std::size_t most) {
@@ -61,6 +69,11 @@ Document index(const Suites& suites, std::size_t most) {
     for (const NamedTable& table : tables) {
       section.add<Heading>(reading, {title_of(table.setting)});
       add_table(section, table, most);
+      const auto entries = static_cast<std::size_t>(std::count_if(table.standings.begin(), table.standings.end(),
+                                                                  [](const auto& s) { return !is_reference(s); }));
+      if (entries > most)
+        section.add<Paragraph>(
+            reading, {{fmt::format("{} of {} entries; ", most, entries), Span::link("all of them", suite + ".html")}});
     }
     document.sections.push_back(std::move(section));
   }
@@ -146,11 +159,16 @@ bool ranks_entries(const NamedTable& table) {
   return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
 }
 
-// By name; suites for diagnosis, without a rank, come last.
+// In the order of the paper's questions, then by name; suites for diagnosis, without a rank, come last.
 Suites suites_of(const std::vector<Entry>& entries) {
-  std::map<std::string, std::vector<NamedTable>> by_name;
-  for (const auto& table : tables(entries)) by_name[table.front()->setting.suite].push_back(named_table(table));
-  Suites suites(by_name.begin(), by_name.end());
+  constexpr std::array order{"q1", "q2", "q3", "mobile"};
+  std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
+  for (const auto& table : tables(entries)) {
+    const std::string& suite = table.front()->setting.suite;
+    by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(named_table(table));
+  }
+  Suites suites;
+  for (auto& [place, named] : by_place) suites.emplace_back(place.second, std::move(named));
   std::stable_partition(suites.begin(), suites.end(), [](const auto& suite) {
     return std::any_of(suite.second.begin(), suite.second.end(), ranks_entries);
   });

@@ -158,10 +158,16 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table) {
                                           fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
   add_ranks(all, resamples);
-  const auto order = [](const Standing& s) {
-    return std::tuple(!s.not_ranked.empty(), s.entry->identity.row.is_reference(), -s.score, s.entry->id());
+  const bool ranks = std::any_of(all.begin(), all.end(), [](const Standing& s) { return s.rank; });
+  const auto is_reference = [](const Standing& s) { return s.entry->identity.row.is_reference(); };
+  const auto order = [&](const Standing& s) {
+    return std::tuple(ranks && !s.rank && !is_reference(s), -s.score, is_reference(s), s.entry->id());
   };
   std::sort(all.begin(), all.end(), [&](const Standing& a, const Standing& b) { return order(a) < order(b); });
+  const auto random = std::find_if(all.begin(), all.end(),
+                                   [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
+  if (random != all.end())
+    for (Standing& standing : all) standing.below_random = !is_reference(standing) && standing.score < random->score;
   return all;
 }
 

@@ -18,6 +18,7 @@ struct Standing {
   report::Interval interval;  // 95 %
   std::optional<int> rank;    // 1 + the entries that are significantly better; none where it is not ranked
   std::string not_ranked;     // why; "" where it is ranked
+  bool below_random = false;  // its score is below that of the reference row random_object
   std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
   std::map<std::string, double> in_arm, in_scenario;
   int episodes = 0, failed_cells = 0;
@@ -28,7 +29,8 @@ struct Standing {
 /// Why an entry has no place among the ranked: "" for one that has.
 std::string why_not_ranked(const Entry& entry);
 
-/// The entries of one table, ranked ones first, by score; then the others. Entries that were withdrawn are left out.
+/// The entries of one table by score, reference rows among them; where entries are ranked, methods that are not come
+/// last. Entries that were withdrawn are left out.
 /// All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which makes the paired test of
 /// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Deterministic.
 /// @pre the entries have one setting

@@ -9,6 +9,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/tables.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -77,6 +78,7 @@ Cell rate_button(const std::string& text, double rate, std::size_t row) {
 // Success, its interval small beside it.
 Cell score_button(const Standing& s, std::size_t row) {
   Cell cell = rate_button(fixed(s.score, score_digits), s.score, row);
+  if (s.below_random) cell.spans.push_back(below_random_mark());
   cell.spans.push_back(Span::number(interval_text(s), "", report::Emphasis::detail));
   return cell;
 }
@@ -91,7 +93,8 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   grid.name = setting.name();
   grid.caption = title_of(setting);
   grid.heads = {"rank", "entry", "success"};
-  for (const int n : setting.demonstrations) grid.heads.emplace_back(fmt::format("n = {}", n));
+  const std::vector<int> numbers = setting.demonstrations.size() > 1 ? setting.demonstrations : std::vector<int>();
+  for (const int n : numbers) grid.heads.emplace_back(fmt::format("n = {}", n));
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(arm);
   for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
@@ -105,7 +108,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     name.style = reference ? MethodStyle() : styles(table.names[i]);
     Grid::Row row{
         {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
-    for (const int n : setting.demonstrations) {
+    for (const int n : numbers) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
       row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(fixed(at->second))));
     }
@@ -248,6 +251,21 @@ std::string score_text(const Standing& standing) {
   return fixed(standing.score, score_digits) + interval_text(standing);
 }
 
+Span below_random_mark() {
+  const auto mark = std::find_if(report::table_marks.begin(), report::table_marks.end(), [](const report::Mark& one) {
+    return one.word == std::string_view("below_random_object");
+  });
+  Span span(mark->sign);
+  span.title = mark->meaning;
+  return span;
+}
+
+std::optional<Paragraph> below_random_note(const std::vector<Standing>& standings) {
+  if (std::none_of(standings.begin(), standings.end(), [](const Standing& s) { return s.below_random; })) return {};
+  const Span mark = below_random_mark();
+  return Paragraph{{mark, " " + mark.title + "."}};
+}
+
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
   Document document;
   document.suite = suite;
@@ -263,6 +281,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     Section section{id, title_of(table.setting)};
     section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
     section.add<Grid>(reading, standings_grid(table, first_row));
+    if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
     if (table.withdrawn > 0)
       section.add<Paragraph>(reading,
                              {{fmt::format("{} entries were withdrawn; their files remain.", table.withdrawn)}});

@@ -1,5 +1,6 @@
 // The tables of one suite as a document, and what its page shows on a click.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,13 @@ NamedTable named_table(const std::vector<const Entry*>& table);
 std::string title_of(const Setting& setting);
 /// "heart, 13 scenarios, ..." in a sentence.
 std::string what_was_played(const Setting& setting);
-/// "3", or why there is none.
+/// "3", "–" where there is none.
 std::string rank_text(const Standing& standing);
 /// "0.516 [0.443, 0.582]"
 std::string score_text(const Standing& standing);
+/// § of an entry below the random visible object, and what it means; the line below a table that has it.
+report::Span below_random_mark();
+std::optional<report::Paragraph> below_random_note(const std::vector<Standing>& standings);
 /// "replayed; fresh", "recomputed; partly confined; 2 cells failed"
 std::string tier_and_marks(const Standing& standing);
 

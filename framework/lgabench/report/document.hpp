@@ -40,6 +40,7 @@ struct Span {
   static Span link(std::string words, std::string url);
 
   std::string text, pointer, url{};
+  std::string title{};  // what a page says of it under the pointer
   Emphasis emphasis = Emphasis::none;
   bool numeric = false;  // the program's own, and needs no escape in Markdown
 };

@@ -16,6 +16,7 @@ namespace {
 std::string words_html(const Span& span) {
   std::string text = escaped(span.text);
   if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
+  if (!span.title.empty()) text = fmt::format("<span title=\"{}\">{}</span>", escaped(span.title), text);
   return span.url.empty() ? text : fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
 }
 

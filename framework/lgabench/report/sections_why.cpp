@@ -182,7 +182,7 @@ Section failures(const Material& material) {
   endings.column("success");
   const std::vector<std::string> all = failure_words();  // in the order of their colours
   const auto kind = [&all](const std::string& word) {
-    return fmt::format("f{}", std::find(all.begin(), all.end(), word) - all.begin());
+    return fmt::format("f{}", (std::find(all.begin(), all.end(), word) - all.begin()) % failure_colours);
   };
   for (const std::string& word : used) endings.column(words(word), kind(word));
   for (const Table& table : material.summary.tables)

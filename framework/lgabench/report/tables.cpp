@@ -108,8 +108,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
   for (const Mark& mark : table_marks)
     if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
-  for (const std::string& arm : same_as)
-    lines.push_back(fmt::format("= same actions as in {}: the policy saw the same input.", arm));
+  for (const std::string& arm : same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));
   lines.insert(lines.end(), of_some.begin(), of_some.end());
   for (const auto& [method, who] : people) lines.push_back(fmt::format("{}: {}.", display_name(method), who));
   for (const Table& table : summary.tables)

@@ -44,17 +44,25 @@ for (const table of document.querySelectorAll("table.sortable")) {
   });
 }
 
-// A table that is wider than its place becomes a list of its rows, each number with its column's head before it.
+// A table that is wider than its place scrolls in it, below its heads and beside the names of its rows. On a narrow
+// screen and on paper it becomes a list of its rows, each number with its column's head before it.
+const narrow = 900;  // px
 function fit(within = document) {
   const frames = [...within.querySelectorAll(".frame")];
   frames.forEach((frame) => frame.classList.remove("list"));
   const wide = frames.filter((frame) => frame.scrollWidth > frame.clientWidth + 1);
+  const lists = innerWidth < narrow || document.body.classList.contains("printed");
   frames.forEach((frame) => {
-    const list = wide.includes(frame), heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
+    const list = lists && wide.includes(frame), scrolls = !lists && wide.includes(frame);
+    const heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
     for (const row of list ? frame.querySelectorAll("tbody tr:not(.group)") : [])
       [...row.cells].forEach((cell, i) => cell.tagName === "TD" && (cell.dataset.head = heads[i]));
     frame.classList.toggle("list", list);
-    frame.removeAttribute("tabindex");  // nothing to scroll
+    scrolls ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
+    const first = frame.querySelector("tbody tr:not(.group)");
+    const name = scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
+    for (const row of frame.querySelectorAll("tr:not(.group)"))
+      [...row.cells].forEach((cell, i) => cell.classList.toggle("pinned", i === name));
     // A display of their own costs rows and cells their roles.
     for (const [what, role] of [["table", "table"], ["tbody", "rowgroup"], ["tr", "row"], ["td", "cell"], ["tbody th", "rowheader"]])
       frame.querySelectorAll(what).forEach((e) => list ? e.setAttribute("role", role) : e.removeAttribute("role"));
