@@ -14,7 +14,7 @@ report::Pictures all_pictures(const report::RunResults& results) {
   report::Pictures pictures;
   for (const report::CellResult& cell : results.cells)
     for (const auto& arm : cell.episodes)
-      for (const report::PlayedEpisode& episode : arm.second) pictures.scenes[episode.scene] = "PNG";
+      for (const Episode& episode : arm.second) pictures.scenes[episode.scene] = "PNG";
   return pictures;
 }
 

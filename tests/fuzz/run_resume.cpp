@@ -10,7 +10,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fs::path run = fuzz::directory() / "run", merged = fuzz::directory() / "merged";
   fuzz::write_run(run, fuzz::text_of(data, size));
   fuzz::write_run(merged, "");
-  const Json wanted{{"cells", {"22a1e6165750943b"}}, {"version", LGABENCH_VERSION}, {"request", {{"episodes", 4}}}};
+  RunRecord wanted;
+  wanted.cells = {"22a1e6165750943b"};
+  wanted.version = LGABENCH_VERSION;
+  wanted.request = {{"episodes", 4}};
+  wanted.machine = {{"processor", "a processor"}};
   try {
     merge_runs(merged, {run, run}, "lgabench merge");
   } catch (const InputError&) {

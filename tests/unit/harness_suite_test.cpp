@@ -387,8 +387,12 @@ TEST(Variants, OfThePaperAndItsAppendixHaveTheirSettings) {
 
 struct RunDirectories : testing::Test, TemporaryDirectory {};
 
-Json run_of(const std::vector<std::string>& keys) {
-  return {{"cells", keys}, {"request", {{"episodes", static_cast<int>(keys.size())}}}};
+RunRecord run_of(const std::vector<std::string>& keys) {
+  RunRecord run;
+  run.cells = keys;
+  run.request = {{"episodes", static_cast<int>(keys.size())}};
+  run.machine = {{"processor", "a processor"}};
+  return run;
 }
 
 const std::string cell_text = "{\"n\":1}\n";
@@ -428,14 +432,14 @@ TEST_F(RunDirectories, ACellIsCompleteWithItsBuildAndItsBytes) {
 }
 
 TEST_F(RunDirectories, ResumingWithAnotherBuildSaysSoInRunJson) {
-  Json run = run_of({k});
-  run["build"] = {{"worker", "1"}};
+  RunRecord run = run_of({k});
+  run.build = {{"worker", "1"}};
   { const RunDirectory directory(path / "run", run, Existing::same); }
-  run["build"] = {{"worker", "2"}};
+  run.build = {{"worker", "2"}};
   { const RunDirectory directory(path / "run", run, Existing::same); }
-  EXPECT_EQ(read_json(path / "run/run.json")["build"]["worker"], "1") << "its cells are still the first build's";
+  EXPECT_EQ(read_run_record(path / "run").build["worker"], "1") << "its cells are still the first build's";
   { const RunDirectory directory(path / "run", run, Existing::resume); }
-  EXPECT_EQ(read_json(path / "run/run.json"), run);
+  EXPECT_EQ(read_json(path / "run/run.json"), to_json(run));
 }
 
 TEST_F(RunDirectories, KeepingReplacesAnEarlierAttempt) {
@@ -491,7 +495,7 @@ TEST_F(RunDirectories, FreshDropsTheRunAndNothingElse) {
   }
   const RunDirectory directory(path / "run", run_of({k, l}), Existing::fresh);
   EXPECT_FALSE(fs::exists(path / "run/cells" / k));
-  EXPECT_EQ(read_json(path / "run/run.json"), run_of({k, l}));
+  EXPECT_EQ(read_json(path / "run/run.json"), to_json(run_of({k, l})));
   EXPECT_EQ(read_file(path / "run/notes.txt"), "kept");
 }
 

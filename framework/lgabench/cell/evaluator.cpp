@@ -28,7 +28,7 @@ Action random_object(const Environment& environment, const Scene& scene, const O
 
 Episode play(Environment& environment, const TestScene& test, const Actor& actor) {
   const Scene& scene = test.scene;
-  Episode episode{scene.arm, scene.index, scene.command, scene.hash(), failure::abstraction_empty, {}, "", {}, ""};
+  Episode episode{scene.arm, scene.index, scene.command, hex(scene.hash()), failure::abstraction_empty};
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
   if (test.perception) observation = test.perception(observation, scene);
@@ -60,19 +60,6 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
     return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
                                     stream("textualization"));
   };
-}
-
-Json to_json(const Episode& e) {
-  Json json{{"arm", e.arm},
-            {"index", e.index},
-            {"command", e.command},
-            {"scene", hex(e.scene)},
-            {"success", e.failure == failure::none},
-            {"failure", e.failure},
-            {"action", e.action ? Json(*e.action) : Json(nullptr)},
-            {"attribution", e.attribution.empty() ? Json(nullptr) : Json(e.attribution)}};
-  if (e.input_seen) json["input_seen"] = *e.input_seen;
-  return json;
 }
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
@@ -109,11 +96,11 @@ std::vector<Episode> evaluate(Environment& environment, const std::vector<TestSc
 void attribute_failures(Environment& environment, const std::vector<TestScene>& scenes, const Actor& actor,
                         const Actor& with_truth, std::vector<Episode>& episodes) {
   const auto succeeds = [&environment](const TestScene& test, const Actor& acts) {
-    return play(environment, test, acts).failure == failure::none;
+    return play(environment, test, acts).success();
   };
   for (std::size_t i = 0; i < episodes.size(); ++i) {
     Episode& episode = episodes[i];
-    if (episode.failure == failure::none) continue;
+    if (episode.success()) continue;
     TestScene as_it_is = scenes.at(i);
     const bool errs = std::exchange(as_it_is.perception, nullptr) != nullptr;
     if (episode.failure == failure::abstraction_empty)

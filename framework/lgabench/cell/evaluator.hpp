@@ -9,22 +9,9 @@
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/record/episode.hpp>
 
 namespace lgabench {
-
-struct Episode {
-  std::string arm;
-  int index = 0, command = 0;
-  std::uint64_t scene = 0;  // hash
-  Failure failure = failure::none;
-  std::optional<Action> action;    // recorded(); none where the actor gave none
-  std::string attribution;         // of a failure: "perception", "abstraction" or "policy"; "" where it is not known
-  std::optional<bool> input_seen;  // Policy::seen_in_training() of the action
-  std::string error;               // of a method_error: what was thrown, as the method words it
-};
-
-/// A line of episodes.jsonl: without the error, whose words may hold an address.
-Json to_json(const Episode& episode);
 
 /// What a policy is given in place of what the environment shows.
 using Perception = std::function<Observation(const Observation& seen, const Scene& scene)>;

@@ -21,6 +21,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
+#include <lgabench/record/cell_status.hpp>
 
 namespace lgabench {
 namespace {
@@ -164,15 +165,15 @@ std::string episodes_text(const std::vector<Episode>& episodes) {
 void record(const CellJob& job, pid_t self, const Files& files, const Files& of_method, const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   for (const auto& [name, bytes] : of_method) write_file(job.directory / "files" / name, bytes);
-  Json hashes = Json::object();
+  CellStatus status;
   for (const auto& [name, bytes] : files) {
     write_file(job.directory / name, bytes);
-    hashes[name] = sha256(bytes);
+    status.files[name] = sha256(bytes);
   }
   sync_directory(job.directory);
-  Json status{{"state", "ok"}, {"build", job.build}, {"files", hashes}};
-  if (!error.empty()) status["method_error"] = error;
-  write_file(job.directory / "status.json", canonical(status) + '\n');
+  status.build = job.build;
+  status.method_error = error;
+  write_cell_status(job.directory, status);
   sync_directory(job.directory);
 }
 

@@ -55,8 +55,7 @@ Costs costs_of(const fs::path& run) {
   Costs costs;
   if (run.empty()) return costs;
   expect_run(run);
-  const Json record = read_json(run / "run.json", Links::refused);
-  for (const std::string& name : read_cell_keys(JsonReader(record, (run / "run.json").string()))) {
+  for (const std::string& name : read_run_record(run).cells) {
     const fs::path cell = run / "cells" / name;
     if (fs::exists(cell / "timing.json")) costs.learn(recorded_cell(cell), recorded_seconds(cell));
   }

@@ -43,12 +43,11 @@ std::string joined(const Words& words) {
 
 void expect_run(const fs::path& directory) {
   std::error_code none_to_list;
-  if (fs::exists(directory / "run.json", none_to_list)) return;
+  if (is_run(directory)) return;
   Words near;
   for (const fs::path& parent : {directory, fs::path("runs")})
     for (const auto& entry : fs::directory_iterator(parent, none_to_list))
-      if (near.size() < 10 && fs::exists(entry.path() / "run.json", none_to_list))
-        near.push_back(entry.path().string());
+      if (near.size() < 10 && is_run(entry.path())) near.push_back(entry.path().string());
   std::sort(near.begin(), near.end());
   throw InputError(fmt::format("{}: not the directory of a run (no run.json){}{}", directory.string(),
                                near.empty() ? "" : "; runs: ", fmt::join(near, ", ")));

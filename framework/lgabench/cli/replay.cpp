@@ -15,8 +15,9 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
+#include <lgabench/record/episode.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -30,13 +31,10 @@ struct ReplayArguments {
   std::vector<fs::path> plugin_path;
 };
 
-// An episode as recorded.
 struct Recorded {
   Cell cell;
   Scenario scenario;
-  std::string arm, outcome, scene;  // outcome: a Failure; scene: its hash
-  int index = 0;
-  Action action;
+  Episode episode;
 };
 
 // The only cell whose key begins so.
@@ -55,29 +53,23 @@ fs::path cell_of(const fs::path& run, const std::string& key) {
 // KEY/ARM/INDEX, or KEY/INDEX of the first arm.
 Recorded recorded(const ReplayArguments& a) {
   const std::size_t first = a.episode.find('/'), last = a.episode.rfind('/');
-  Recorded episode;
-  if (first == std::string::npos || !CLI::detail::lexical_cast(a.episode.substr(last + 1), episode.index))
+  int index = 0;
+  if (first == std::string::npos || !CLI::detail::lexical_cast(a.episode.substr(last + 1), index))
     throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", a.episode));
-  const fs::path cell = cell_of(a.run, a.episode.substr(0, first));
-  const std::string cell_file = (cell / "cell.json").string(), episodes_file = (cell / "episodes.jsonl").string();
-  episode.cell = read_cell(read_json(cell_file, Links::refused), cell_file);
-  episode.scenario = read_scenario(*episode.cell.scenario, cell_file + ": /scenario");
-  episode.arm = first == last ? episode.scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
-  episode.scenario.arm(episode.arm);  // says which there are
-
-  const std::string text = read_file(episodes_file, Links::refused);
-  for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
-    const Json json = parse_json(text.substr(begin, end - begin), episodes_file);
-    const JsonReader line(json, episodes_file);
-    if (line.at("arm").string() != episode.arm || line.at("index").integer(0, 1 << 30) != episode.index) continue;
-    episode.outcome = line.at("failure").string();
-    episode.scene = line.at("scene").string();
-    if (line.at("action").json().is_null())
-      throw InputError(fmt::format("replay: {} ended without an action: {}", a.episode, episode.outcome));
-    for (const JsonReader& number : line.at("action").elements()) episode.action.push_back(number.number());
-    return episode;
+  const fs::path directory = cell_of(a.run, a.episode.substr(0, first));
+  const Cell cell = recorded_cell(directory);
+  const Scenario scenario = read_scenario(*cell.scenario, (directory / "cell.json").string() + ": /scenario");
+  const std::string arm = first == last ? scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
+  scenario.arm(arm);  // says which there are
+  const std::string file = (directory / "episodes.jsonl").string();
+  for (const Json& line : parse_json_lines(read_file(file, Links::refused), file)) {
+    const Episode episode = read_episode(JsonReader(line, file));
+    if (episode.arm != arm || episode.index != index) continue;
+    if (episode.action.empty())
+      throw InputError(fmt::format("replay: {} ended without an action: {}", a.episode, episode.failure));
+    return {cell, scenario, episode};
   }
-  throw InputError(fmt::format("replay: {} has no episode {} in arm {}", cell.string(), episode.index, episode.arm));
+  throw InputError(fmt::format("replay: {} has no episode {} in arm {}", directory.string(), index, arm));
 }
 
 void draw(const EnvironmentType& environment, const Tool& tool, Picture& picture) {
@@ -122,13 +114,13 @@ Picture filmstrip(const std::vector<Picture>& frames) {
 void replay(const ReplayArguments& a) {
   const std::string ending = a.out.extension().string();
   if (ending != ".gif" && ending != ".png") throw InputError("replay: expected --out FILE.gif or FILE.png");
-  const Recorded episode = recorded(a);
-  const Scene scene = test_scene(episode.scenario, episode.cell.layout, episode.arm, episode.cell.scene_seed,
-                                 episode.index, episode.cell.scenes_of_seed());
+  const auto [cell, scenario, episode] = recorded(a);
+  const Scene scene =
+      test_scene(scenario, cell.layout, episode.arm, cell.scene_seed, episode.index, cell.scenes_of_seed());
   if (hex(scene.hash()) != episode.scene)
     throw InputError("replay: this version samples another scene than the run played");
 
-  const EnvironmentType& type = find_environment(episode.scenario.environment);
+  const EnvironmentType& type = find_environment(scenario.environment);
   std::vector<Picture> frames;
   const auto add = [&](const Observation& seen, const std::optional<Tool>& tool) {
     frames.emplace_back(zoom * seen.size.columns, zoom * seen.size.rows);
@@ -141,15 +133,14 @@ void replay(const ReplayArguments& a) {
   const auto look = [&](const std::optional<Tool>& tool) { add(environment->observe(), tool); };
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   environment = make_environment(
-      episode.scenario,
-      std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", episode.cell.engine)), frame_s, look));
+      scenario, std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", cell.engine)), frame_s, look));
   add(environment->reset(scene), std::nullopt);
   const StepResult end = environment->step(episode.action);
   add(end.observation, std::nullopt);
 
   write_file(a.out, ending == ".gif" ? gif(frames, frame_s) : filmstrip(frames).png());
   to_stdout("{}: {} frames; {} {}\n", a.out.string(), frames.size(), end.is_success ? "success" : end.failure,
-            end.failure == episode.outcome ? "as recorded" : "here, recorded as " + episode.outcome);
+            end.failure == episode.failure ? "as recorded" : "here, recorded as " + episode.failure);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ int exit_of(const report::RunResults& results, int otherwise) {
 
 int verdict_of(const report::RunResults& results, const std::vector<report::Claim>& claims) {
   if (results.not_run > 0) to_stderr("{} cells of the run have not been played: not final\n", results.not_run);
-  if (results.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
+  if (results.record.smoke) to_stderr("Smoke or limited run: not for the leaderboard.\n");
   const bool reversed =
       std::any_of(claims.begin(), claims.end(), [](const auto& c) { return c.verdict == report::Verdict::reversed; });
   return exit_of(results, reversed ? regression : ok);
@@ -59,7 +59,7 @@ int print_difference(const report::RunResults& results, const std::vector<std::s
 int report_all(const std::vector<std::string>& directories, const std::string& index) {
   std::vector<report::Report> reports;
   for (const std::string& directory : directories) {
-    if (!fs::exists(fs::path(directory) / "run.json")) continue;
+    if (!is_run(directory)) continue;
     reports.push_back(report::write_report(directory));
     to_stderr("{}\n", (fs::path(directory) / "report.html").string());
   }

@@ -122,7 +122,7 @@ std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers,
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
 fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
-  const fs::path there = fs::exists(plan.out / "run.json") ? plan.out : earlier_run(plan.out, suffix, plan.request);
+  const fs::path there = is_run(plan.out) ? plan.out : earlier_run(plan.out, suffix, plan.request);
   if (there.empty())
     throw InputError(
         fmt::format("--resume: no run of this command is in {}; without --resume it begins one of {} cells",

@@ -34,22 +34,13 @@ bool is_locked(const fs::path& run) {
 }
 
 Part read_part(const fs::path& run) {
-  const Json json = read_json(run / "run.json", Links::refused);
-  const JsonReader reader(json, (run / "run.json").string());
-  const std::vector<std::string> keys = read_cell_keys(reader);
-  Part part{run.string(), 1, 1, keys.size()};
-  if (reader.has("shard") && reader.at("shard").json().is_object()) {
-    const JsonReader shard = reader.at("shard");
-    part.shards = static_cast<int>(shard.at("count").integer(1, 1 << 30));
-    part.shard = static_cast<int>(shard.at("index").integer(1, part.shards));
-    part.cells = static_cast<std::size_t>(shard.at("cells").integer(0, static_cast<long long>(keys.size())));
-  }
+  const RunRecord record = read_run_record(run);
+  Part part{run.string(), 1, 1, record.cells.size()};
+  if (record.shard) part = {run.string(), record.shard->index, record.shard->count, record.shard->cells};
   part.running = is_locked(run);
-  for (const std::string& name : keys) {
-    const fs::path status = run / "cells" / name / "status.json";
-    if (!fs::exists(status)) continue;
-    const Json said = read_json(status, Links::refused);
-    ++(JsonReader(said, status.string()).at("state").string() == "ok" ? part.done : part.failed);
+  for (const std::string& name : record.cells) {
+    const fs::path cell = run / "cells" / name;
+    if (has_status(cell)) ++(read_cell_status(cell).failed ? part.failed : part.done);
   }
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(run / "cells", none_there))
@@ -59,11 +50,11 @@ Part read_part(const fs::path& run) {
 
 // A run, or the runs in a directory of parts.
 std::vector<fs::path> runs_in(const fs::path& directory) {
-  if (fs::exists(directory / "run.json")) return {directory};
+  if (is_run(directory)) return {directory};
   std::vector<fs::path> runs;
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(directory, none_there))
-    if (entry.path().filename() != "whole" && fs::exists(entry.path() / "run.json")) runs.push_back(entry.path());
+    if (entry.path().filename() != "whole" && is_run(entry.path())) runs.push_back(entry.path());
   if (runs.empty()) expect_run(directory);
   std::sort(runs.begin(), runs.end());
   return runs;

@@ -42,7 +42,7 @@ struct VerifyArguments {
 struct Recorded {
   fs::path directory;
   Cell cell;
-  Json status;
+  Json build;  // what computed it
 };
 
 // What the run holds, sorted by key.
@@ -52,13 +52,12 @@ struct Inventory {
   int failed = 0, not_played = 0;
 };
 
-Inventory take_stock(const fs::path& run, const Json& record) {
-  const std::vector<std::string> listed = read_cell_keys(JsonReader(record, (run / "run.json").string()));
+Inventory take_stock(const fs::path& run, const RunRecord& record) {
   expect_plain_run(run);
   Inventory inventory;
-  for (const std::string& name : std::set<std::string>(listed.begin(), listed.end())) {
+  for (const std::string& name : std::set<std::string>(record.cells.begin(), record.cells.end())) {
     const fs::path directory = run / "cells" / name;
-    if (!fs::exists(directory / "status.json")) {
+    if (!has_status(directory)) {
       ++inventory.not_played;
       continue;
     }
@@ -69,9 +68,7 @@ Inventory take_stock(const fs::path& run, const Json& record) {
     }
     try {
       if (!state.complete) throw InputError(state.why);
-      Recorded cell{directory, {}, read_json(directory / "status.json", Links::refused)};
-      cell.cell = recorded_cell(directory);
-      inventory.cells.push_back(std::move(cell));
+      inventory.cells.push_back({directory, recorded_cell(directory), state.build});
     } catch (const InputError& e) {
       inventory.edited.emplace_back(e.what());
     }
@@ -116,10 +113,9 @@ struct Recomputed {
 
 Recomputed judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
   Recomputed verdict{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
-  const Json status = read_json(recomputed / "status.json");
-  verdict.agreement = status.at("state") == "failed"
-                          ? report::CellAgreement{report::Agreement::differs,
-                                                  "fails now: " + status.at("reason").get<std::string>(), 0, 0}
+  const CellStatus status = read_cell_status(recomputed);
+  verdict.agreement = status.failed
+                          ? report::CellAgreement{report::Agreement::differs, "fails now: " + status.reason, 0, 0}
                           : report::compare_cells(recorded.directory, recomputed, excused);
   return verdict;
 }
@@ -221,12 +217,11 @@ void print_verdicts(const VerifyArguments& a, const Inventory& inventory, std::u
 
 int verify(const VerifyArguments& a) {
   expect_run(a.run);
-  const Json record = read_json(a.run / "run.json", Links::refused);
-  const std::string version = JsonReader(record, (a.run / "run.json").string()).at("version").string();
-  if (!same_cells(version, LGABENCH_VERSION))
+  const RunRecord record = read_run_record(a.run);
+  if (!same_cells(record.version, LGABENCH_VERSION))
     throw InputError(
         fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: verify it with {}",
-                    a.run.string(), version, LGABENCH_VERSION, version));
+                    a.run.string(), record.version, LGABENCH_VERSION, record.version));
   const Inventory inventory = take_stock(a.run, record);
   for (const std::string& line : inventory.edited) to_stderr("edited: {}\n", one_line(line));
   if (inventory.cells.empty() && inventory.edited.empty())
@@ -252,7 +247,7 @@ int verify(const VerifyArguments& a) {
       if (!replies)
         throw InputError(fmt::format(
             "{}: its language model's replies are not kept in answers/, as after a kill; give its command again: {}",
-            a.run.string(), JsonReader(record, "run.json").at("command").string()));
+            a.run.string(), record.command));
       plan.live.emplace().cassette = replies->path;
       plan.live->asks = false;
     }
@@ -262,16 +257,13 @@ int verify(const VerifyArguments& a) {
     for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
     if (run_suite(plan, catalogue).interrupted) return interrupted;
 
-    const auto processor = [](const Json& run) {
-      return JsonReader(run, "run.json").at("machine").at("processor").string();
-    };
-    const std::string there = processor(record), here = processor(read_json(plan.out / "run.json"));
+    const std::string there = record.processor(), here = read_run_record(plan.out).processor();
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Cell& cell = cells[i].cell;
       const fs::path recomputed = plan.out / "cells" / key(plan.cells[i]);
       if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
-      add_differences(excuses[i], by_plugin(cells[i].status.at("build"), cell),
-                      by_plugin(read_json(recomputed / "status.json").at("build"), cell), "build: ");
+      add_differences(excuses[i], by_plugin(cells[i].build, cell), by_plugin(read_cell_status(recomputed).build, cell),
+                      "build: ");
       verdicts.push_back(judge(cells[i], recomputed, !excuses[i].empty()));
       why.insert(excuses[i].begin(), excuses[i].end());
     }

@@ -14,7 +14,7 @@ namespace lgabench {
 const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "learn", "evaluate"};
 
 const std::vector<std::string> cell_files{"cell.json",      "selection.json", "training.jsonl",
-                                          "episodes.jsonl", "timing.json",    "log.txt"};
+                                          "episodes.jsonl", "timing.json",    log_file};
 
 std::vector<std::string> artefact_names(const PlainDirectory& files) {
   constexpr std::size_t most = 100, longest = 100;
@@ -41,14 +41,6 @@ void expect_training_line(const JsonReader& line) {
 bool is_cell_key(const std::string& text) {
   return text.size() == 16 &&
          std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
-}
-
-fs::path changed_file(const fs::path& cell, const JsonReader& status) {
-  const JsonReader files = status.at("files");
-  files.only(cell_files);
-  for (const auto& [name, sum] : files.json().items())
-    if (sum != sha256_file(cell / name)) return cell / name;
-  return {};
 }
 
 std::vector<std::string> read_cell_keys(const JsonReader& run) {

@@ -13,6 +13,8 @@ extern const std::vector<std::string> cell_phases;
 
 /// The files of a finished cell, status.json, which is written last, excepted.
 extern const std::vector<std::string> cell_files;
+/// The one of them that is no result: it may hold anything, and status.json has no checksum of it.
+constexpr const char* log_file = "log.txt";
 
 /// What a method may leave beside them: names in the cell's files/, sorted, of at most 100 regular files whose names
 /// are letters, digits, "_", "-" and ".", the last not first. What else is there is passed over.
@@ -24,10 +26,6 @@ void expect_training_line(const JsonReader& line);
 
 /// 16 hexadecimal digits: the name of a cell's directory.
 bool is_cell_key(const std::string& text);
-
-/// The first file of the cell that status.json names and whose bytes are not those that it names; "" where there is
-/// none. @throws InputError where one cannot be read, or is none of cell_files.
-fs::path changed_file(const fs::path& cell, const JsonReader& status);
 
 /// run.json's "cells". @throws InputError where one of them is no key.
 std::vector<std::string> read_cell_keys(const JsonReader& run);

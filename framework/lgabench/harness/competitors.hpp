@@ -5,8 +5,8 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include <lgabench/job/cell.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 

@@ -6,8 +6,8 @@
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/harness/suite.hpp>
-#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 

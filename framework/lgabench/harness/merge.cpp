@@ -29,18 +29,8 @@ constexpr std::array<std::string_view, 6> grid_lists{"methods", "scenarios",    
 // A run to read from, which nobody writes into meanwhile.
 class Part {
  public:
-  explicit Part(const fs::path& path) : path_(path), json_(read_json(path / "run.json", Links::refused)) {
-    const JsonReader reader(json_, (path / "run.json").string());
-    read_cell_keys(reader);
+  explicit Part(const fs::path& path) : path_(path), record_(read_run_record(path)), programs_(record_.programs()) {
     expect_plain_run(path);
-    reader.at("command").string();
-    reader.at("version").string();
-    reader.at("started").string();
-    reader.at("machine").at("processor").string();
-    for (const JsonReader& plugin : reader.at("plugins").elements())
-      programs_[plugin.at("kind").string() + " " + plugin.at("id").string()] = plugin.at("sha256").string();
-    if (!reader.at("build").json().is_object()) reader.at("build").fail("an object");
-    for (const auto& file : reader.at("build").json().items()) programs_[file.key()] = file.value();
     lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 || ::flock(lock_, LOCK_SH | LOCK_NB) != 0) {
       ::close(lock_);
@@ -52,20 +42,20 @@ class Part {
   }
   Part(Part&& other) noexcept
       : path_(std::move(other.path_)),
-        json_(std::move(other.json_)),
+        record_(std::move(other.record_)),
         programs_(std::move(other.programs_)),
         lock_(std::exchange(other.lock_, -1)) {}
   Part& operator=(Part&&) = delete;
 
   const fs::path& path() const { return path_; }
-  const Json& json() const { return json_; }
-  const std::map<std::string, Json>& programs() const { return programs_; }
+  const RunRecord& record() const { return record_; }
+  const Json& programs() const { return programs_; }
   fs::path cell(const std::string& key) const { return path_ / "cells" / key; }
 
  private:
   fs::path path_;
-  Json json_;
-  std::map<std::string, Json> programs_;  // file, or kind and id of a plugin -> sha256
+  RunRecord record_;
+  Json programs_;
   int lock_ = -1;
 };
 
@@ -76,12 +66,11 @@ class Part {
 
 // The programs that both name are the same; a part may lack another part's plugins.
 void expect_same_programs(const Part& first, const Part& other) {
-  const std::string version = first.json().at("version"), other_version = other.json().at("version");
+  const std::string &version = first.record().version, &other_version = other.record().version;
   if (!same_cells(version, other_version))
     refuse(first, other, fmt::format("one is of lgabench {}, one of {}", version, other_version));
-  for (const auto& [program, hash] : first.programs())
-    if (const auto there = other.programs().find(program); there != other.programs().end() && there->second != hash)
-      refuse(first, other, "other builds of " + program);
+  for (const auto& [program, hash] : first.programs().items())
+    if (other.programs().value(program, hash) != hash) refuse(first, other, "other builds of " + program);
 }
 
 // Adds to a list of `all` what `more` has beyond it.
@@ -93,34 +82,35 @@ void unite(Json& all, const Json& more) {
 
 // What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
 // nothing else in the settings changed.
-Json united(Json all, const Part& first, const Part& more) {
-  if (all.at("cells") == more.json().at("cells")) return all;
-  const Json request = more.json().value("request", Json::object());
-  const std::string differs = difference(all, more.json());
-  if (!all.value("request", Json()).is_object() || !request.is_object()) refuse(first, more, "other cells: " + differs);
-  for (const auto& [member, value] : request.items()) {
+void unite(RunRecord& all, const Part& first, const Part& part) {
+  const RunRecord& more = part.record();
+  if (all.cells == more.cells) return;
+  const std::string differs = difference(all, more);
+  for (const auto& [member, value] : more.request.items()) {
     const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
-    Json& there = all["request"][member];
+    Json& there = all.request[member];
     if (may_grow && there.is_array() && value.is_array())
       unite(there, value);
     else if (member == "references" && there.is_boolean() && value.is_boolean())
       there = there.get<bool>() || value.get<bool>();
     else if (there != value)
-      refuse(first, more, "other cells: " + differs);
+      refuse(first, part, "other cells: " + differs);
   }
-  unite(all["cells"], more.json().at("cells"));
-  unite(all["plugins"], more.json().at("plugins"));
-  const Json settings = more.json().value("settings", Json::object());
-  for (const auto& [row, options] : settings.items()) all["settings"][row] = options;
-  return all;
+  const std::set<std::string> there(all.cells.begin(), all.cells.end());
+  std::copy_if(more.cells.begin(), more.cells.end(), std::back_inserter(all.cells),
+               [&](const std::string& cell) { return there.count(cell) == 0; });
+  const Json known = all.programs();
+  std::copy_if(more.plugins.begin(), more.plugins.end(), std::back_inserter(all.plugins),
+               [&](const RunRecord::Plugin& plugin) { return !known.contains(plugin.kind + " " + plugin.id); });
+  for (const auto& [row, options] : more.settings.items()) all.settings[row] = options;
 }
 
 // What status.json says of a cell that the run's own programs computed.
 Json build_of(const Part& part, const Cell& cell) {
-  Json build = part.json().at("build");
+  Json build = part.record().build;
   const auto plugin = [&](const std::string& kind, const std::string& id) {
     const auto found = part.programs().find(kind + " " + id);
-    if (found != part.programs().end()) build[kind] = found->second;
+    if (found != part.programs().end()) build[kind] = *found;
   };
   plugin("engine", cell.engine);
   if (!cell.method.is_reference()) plugin("method", cell.method.id);
@@ -209,9 +199,8 @@ void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Js
 }
 
 bool asks_live(const Part& part) {
-  const Json request = part.json().value("request", Json::object());
-  return request.is_object() && request.contains("answers") && request["answers"].is_string() &&
-         is_live(request["answers"].get<std::string>());
+  const Json answers = part.record().request.value("answers", Json());
+  return answers.is_string() && is_live(answers.get<std::string>());
 }
 
 // The part that keeps every reply, where parts asked a model live, on one cassette; else the first.
@@ -233,24 +222,23 @@ const Part& with_all_replies(const std::vector<Part>& parts) {
   return *all;
 }
 
-Json merged_json(Json json, const std::vector<Part>& parts, const Json& answers, const std::string& command) {
-  Json merged = Json::array();
-  json.erase("shard");
-  if (!answers.is_null()) json["answers"] = answers;
+// The record of all parts' cells together, which has the first part's machine.
+RunRecord merged_record(RunRecord all, const std::vector<Part>& parts, const Json& answers,
+                        const std::string& command) {
+  all.shard.reset();
+  all.answers = answers;
+  all.command = command;
+  all.merged = Json::array();
   for (const Part& part : parts) {
-    Json own = Json::object();
-    for (const char* member : {"command", "machine", "started"}) own[member] = part.json().at(member);
-    json["started"] = std::min(json["started"], own["started"]);
-    if (is_unconfined(part.path())) json["confinement"] = unconfined_run;
-    merged.push_back(own);
-    const Json &processor = own["machine"]["processor"], &first = json["machine"]["processor"];
-    if (processor != first)
+    const RunRecord& one = part.record();
+    all.merged.push_back({{"command", one.command}, {"machine", one.machine}, {"started", one.started}});
+    all.started = std::min(all.started, one.started);
+    if (one.confinement == unconfined_run) all.confinement = unconfined_run;
+    if (one.processor() != all.processor())
       to_stderr("{}: computed on {}, {} on {}: its bits may differ from one machine's\n", part.path().string(),
-                processor.get<std::string>(), parts.front().path().string(), first.get<std::string>());
+                one.processor(), parts.front().path().string(), all.processor());
   }
-  json["command"] = command;
-  json["merged"] = merged;
-  return json;
+  return all;
 }
 
 // What a cell is documented to hold and nothing else.
@@ -277,28 +265,31 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
     parts.emplace_back(run);
     for (const Part& part : parts) expect_same_programs(part, parts.back());  // the first may lack what two others have
   }
-  Json all = parts.front().json();
-  for (const Part& part : parts) all = united(std::move(all), parts.front(), part);
-  const bool of_several_runs = all.at("cells") != parts.front().json().at("cells");
+  RunRecord all = parts.front().record();
+  for (const Part& part : parts) unite(all, parts.front(), part);
+  const bool of_several_runs = all.cells != parts.front().record().cells;
   MergeOutcome outcome;
   std::map<std::string, fs::path> chosen, measured;
   std::map<std::string, std::pair<Json, fs::path>> pythons;
-  for (const std::string& key : all.at("cells").get<std::vector<std::string>>()) {
+  for (const std::string& key : all.cells) {
     const std::optional<Candidate> from = best(parts, key, outcome);
     if (!from) continue;
     expect_one_python(*from, pythons);
-    if (of_several_runs) expect_one_of_each(*from, all.at("request"), measured);
+    if (of_several_runs) expect_one_of_each(*from, all.request, measured);
     chosen[key] = from->directory;
   }
 
   const Part& replies = with_all_replies(parts);
-  const Json answers = replies.json().value("answers", Json());
-  const Json record = merged_json(std::move(all), parts, answers, command);
+  const RunRecord record = merged_record(std::move(all), parts, replies.record().answers, command);
   const bool unconfined = is_unconfined(out);  // cells of an earlier merge stay
   const RunDirectory directory(out, record, Existing::resume);
-  for (const char* member : {"command", "started", "answers", "merged", "confinement"})
-    directory.amend(member, record.value(member, Json()));
-  if (unconfined) directory.amend("confinement", unconfined_run);
+  directory.amend([&](RunRecord& run) {
+    run.command = record.command;
+    run.started = record.started;
+    run.answers = record.answers;
+    run.merged = record.merged;
+    run.confinement = unconfined ? unconfined_run : record.confinement;
+  });
   for (const Part& part : parts)
     if (!asks_live(part) || &part == &replies) keep_answers(kept_answers(part.path()), out);
   std::size_t copied = 0;

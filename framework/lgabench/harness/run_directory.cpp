@@ -36,77 +36,7 @@ bool has_content(const fs::path& directory) {
   return false;
 }
 
-bool other_programs(const Json& there, const Json& wanted) {
-  const auto differs = [&](const char* member) { return there.value(member, Json()) != wanted.value(member, Json()); };
-  return differs("build") || differs("plugins");
-}
-
 }  // namespace
-
-Cell recorded_cell(const fs::path& directory) {
-  const fs::path file = directory / "cell.json";
-  return read_cell(read_json(file, Links::refused), file.string());
-}
-
-double recorded_seconds(const fs::path& directory) {
-  const fs::path file = directory / "timing.json";
-  const Json timing = read_json(file, Links::refused);
-  return JsonReader(timing, file.string()).at("total_s").number();
-}
-
-std::string difference(const Json& there, const Json& wanted) {
-  Json before = there.value("request", Json::object());
-  const Json now = wanted.value("request", Json::object());
-  if (!before.is_object()) before = Json::object();
-  for (const auto& item : now.items())
-    if (before.value(item.key(), Json()) != item.value())
-      return fmt::format("{} {} there, {} wanted", item.key(), canonical(before.value(item.key(), Json())),
-                         canonical(item.value()));
-  return "same settings, other data or versions";
-}
-
-bool same_cells(const std::string& version, const std::string& other) {
-  return version.substr(0, version.rfind('.')) == other.substr(0, other.rfind('.'));
-}
-
-CellState cell_state(const fs::path& cell, const std::string& key, const Json& build) {
-  CellState state;
-  std::error_code not_there;
-  if (!fs::exists(cell, not_there)) return state;
-  const auto not_its_own = [&](const fs::path& file) {
-    state.why = fmt::format("{} does not have the bytes that were written", file.string());
-    return state;
-  };
-  try {
-    expect_plain_entries(cell);
-    const Json status = read_json(cell / "status.json", Links::refused);
-    const JsonReader reader(status, (cell / "status.json").string());
-    if (reader.at("state").string() != "ok") {
-      state.failed = true;
-      state.why = "failed: " + reader.at("reason").string();
-      return state;
-    }
-    for (const char* name : result_files) reader.at("files").at(name).string();
-    reader.at("files").at("timing.json").string();
-    if (const fs::path changed = changed_file(cell, reader); !changed.empty()) return not_its_own(changed);
-    if (sha256(canonical(read_json(cell / "cell.json"))).substr(0, key.size()) != key)
-      return not_its_own(cell / "cell.json");
-    const Json& there = reader.at("build").json();
-    for (const auto& file : build.items())
-      if (there.value(file.key(), Json()) != file.value()) {
-        state.other_build = true;
-        state.why = fmt::format("computed by another build ({} differs)", file.key());
-        return state;
-      }
-    state.build = there;
-    state.complete = true;
-  } catch (const InputError& e) {
-    state.why = e.what();
-  } catch (const Json::exception& e) {  // a member of another type
-    state.why = fmt::format("{}: {}", (cell / "status.json").string(), e.what());
-  }
-  return state;
-}
 
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   static const Json programs = [] {
@@ -125,12 +55,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
   return build;
 }
 
-bool is_unconfined(const fs::path& run) {
-  const fs::path record = run / "run.json";
-  if (!fs::exists(record)) return false;
-  const Json json = read_json(record, Links::refused);
-  return json.is_object() && json.value("confinement", Json()) == unconfined_run;
-}
+bool is_unconfined(const fs::path& run) { return is_run(run) && read_run_record(run).confinement == unconfined_run; }
 
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request) {
   constexpr std::size_t hash = 8;
@@ -141,21 +66,20 @@ fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Js
   for (const auto& entry : fs::directory_iterator(wanted.parent_path(), none_to_list)) {
     const std::string other = entry.path().filename().string();
     if (other.size() != name.size() || other.compare(0, prefix.size(), prefix) != 0 ||
-        other.compare(prefix.size() + hash, suffix.size(), suffix) != 0 || !fs::exists(entry.path() / "run.json"))
+        other.compare(prefix.size() + hash, suffix.size(), suffix) != 0 || !is_run(entry.path()))
       continue;
     try {
-      const Json run = read_json(entry.path() / "run.json", Links::refused);
-      const std::string started = run.at("started");
-      if (run.at("request") == request && (last.empty() || started > last_started))
-        last = entry.path(), last_started = started;
-    } catch (const std::exception&) {  // no run of ours
+      const RunRecord run = read_run_record(entry.path());
+      if (run.request == request && (last.empty() || run.started > last_started))
+        last = entry.path(), last_started = run.started;
+    } catch (const InputError&) {  // no run of ours
     }
   }
   return last;
 }
 
-RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing existing) : path_(path) {
-  canonical(run);                                           // what is no UTF-8 is refused before anything is made
+RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing existing) : path_(path) {
+  canonical(to_json(run));                                  // what is no UTF-8 is refused before anything is made
   if (existing != Existing::fresh) expect_plain_run(path);  // which removes a link, and never what it leads to
   const bool was_there = has_content(path);
   make_directory(path);
@@ -164,34 +88,29 @@ RunDirectory::RunDirectory(const fs::path& path, const Json& run, Existing exist
   try {
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
       throw InputError(fmt::format("{}: another run is writing into it", path.string()));
-    const fs::path record = path / "run.json";
-    Json there = run;
-    if (was_there && !fs::exists(record))
+    RunRecord there = run;
+    if (was_there && !is_run(path))
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
       for (const char* name : {"cells", "answers", "summary.json", "summary.csv", "claims.json", "report.md",
                                "report.html", "figures", "tables", "episodes.csv", "run.json"})
         remove_tree(path / name);
     } else if (was_there) {
-      there = read_json(record, Links::refused);
-      const auto version = [](const Json& json) {
-        const Json said = json.is_object() ? json.value("version", Json()) : Json();
-        return said.is_string() ? said.get<std::string>() : std::string();
-      };
-      if (!same_cells(version(there), version(run)))
+      there = read_run_record(path);
+      if (!same_cells(there.version, run.version))
         throw InputError(fmt::format(
             "{}: a run of lgabench {}, whose cells {} cannot go on with; choose another --out, or --fresh to "
             "drop it",
-            path.string(), version(there), version(run)));
-      if (!there.is_object() || there.value("cells", Json()) != run.at("cells"))
+            path.string(), there.version, run.version));
+      if (there.cells != run.cells)
         throw InputError(fmt::format("{}: holds another run ({}); choose another --out, or --fresh to drop it",
                                      path.string(), difference(there, run)));
     }
     // What was half-written when a run was killed goes. run.json comes before all else: it makes the directory a run.
     for (const fs::path& directory : {path, path / "answers", path / "figures", path / "tables"})
       remove_temporaries(directory);
-    if (!fs::exists(record) || (existing == Existing::resume && other_programs(there, run)))
-      write_file(record, run.dump(1) + '\n');
+    if (!is_run(path) || (existing == Existing::resume && there.programs() != run.programs()))
+      write_run_record(path, run);
     make_directory(path / "cells");
     for (const auto& entry : fs::directory_iterator(path / "cells"))
       if (entry.path().filename().string()[0] == '.') remove_tree(entry.path());
@@ -227,11 +146,11 @@ void RunDirectory::keep(const std::string& key) const {
   remove_tree(made);
 }
 
-void RunDirectory::amend(const std::string& member, const Json& value) const {
-  Json record = read_json(path_ / "run.json", Links::refused);
-  if (record.value(member, Json()) == value) return;
-  record[member] = value;
-  write_file(path_ / "run.json", record.dump(1) + '\n');
+void RunDirectory::amend(const std::function<void(RunRecord&)>& change) const {
+  RunRecord record = read_run_record(path_);
+  const Json before = to_json(record);
+  change(record);
+  if (to_json(record) != before) write_run_record(path_, record);
 }
 
 void RunDirectory::sync() const { sync_directory(path_ / "cells"); }

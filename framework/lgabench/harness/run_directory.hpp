@@ -2,12 +2,15 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/files.hpp>
-#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
+#include <lgabench/record/cell_status.hpp>
+#include <lgabench/record/run_record.hpp>
 
 namespace lgabench {
 
@@ -18,35 +21,12 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method);
 /// The files of a finished cell that hold no clock: its results, bit by bit.
 constexpr std::array<const char*, 4> result_files{"cell.json", "selection.json", "training.jsonl", "episodes.jsonl"};
 
-/// Whether a cell is complete with this build, and if not, why: "" where it was never begun.
-struct CellState {
-  bool complete = false, failed = false, other_build = false;
-  std::string why;
-  Json build;  // what computed a complete cell, as its status.json says
-};
-/// State of the cell `key` in `directory`, read from its files alone.
-CellState cell_state(const fs::path& directory, const std::string& key, const Json& build);
-
-/// The cell that cell.json in `directory` describes. No link is followed.
-/// @throws InputError if it is not there, or not a cell.
-Cell recorded_cell(const fs::path& directory);
-/// Wall-clock seconds that the cell in `directory` took, from its timing.json. No link is followed.
-/// @throws InputError if the file is not there, or holds no such number.
-double recorded_seconds(const fs::path& directory);
-
-/// Which setting of two run.json differs first; data and versions may differ where no setting does.
-std::string difference(const Json& there, const Json& wanted);
-
-/// Whether two versions of lgabench compute the same cells: they differ in their last number at most.
-bool same_cells(const std::string& version, const std::string& other);
-
 /// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
 /// before `suffix` alone: another build's. "" if there is none.
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);
 
-/// "confinement" of a run in which methods were let out of it, for good: whatever cells of it are computed later.
-constexpr const char* unconfined_run = "none, by --unconfined";
-/// Whether the run in that directory is one; false where there is none. @throws InputError for a run.json that is none.
+/// Whether the run in that directory is an unconfined one; false where there is none. @throws InputError for a run.json
+/// that is none.
 bool is_unconfined(const fs::path& run);
 
 /// What to do with a directory that is not empty.
@@ -62,7 +42,7 @@ class RunDirectory {
   /// Makes the directory or takes up the run in it: checks that it is a run of the same cells, removes what was left
   /// half-written, writes run.json (anew where a run of another build is resumed).
   /// @throws InputError, with nothing changed, if the directory holds something else or is in use.
-  RunDirectory(const fs::path& path, const Json& run, Existing existing);
+  RunDirectory(const fs::path& path, const RunRecord& run, Existing existing);
   ~RunDirectory();
   RunDirectory(const RunDirectory&) = delete;
   RunDirectory& operator=(const RunDirectory&) = delete;
@@ -78,8 +58,8 @@ class RunDirectory {
   /// Moves the scratch directory to where finished cells are, in place of an earlier attempt. Atomic (in place of an
   /// earlier attempt only where the file system can exchange two names).
   void keep(const std::string& key) const;
-  /// Writes run.json again with another value of one member.
-  void amend(const std::string& member, const Json& value) const;
+  /// Writes run.json again as `change` makes it, if that is another one.
+  void amend(const std::function<void(RunRecord&)>& change) const;
   /// fsync of what was kept since.
   void sync() const;
 

@@ -63,75 +63,75 @@ void keep_replies_of(const RunPlan& plan, const RunDirectory& directory) {
     if (!replies) return;
     std::vector<AnswerFile> files = plan.answers;
     files.push_back(*replies);
-    directory.amend("answers", answers_json(files));
+    directory.amend([&](RunRecord& run) { run.answers = answers_json(files); });
     drop_other_replies(replies->name, plan.out);
   } catch (const InputError& e) {
     to_stderr("the language model's replies are not kept with the run: {}\n", one_line(e.what()));
   }
 }
 
-// Which part of the run the directory holds; null where that is all of it, or where it holds another part as well.
-Json shard_json(const RunPlan& plan) {
-  if (plan.shard.count == 1) return nullptr;
-  const Json shard{
-      {"index", plan.shard.index}, {"count", plan.shard.count}, {"cells", cells_of(plan.cells, plan.shard).size()}};
-  const Json there = read_json(plan.out / "run.json", Links::refused).value("shard", shard);
-  return there == shard ? shard : Json();
+// The part of the run that is computed now; none where that is all of it.
+std::optional<RunRecord::Shard> shard_of(const RunPlan& plan) {
+  if (plan.shard.count == 1) return std::nullopt;
+  return RunRecord::Shard{plan.shard.index, plan.shard.count, cells_of(plan.cells, plan.shard).size()};
 }
 
-Json run_json(const RunPlan& plan, const Catalogue& catalogue) {
-  std::vector<std::string> keys;
-  Json plugins = Json::array();
+Json machine() {
+  utsname system{};
+  ::uname(&system);
+  return {{"processor", processor()},
+          {"cores", std::thread::hardware_concurrency()},
+          {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
+          {"system", fmt::format("{} {}", system.sysname, system.release)}};
+}
+
+RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
+  RunRecord run;
   std::set<std::string> named;
   const auto name = [&](const PluginInfo& info) {
     if (!named.insert(info.kind + info.id).second) return;
-    plugins.push_back({{"kind", info.kind}, {"id", info.id}, {"version", info.version}, {"sha256", info.sha256}});
-    if (!info.asks.empty()) plugins.back()["asks"] = info.asks;
+    run.plugins.push_back({info.kind, info.id, info.version, info.sha256, info.asks});
   };
-  Json programs, settings = Json::object();
   for (const Cell& cell : plan.cells) {
-    keys.push_back(key(cell));
+    run.cells.push_back(key(cell));
     name(catalogue.find("engine", cell.engine));
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
       for (const auto& [option, value] : cell.method.options.items()) {
         const auto known = method->options.find(option);  // none: of a plugin that had it when its run was recorded
-        if (known == method->options.end() || value != known->at("default")) settings[cell.method.name][option] = value;
+        if (known == method->options.end() || value != known->at("default"))
+          run.settings[cell.method.name][option] = value;
       }
     }
-    programs = build_of(cell, catalogue);
+    run.build = build_of(cell, catalogue);
   }
-  for (const char* plugin : {"engine", "method", "python"}) programs.erase(plugin);
-  utsname system{};
-  ::uname(&system);
-  return {{"suite", plan.request.at("suite")},
-          {"preset", plan.request.at("preset")},
-          {"smoke", plan.cells.front().smoke},
-          {"request", plan.request},
-          {"settings", settings},
-          {"cells", keys},
-          {"plugins", plugins},
-          {"build", programs},
-          {"version", LGABENCH_VERSION},
-          {"program", plan.program},
-          {"command", plan.command},
-          {"confinement", plan.confined ? confinement_text() : unconfined_run},
-          {"answers", answers_json(plan.answers)},
-          {"started", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))},
-          {"machine",
-           {{"processor", processor()},
-            {"cores", std::thread::hardware_concurrency()},
-            {"memory_gib", std::round(machine_bytes() / (1 << 30) * 10) / 10},
-            {"system", fmt::format("{} {}", system.sysname, system.release)}}}};
+  for (const char* plugin : {"engine", "method", "python"}) run.build.erase(plugin);
+  run.suite = plan.request.at("suite");
+  run.preset = plan.request.at("preset");
+  run.smoke = plan.cells.front().smoke;
+  run.request = plan.request;
+  run.version = LGABENCH_VERSION;
+  run.program = plan.program;
+  run.command = plan.command;
+  run.confinement = plan.confined ? confinement_text() : unconfined_run;
+  run.answers = answers_json(plan.answers);
+  run.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  run.machine = machine();
+  run.shard = shard_of(plan);
+  return run;
 }
 
-// status.json of a worker that left none.
-Json failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
+// Status of a cell whose worker left none.
+CellStatus failure(const WorkerEnd& end, double timeout_s, const fs::path& log, const Json& build) {
   const auto [reason, fault] = why_it_ended(end, timeout_s);
-  const int signal = end.signal ? end.signal : end.complaint ? end.complaint->signal : 0;
-  return {{"state", "failed"},        {"reason", reason}, {"signal", signal ? Json(signal) : Json(nullptr)},
-          {"fault", fault},           {"build", build},   {"files", Json::object()},
-          {"log_tail", log_tail(log)}};
+  CellStatus status;
+  status.failed = true;
+  status.reason = reason;
+  status.fault = fault;
+  status.signal = end.signal ? end.signal : end.complaint ? end.complaint->signal : 0;
+  status.log_tail = log_tail(log);
+  status.build = build;
+  return status;
 }
 
 void add_phases(const fs::path& cell, TimeSpent& time) {
@@ -186,28 +186,30 @@ std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scrat
                    double timeout_s) {
   cut_log(scratch / "log.txt");
   const bool ended_well = end.exit_code == 0 && end.signal == 0;
-  const CellState state =
-      ended_well && fs::exists(scratch / "status.json") ? cell_state(scratch, key(cell), build) : CellState();
+  const CellState state = ended_well && has_status(scratch) ? cell_state(scratch, key(cell), build) : CellState();
   if (state.complete) return "";
-  Json status = failure(end, timeout_s, scratch / "log.txt", build);
-  if (!state.why.empty()) status["reason"] = state.why;  // a plugin touched what was written
+  CellStatus status = failure(end, timeout_s, scratch / "log.txt", build);
+  if (!state.why.empty()) status.reason = state.why;  // a plugin touched what was written
   for (const auto& entry : fs::directory_iterator(scratch))
     if (entry.path().filename() != "log.txt") fs::remove_all(entry.path());  // parts of a result are none
   write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
-  write_file(scratch / "status.json", canonical(status) + '\n');
-  return status.at("reason");
+  write_cell_status(scratch, status);
+  return status.reason;
 }
 
 // A cell that could not be put in its place as it ended: without its files, or with none at all on a full disk.
 void record_failure(const RunDirectory& directory, const Cell& cell, const std::string& reason,
                     const std::string& fault, const Json& build) {
-  const Json status{{"state", "failed"}, {"reason", reason},        {"signal", nullptr},        {"fault", fault},
-                    {"build", build},    {"files", Json::object()}, {"log_tail", Json::array()}};
+  CellStatus status;
+  status.failed = true;
+  status.reason = reason;
+  status.fault = fault;
+  status.build = build;
   try {
     const fs::path scratch = directory.scratch(key(cell));
     write_file(scratch / "log.txt", "");
     write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
-    write_file(scratch / "status.json", canonical(status) + '\n');
+    write_cell_status(scratch, status);
     directory.keep(key(cell));
   } catch (const std::exception& e) {
     to_stderr("{}: {}\n", cell.title(), one_line(e.what()));
@@ -262,14 +264,16 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
 
 RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   const bool unconfined = plan.existing != Existing::fresh && is_unconfined(plan.out);
-  const RunDirectory directory(plan.out, run_json(plan, catalogue), plan.existing);
-  if (unconfined) directory.amend("confinement", unconfined_run);
-  directory.amend("shard", shard_json(plan));
+  const RunDirectory directory(plan.out, record_of(plan, catalogue), plan.existing);
+  directory.amend([&](RunRecord& run) {
+    if (unconfined) run.confinement = unconfined_run;
+    if (run.shard != shard_of(plan)) run.shard.reset();  // the directory holds another part as well
+  });
   keep_answers(plan.answers, plan.out);
   const bool asks = plan.live && plan.live->asks;
   if (asks) expect_replies_of(plan);
   const auto [complete, missing] = shard_state(plan, catalogue, directory);
-  if (!plan.confined && !missing.empty()) directory.amend("confinement", unconfined_run);
+  if (!plan.confined && !missing.empty()) directory.amend([](RunRecord& run) { run.confinement = unconfined_run; });
   RunOutcome outcome;
   outcome.reused = complete.size();
   Schedule schedule(missing);
@@ -353,7 +357,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   std::set<std::string> ours;
   for (const Cell* cell : cells_of(plan.cells, plan.shard)) ours.insert(key(*cell));
   for (const Cell& cell : plan.cells)
-    outcome.elsewhere += ours.count(key(cell)) == 0 && !fs::exists(directory.cell(key(cell)) / "status.json");
+    outcome.elsewhere += ours.count(key(cell)) == 0 && !has_status(directory.cell(key(cell)));
   return outcome;
 }
 

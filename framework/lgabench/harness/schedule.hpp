@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <lgabench/harness/costs.hpp>
-#include <lgabench/job/cell.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 

@@ -9,8 +9,8 @@
 #include <lgabench/abstraction/openai_options.hpp>
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/json.hpp>
-#include <lgabench/job/cell.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/cell.hpp>
 
 namespace lgabench {
 

@@ -104,8 +104,8 @@ std::string answers_hash(const fs::path& run, const Installed& installed, const 
 }
 
 std::string version_of(const RunResults& run, const std::string& kind, const std::string& id) {
-  for (const Json& plugin : run.json.at("plugins"))
-    if (plugin.at("kind") == kind && plugin.at("id") == id) return plugin.at("version");
+  for (const RunRecord::Plugin& plugin : run.record.plugins)
+    if (plugin.kind == kind && plugin.id == id) return plugin.version;
   throw InputError(fmt::format("{}: no {} {} in its /plugins", (run.directory / "run.json").string(), kind, id));
 }
 
@@ -118,23 +118,21 @@ std::string published(const std::string& command) {
 
 Json evidence_of(const RunResults& run, const Identity& identity, const Json& data, const Json& about) {
   Json plugins = Json::array();
-  for (const Json& plugin : run.json.at("plugins"))
-    if ((plugin.at("kind") == "engine" && plugin.at("id") == identity.engine) ||
-        (plugin.at("kind") == "method" && plugin.at("id") == identity.row.id))
-      plugins.push_back({{"kind", plugin.at("kind")},
-                         {"id", plugin.at("id")},
-                         {"version", plugin.at("version")},
-                         {"sha256", plugin.at("sha256")}});
-  const Json& json = run.json;
+  const RunRecord& record = run.record;
+  for (const RunRecord::Plugin& plugin : record.plugins)
+    if ((plugin.kind == "engine" && plugin.id == identity.engine) ||
+        (plugin.kind == "method" && plugin.id == identity.row.id))
+      plugins.push_back(
+          {{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}, {"sha256", plugin.sha256}});
   return {{"by", about.at("by")},
-          {"program", json.value("program", "lgabench " + json.at("version").get<std::string>())},
-          {"version", json.at("version")},
-          {"build", json.at("build")},
+          {"program", record.program.empty() ? "lgabench " + record.version : record.program},
+          {"version", record.version},
+          {"build", record.build},
           {"plugins", plugins},
-          {"machine", json.at("machine")},
-          {"confinement", json.value("confinement", "unknown")},
-          {"started", json.at("started")},
-          {"command", published(json.at("command"))},
+          {"machine", record.machine},
+          {"confinement", record.confinement.empty() ? "unknown" : record.confinement},
+          {"started", record.started},
+          {"command", published(record.command)},
           {"data", data}};
 }
 
@@ -187,8 +185,8 @@ int other_cells(const Entry& there, const Entry& here) {
 }
 
 void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
-  if (run.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
-  if (run.json.value("confinement", "").rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
+  if (run.record.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
+  if (run.record.confinement.rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
   if (run.not_run > 0) reasons.add(fmt::format("{} cells of the run have not been played", run.not_run));
   for (const CellResult& cell : run.cells)
     if (!cell.participant.empty()) {
@@ -222,7 +220,7 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   expect_run_of_the_board(run, reasons);
   std::optional<Installed> installed;
   try {
-    installed = installed_setting(run.suite, run.json.value("preset", ""));
+    installed = installed_setting(run.suite, run.record.preset);
   } catch (const InputError& e) {
     reasons.add(e.what());
     added.refused = reasons.lines();

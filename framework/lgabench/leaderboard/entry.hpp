@@ -38,7 +38,7 @@ struct PlayedCell {
   int episodes() const;
   int successes() const;
 };
-constexpr char success_letter = '.', failed_cell_letter = '!';
+constexpr char failed_cell_letter = '!';
 constexpr std::size_t most_failure_words = 26;  // a letter for each
 Json to_json(const PlayedCell& cell);
 

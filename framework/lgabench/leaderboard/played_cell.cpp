@@ -25,9 +25,9 @@ Json selections_of(const CellResult& result) {
 
 std::string letters(const CellResult& result, const std::string& arm, const std::vector<std::string>& words) {
   std::string text;
-  for (const report::PlayedEpisode& e : result.episodes.at(arm)) {
-    const auto word = static_cast<char>(std::find(words.begin(), words.end(), e.failure) - words.begin());
-    text += e.success ? success_letter : static_cast<char>((e.attribution == "abstraction" ? 'A' : 'a') + word);
+  for (const Episode& e : result.episodes.at(arm)) {
+    const char letter = outcome_letter(e, words);
+    text += e.attribution == "abstraction" ? static_cast<char>(letter - 'a' + 'A') : letter;
   }
   return text;
 }
@@ -51,7 +51,7 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
   }
   std::string scenes, results;
   for (const std::string& arm : result.arms) {
-    for (const report::PlayedEpisode& e : result.episodes.at(arm)) scenes += e.scene;
+    for (const Episode& e : result.episodes.at(arm)) scenes += e.scene;
     cell.outcomes[arm] = letters(result, arm, entry.failures);
   }
   for (const char* file : {"selection.json", "training.jsonl", "episodes.jsonl"})

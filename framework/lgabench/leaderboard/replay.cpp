@@ -177,17 +177,16 @@ std::optional<Json> replay(const fs::path& board, const Entry& entry, const std:
   const Scratch scratch("verify");
   const RunPlan plan = plan_of(board, entry, std::move(cells), scratch.path, options);
   if (run_suite(plan, catalogue).interrupted) return std::nullopt;
-  const Json run = read_json(plan.out / "run.json");
+  const RunRecord run = read_run_record(plan.out);
   const std::vector<PlayedCell> now = lines_of(plan, entry);
-  Json line = options.fresh ? compared_fresh(entry, chosen, now)
-                            : compared(entry, chosen, now, run.at("machine").at("processor"));
+  Json line = options.fresh ? compared_fresh(entry, chosen, now) : compared(entry, chosen, now, run.processor());
   line.update({{"nonce", nonce},
                {"by", options.by},
                {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},
                {"program", options.program},
-               {"build", run.at("build")},
-               {"machine", run.at("machine")},
-               {"confinement", run.at("confinement")}});
+               {"build", run.build},
+               {"machine", run.machine},
+               {"confinement", run.confinement}});
   if (options.fresh)
     line.update({{"scene_seed", installed.grid.scene_seed},
                  {"demonstrations", entry.cells[chosen.front()].place.demonstrations},

@@ -23,7 +23,7 @@ std::string first_difference(const fs::path& a, const fs::path& b) {
 bool same_endings(const CellResult& a, const CellResult& b, const std::string& arm) {
   const auto &x = a.episodes.at(arm), &y = b.episodes.at(arm);
   return std::equal(x.begin(), x.end(), y.begin(), y.end(),
-                    [](const PlayedEpisode& e, const PlayedEpisode& f) { return e.failure == f.failure; });
+                    [](const Episode& e, const Episode& f) { return e.failure == f.failure; });
 }
 
 // Compares two cells whose bytes differ for a reason.

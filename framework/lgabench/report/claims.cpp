@@ -87,7 +87,7 @@ std::vector<std::string> unseen_arms(const Field& field) {
   std::set<std::string> seen;
   for (const CellResult* cell : field.cells())
     for (const auto& [arm, episodes] : cell->episodes)
-      for (const PlayedEpisode& e : episodes)
+      for (const Episode& e : episodes)
         if (cell->commands[e.command].seen) seen.insert(arm);
   std::vector<std::string> unseen;
   for (const std::string& arm : field.arms)

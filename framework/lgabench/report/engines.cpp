@@ -18,11 +18,11 @@ auto place(const CellResult& c) {
 // Scenes and actions that were counted already: methods that select alike act alike.
 using Seen = std::set<std::pair<std::string, std::vector<double>>>;
 
-void count(const PlayedEpisode& a, const PlayedEpisode& b, AgreementRow& row) {
+void count(const Episode& a, const Episode& b, AgreementRow& row) {
   ++row.episodes;
-  row.won_first += a.success;
-  row.won_second += b.success;
-  row.agreed += a.success == b.success;
+  row.won_first += a.success();
+  row.won_second += b.success();
+  row.agreed += a.success() == b.success();
 }
 
 void pair_episodes(const CellResult& a, const CellResult& b, EngineAgreement& out, AgreementRow& row, AgreementRow& all,
@@ -30,7 +30,7 @@ void pair_episodes(const CellResult& a, const CellResult& b, EngineAgreement& ou
   for (const std::string& arm : a.arms) {
     const auto found = b.episodes.find(arm);
     if (found == b.episodes.end()) continue;
-    const std::vector<PlayedEpisode>&first = a.episodes.at(arm), &second = found->second;
+    const std::vector<Episode>&first = a.episodes.at(arm), &second = found->second;
     for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
       if (first[i].scene != second[i].scene || first[i].action.empty()) continue;
       if (first[i].action != second[i].action) {
@@ -40,7 +40,7 @@ void pair_episodes(const CellResult& a, const CellResult& b, EngineAgreement& ou
       count(first[i], second[i], row);
       if (!seen.emplace(first[i].scene, first[i].action).second) continue;
       count(first[i], second[i], all);
-      if (first[i].success != second[i].success) out.disagreements.push_back({&a, arm, i, second[i].failure});
+      if (first[i].success() != second[i].success()) out.disagreements.push_back({&a, arm, i, second[i].failure});
     }
   }
 }

@@ -15,7 +15,7 @@ struct Disagreement {
   std::size_t index = 0;       // of the scene in the arm
   std::string failure_second;  // on the second engine; the first's is the episode's own
 
-  const PlayedEpisode& episode() const { return cell->episodes.at(arm)[index]; }
+  const Episode& episode() const { return cell->episodes.at(arm)[index]; }
 };
 
 struct AgreementRow {

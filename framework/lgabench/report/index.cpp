@@ -33,9 +33,9 @@ Grid runs_grid(const std::vector<Report>& reports, const fs::path& place) {
     const RunResults& run = report.run;
     const std::size_t failed = report.summary.failed.size();
     grid.rows.push_back({{},
-                         {linked(report, place), run.suite, run.json.value("preset", ""), run.json.value("version", ""),
-                          run.json.value("started", ""), Span::number(std::to_string(run.cells.size() - failed)),
-                          Span::number(std::to_string(failed)), Span::number(std::to_string(run.not_run))}});
+                         {linked(report, place), run.suite, run.record.preset, run.record.version, run.record.started,
+                          Span::number(std::to_string(run.cells.size() - failed)), Span::number(std::to_string(failed)),
+                          Span::number(std::to_string(run.not_run))}});
   }
   return grid;
 }

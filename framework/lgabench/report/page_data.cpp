@@ -78,11 +78,10 @@ Json page_data(const Material& material) {
       std::string outcomes, blamed;  // a character an episode
       std::vector<std::string> hashes;
       Json given = Json::array(), actions = Json::object(), ends = Json::object();
-      const std::vector<PlayedEpisode>& all = cell.episodes.at(arm);
+      const std::vector<Episode>& all = cell.episodes.at(arm);
       for (std::size_t i = 0; i < all.size(); ++i) {
-        const PlayedEpisode& e = all[i];
-        const auto word = std::find(words.begin(), words.end(), e.failure) - words.begin();
-        outcomes += e.success ? '.' : static_cast<char>('a' + word);
+        const Episode& e = all[i];
+        outcomes += outcome_letter(e, words);
         blamed += e.attribution.empty() ? '.' : e.attribution == "perception" ? 's' : e.attribution.front();
         hashes.push_back(e.scene);
         given.push_back(e.command);

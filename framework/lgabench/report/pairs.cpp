@@ -9,7 +9,7 @@
 namespace lgabench::report {
 
 std::string why_unpaired(const CellResult& first, const CellResult& second, const std::string& arm) {
-  const std::vector<PlayedEpisode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
+  const std::vector<Episode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
   if (a.size() != b.size()) return fmt::format("{} and {} episodes", a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i].scene != b[i].scene) return fmt::format("scenes {} and {} at index {}", a[i].scene, b[i].scene, i);
@@ -20,21 +20,21 @@ std::string why_unpaired(const CellResult& first, const CellResult& second, cons
 }
 
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm) {
-  const std::vector<PlayedEpisode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
+  const std::vector<Episode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
   if (const std::string why = why_unpaired(first, second, arm); !why.empty())
     throw InputError(
         fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, why));
   PolicyPair pair;
   pair.episodes = static_cast<int>(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    pair.won_first += a[i].success ? 1 : 0;
-    pair.won_second += b[i].success ? 1 : 0;
-    pair.only_first += a[i].success && !b[i].success ? 1 : 0;
-    pair.only_second += b[i].success && !a[i].success ? 1 : 0;
+    pair.won_first += a[i].success() ? 1 : 0;
+    pair.won_second += b[i].success() ? 1 : 0;
+    pair.only_first += a[i].success() && !b[i].success() ? 1 : 0;
+    pair.only_second += b[i].success() && !a[i].success() ? 1 : 0;
     pair.same_actions = pair.same_actions && a[i].action == b[i].action;
     pair.scenes.push_back(a[i].scene);
-    pair.first.push_back(a[i].success ? 1 : 0);
-    pair.second.push_back(b[i].success ? 1 : 0);
+    pair.first.push_back(a[i].success() ? 1 : 0);
+    pair.second.push_back(b[i].success() ? 1 : 0);
   }
   return pair;
 }

@@ -81,13 +81,13 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
     }
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
-        const PlayedEpisode& episode = cell.episodes.at(arm)[i];
+        const Episode& episode = cell.episodes.at(arm)[i];
         const auto [known, is_new] = place.emplace(episode.scene, all.size());
         if (is_new)
           all.push_back({{run / "cells" / cell.key / "cell.json", arm, static_cast<int>(i), episode.scene}, {}});
         all[known->second].environment = cell.environment;
         Request& request = all[known->second];
-        request.failed = request.failed || !episode.success;
+        request.failed = request.failed || !episode.success();
         const CommandResult& command = cell.commands[episode.command];
         if (is_new_in(request.masks, episode.scene, masks[episode.command]))
           request.scene.selections.push_back(what_is_kept(cell, command.selection));
@@ -110,7 +110,7 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
     const CellResult* cell;
     const std::string* arm;
     std::size_t index;
-    const PlayedEpisode& episode() const { return cell->episodes.at(*arm)[index]; }
+    const Episode& episode() const { return cell->episodes.at(*arm)[index]; }
   };
   std::vector<Candidate> all;
   std::map<std::tuple<std::string, std::string, std::string, std::string, int, std::string, bool>, int> so_far;
@@ -118,10 +118,10 @@ void add_ends(const RunResults& results, std::vector<Request>& requests) {
     if (cell.failed || cell.is_reference()) continue;
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
-        const PlayedEpisode& episode = cell.episodes.at(arm)[i];
+        const Episode& episode = cell.episodes.at(arm)[i];
         if (episode.action.empty() || request_of.count(episode.scene) == 0) continue;
         int& before =
-            so_far[{cell.layout, cell.engine, cell.scenario, cell.method, cell.demonstrations, arm, episode.success}];
+            so_far[{cell.layout, cell.engine, cell.scenario, cell.method, cell.demonstrations, arm, episode.success()}];
         all.push_back({before++, cell.demonstrations, &cell, &arm, i});
       }
   }

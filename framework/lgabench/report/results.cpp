@@ -14,6 +14,7 @@
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/cell_status.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -24,40 +25,22 @@ constexpr long long most = std::numeric_limits<int>::max();
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
 
 void read_episodes(const fs::path& file, CellResult& cell) {
-  std::map<std::string, std::map<long long, PlayedEpisode>> played;
+  std::map<std::string, std::map<int, Episode>> played;
   const std::vector<std::string> words = failure_words();
   int line = 0;
   for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
     const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
-    const std::string arm = shown(reader.at("arm"));
-    if (std::find(cell.arms.begin(), cell.arms.end(), arm) == cell.arms.end())
+    Episode e = read_episode(reader);
+    e.arm = one_line(e.arm);
+    if (std::find(cell.arms.begin(), cell.arms.end(), e.arm) == cell.arms.end())
       reader.at("arm").fail(fmt::format("an arm of the scenario ({})", fmt::join(cell.arms, ", ")));
-    PlayedEpisode e;
-    e.command =
-        static_cast<std::size_t>(reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1));
-    e.scene = reader.at("scene").string();
-    e.success = reader.at("success").boolean();
-    e.failure = reader.at("failure").string();
-    if (e.success != (e.failure == "none")) reader.at("failure").fail("\"none\" exactly on success");
-    if (!e.success && std::find(words.begin(), words.end(), e.failure) == words.end())
+    reader.at("command").integer(0, static_cast<long long>(cell.commands.size()) - 1);
+    reader.at("index").integer(0, cell.episodes_per_arm - 1);
+    if (!e.success() && std::find(words.begin(), words.end(), e.failure) == words.end())
       reader.at("failure").fail(fmt::format("none, {}", fmt::join(words, ", ")));
-    if (const JsonReader blamed = reader.at("attribution"); !blamed.json().is_null()) {
-      e.attribution = blamed.string();
-      if (e.success || cell.is_reference() ||
-          std::find(attributions.begin(), attributions.end(), e.attribution) == attributions.end())
-        blamed.fail(fmt::format("{} on a method's failure, or null", fmt::join(attributions, ", ")));
-    }
-    if (const JsonReader action = reader.at("action"); !action.json().is_null()) {
-      if (!action.json().is_array() || action.json().empty()) action.fail("the numbers of an action, or null");
-      for (const Json& number : action.json()) {  // a reader for each would cost more than the numbers
-        if (!number.is_number()) action.elements().at(e.action.size()).fail("a number");
-        e.action.push_back(number.get<double>());
-      }
-    }
-    if (reader.has("input_seen")) e.input_seen = reader.at("input_seen").boolean();
-    const long long index = reader.at("index").integer(0, cell.episodes_per_arm - 1);
-    if (!played[arm].emplace(index, std::move(e)).second)
-      reader.at("index").fail(fmt::format("each index once in arm \"{}\"", arm));
+    if (!e.attribution.empty() && cell.is_reference()) reader.at("attribution").fail("null for a reference row");
+    if (!played[e.arm].emplace(e.index, e).second)
+      reader.at("index").fail(fmt::format("each index once in arm \"{}\"", e.arm));
   }
   for (const std::string& arm : cell.arms) {
     for (auto& item : played[arm]) cell.episodes[arm].push_back(std::move(item.second));
@@ -77,23 +60,6 @@ void read_training(const fs::path& file, CellResult& cell) {
       if (item.key() != "epoch" && item.key() != "steps")
         cell.training[one_line(item.key())][epoch] = item.value().get<double>();
   }
-}
-
-// Members of run.json that a report shows, where they are there.
-void expect_shown(const JsonReader& run) {
-  const auto expect_object = [](const JsonReader& value) {
-    if (!value.json().is_object()) value.fail("an object");
-  };
-  expect_object(run.at("machine"));
-  if (run.has("preset")) run.at("preset").string();
-  if (run.has("request")) expect_object(run.at("request"));
-  if (run.has("settings")) {
-    expect_object(run.at("settings"));
-    for (const auto& row : run.at("settings").json().items()) expect_object(run.at("settings").at(row.key()));
-  }
-  if (run.has("plugins"))
-    for (const JsonReader& plugin : run.at("plugins").elements())
-      for (const char* text : {"kind", "id", "version", "sha256"}) plugin.at(text).string();
 }
 
 void expect_selection(const JsonReader& selection) {
@@ -179,22 +145,17 @@ const std::vector<std::string>& phases() {
 CellResult read_cell(const fs::path& directory) {
   CellResult cell;
   cell.key = directory.filename().string();
-  const fs::path status_file = directory / "status.json";
   expect_plain_entries(directory);
-  const Json status = read_json(status_file, Links::refused);
-  const JsonReader reader(status, status_file.string());
-  const std::string state = reader.at("state").string();
-  if (state != "ok" && state != "failed") reader.at("state").fail("ok or failed");
-
+  const CellStatus status = read_cell_status(directory);
   read_configuration(directory / "cell.json", cell);
-  if (state == "failed") {
+  if (status.failed) {
     cell.failed = true;
-    cell.fault = reader.at("fault").string();
-    cell.reason = shown(reader.at("reason"));
-    for (const JsonReader& line : reader.at("log_tail").elements()) cell.log_tail.push_back(shown(line));
+    cell.fault = status.fault;
+    cell.reason = one_line(status.reason);
+    for (const std::string& line : status.log_tail) cell.log_tail.push_back(one_line(line));
     return cell;
   }
-  if (reader.has("method_error")) cell.method_error = shown(reader.at("method_error"));
+  cell.method_error = one_line(status.method_error);
   read_selections(directory / "selection.json", cell);
   read_training(directory / "training.jsonl", cell);
   read_episodes(directory / "episodes.jsonl", cell);
@@ -202,7 +163,7 @@ CellResult read_cell(const fs::path& directory) {
   cell.timing = read_json(timing_file, Links::refused);
   for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
-  if (const fs::path changed = changed_file(directory, reader); !changed.empty())
+  if (const fs::path changed = changed_file(directory, status); !changed.empty())
     throw InputError(
         fmt::format("{}: differs from its checksum in status.json; resuming the run makes it anew", changed.string()));
   return cell;
@@ -231,13 +192,9 @@ std::optional<CellResult> failed_cell(const fs::path& directory, const std::stri
 RunResults read_run(const fs::path& run) {
   RunResults results;
   results.directory = run;
-  const fs::path run_file = run / "run.json";
-  results.json = read_json(run_file, Links::refused);
-  const JsonReader reader(results.json, run_file.string());
-  results.suite = shown(reader.at("suite"));
-  results.smoke = reader.at("smoke").boolean();
-  expect_shown(reader);
-  const auto listed = read_cell_keys(reader);
+  results.record = read_run_record(run);
+  results.suite = one_line(results.record.suite);
+  const std::vector<std::string>& listed = results.record.cells;
   expect_plain_run(run);
   const std::set<std::string> asked(listed.begin(), listed.end());
 
@@ -250,7 +207,7 @@ RunResults read_run(const fs::path& run) {
   for (const std::string& key : found)
     if (asked.count(key) == 0) ++results.foreign;
 
-  const bool divided = reader.at("version").string() == "0.1.0";
+  const bool divided = results.record.version == "0.1.0";
   std::map<std::string, std::size_t> order;  // of scenarios: the suite's, which run.json's cells keep
   std::vector<std::string> played;
   for (const std::string& key : listed)
@@ -291,7 +248,7 @@ RunResults read_run(const fs::path& run) {
     throw InputError(
         fmt::format("{}: /cells: {} and {} measure the same (scenario, layout, engine, method, "
                     "demonstrations, training seed, participant), expected one of them",
-                    run_file.string(), twice->key, (twice + 1)->key));
+                    (run / "run.json").string(), twice->key, (twice + 1)->key));
   return results;
 }
 

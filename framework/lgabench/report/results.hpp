@@ -8,6 +8,8 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/record/episode.hpp>
+#include <lgabench/record/run_record.hpp>
 
 namespace lgabench::report {
 
@@ -20,16 +22,6 @@ struct CommandResult {
   bool seen = true;         // trained on; the others are tested only
   Json truth;               // as the scenario says: an object
   Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
-};
-
-struct PlayedEpisode {
-  std::size_t command = 0;  // index into the cell's commands
-  std::string failure;      // "none" exactly on success
-  bool success = false;
-  std::string attribution;     // of a failure: abstraction or policy; empty where nothing was selected, and on success
-  std::string scene;           // the scene's hash, 16 hexadecimal digits
-  std::vector<double> action;  // the policy's numbers; empty where it gave none
-  std::optional<bool> input_seen;  // its input stood in training; none where the policy does not tell
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
@@ -51,7 +43,7 @@ struct CellResult {
   std::string fault, reason;          // where it failed; fault: plugin or host, which it is too where it cannot be read
   std::vector<std::string> log_tail;  // what a failed cell's worker printed last
   std::string method_error;           // what the first episode of that failure threw
-  std::map<std::string, std::vector<PlayedEpisode>> episodes;  // of each arm, by index
+  std::map<std::string, std::vector<Episode>> episodes;  // of each arm, by index
   // Curves of training.jsonl: "loss", or a name of the method's own -> its values along the epochs.
   std::map<std::string, std::map<long long, double>> training;
   Json timing;  // as in timing.json
@@ -61,11 +53,10 @@ struct CellResult {
 
 struct RunResults {
   fs::path directory;  // as it was named
-  std::string suite;
-  Json json;  // run.json
+  RunRecord record;
+  std::string suite;  // the record's, in one line
   std::vector<CellResult>
       cells;               // by layout, engine, scenario (run.json's order), method, demonstrations, seed, participant
-  bool smoke = false;      // stamped as not for the leaderboard
   bool rehearsal = false;  // a cell is based on answers of a rehearsal, not people's
   int not_run = 0;         // asked for by run.json, not there
   std::vector<std::string> unreadable;  // why, of each cell that cannot be read; where cell.json can, it failed
@@ -78,10 +69,6 @@ constexpr const char* rehearsal_words = "rehearsal, not people";
 /// Reads a cell's directory. @throws InputError naming file and line or place for a file that is missing, malformed, or
 /// not what status.json's checksums say.
 CellResult read_cell(const fs::path& directory);
-
-/// What a failure may be attributed to, in a fixed order: a failed episode in which the same policy succeeds with the
-/// true mask is the abstraction's, any other the policy's.
-constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
 
 /// Reads the cells that run.json asks for. Hidden directories (a worker's unfinished work) are no cells. A cell that
 /// read_cell() refuses counts as failed: what it holds may be a method's doing, and takes nothing from other rows.

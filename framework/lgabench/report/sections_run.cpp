@@ -11,12 +11,13 @@ namespace {
 
 std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : canonical(value); }
 
-// Members of run.json that are text or numbers, then the machine.
+// Members of the record that are text or numbers, then the machine.
 Facts facts(const RunResults& run) {
   Facts all;
-  for (const auto& [name, value] : run.json.items())
+  const Json record = to_json(run.record);
+  for (const auto& [name, value] : record.items())
     if (value.is_primitive() && !value.is_null() && value != "") all.items.emplace_back(name, text_of(value));
-  for (const auto& [name, value] : run.json.at("machine").items())
+  for (const auto& [name, value] : run.record.machine.items())
     all.items.emplace_back("machine, " + name, text_of(value));
   return all;
 }
@@ -114,12 +115,10 @@ Section provenance(const Material& material) {
   const RunResults& run = material.run;
   Section section{"provenance", "Provenance and machine", on_page};
   Facts all = facts(run);
-  for (const Json& plugin : run.json.value("plugins", Json::array()))
-    all.items.emplace_back("plugin " + plugin.value("id", ""),
-                           fmt::format("{} {}, sha256 {:.16}", plugin.value("kind", ""), plugin.value("version", ""),
-                                       plugin.value("sha256", "")));
-  const Json builds = run.json.value("build", Json::object());
-  for (const auto& [name, value] : builds.items())
+  for (const RunRecord::Plugin& plugin : run.record.plugins)
+    all.items.emplace_back("plugin " + plugin.id,
+                           fmt::format("{} {}, sha256 {:.16}", plugin.kind, plugin.version, plugin.sha256));
+  for (const auto& [name, value] : run.record.build.items())
     if (value.is_string()) all.items.emplace_back(name, "sha256 " + value.get<std::string>().substr(0, 16));
   section.add(on_page, std::move(all));
   return section;

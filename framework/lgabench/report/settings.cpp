@@ -72,10 +72,10 @@ bool fits(const CellResult& cell, const JsonReader& description) {
 
 std::vector<std::string> settings(const RunResults& run) {
   std::vector<std::string> lines;
-  if (const std::string preset = run.json.value("preset", ""); !preset.empty()) lines.push_back("preset " + preset);
-  for (const std::string& line : options_beside_defaults(run.json.value("settings", Json::object())))
+  if (!run.record.preset.empty()) lines.push_back("preset " + run.record.preset);
+  for (const std::string& line : options_beside_defaults(run.record.settings))
     lines.push_back("beside the plugins' defaults, " + line);
-  if (run.json.value("request", Json::object()).value("test_scenes", Json()) == "per_seed")
+  if (run.record.request.value("test_scenes", Json()) == "per_seed")
     lines.emplace_back("each training seed plays test scenes of its own");
   for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;

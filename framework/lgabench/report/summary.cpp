@@ -26,15 +26,15 @@ struct SeedResult {
   bool same_actions = false;
 };
 
-using Episodes = std::vector<PlayedEpisode>;
+using Episodes = std::vector<Episode>;
 
 SeedResult played(const Episodes& episodes) {
   SeedResult seed;
   seed.episodes = static_cast<int>(episodes.size());
-  for (const PlayedEpisode& e : episodes) {
+  for (const Episode& e : episodes) {
     seed.scenes.push_back(e.scene);
-    seed.won.push_back(e.success ? 1 : 0);
-    seed.successes += e.success ? 1 : 0;
+    seed.won.push_back(e.success() ? 1 : 0);
+    seed.successes += e.success() ? 1 : 0;
   }
   return seed;
 }
@@ -43,7 +43,7 @@ void pair(SeedResult& seed, const Episodes& first, const Episodes& here) {
   seed.paired = seed.same_actions = first.size() == here.size();
   for (std::size_t i = 0; seed.paired && i < here.size(); ++i) {
     seed.paired = first[i].command == here[i].command;
-    seed.difference.push_back((here[i].success ? 1 : 0) - (first[i].success ? 1 : 0));
+    seed.difference.push_back((here[i].success() ? 1 : 0) - (first[i].success() ? 1 : 0));
     seed.same_actions = seed.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
   }
 }
@@ -129,7 +129,7 @@ Json phi_of(const std::vector<const CellResult*>& cells, const std::string& arm)
   std::set<std::size_t> given;
   for (const CellResult* cell : cells)
     if (!cell->failed)
-      for (const PlayedEpisode& e : cell->episodes.at(arm)) given.insert(e.command);
+      for (const Episode& e : cell->episodes.at(arm)) given.insert(e.command);
   Json all;
   for (const std::size_t command : given)
     if (Json phi = phi_of(cells, command); !phi.is_null()) all.push_back(std::move(phi));
@@ -199,8 +199,8 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
     seeds.insert(cell->training_seed);
     if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
       pair(result, control->second, episodes);
-    for (const PlayedEpisode& e : episodes) {
-      if (!e.success) ++row.failures[e.failure];
+    for (const Episode& e : episodes) {
+      if (!e.success()) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
       row.inputs_told += e.input_seen ? 1 : 0;
       row.inputs_seen += e.input_seen.value_or(false) ? 1 : 0;

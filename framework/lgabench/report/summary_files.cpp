@@ -97,10 +97,10 @@ std::string episodes_csv(const RunResults& run) {
   for (const CellResult& cell : run.cells)
     for (const auto& [arm, episodes] : cell.episodes)
       for (std::size_t i = 0; i < episodes.size(); ++i) {
-        const PlayedEpisode& e = episodes[i];
+        const Episode& e = episodes[i];
         csv += csv_line({cell.key, cell.scenario, cell.layout, cell.engine, cell.method, cell.kind,
                          std::to_string(cell.demonstrations), std::to_string(cell.training_seed), cell.participant, arm,
-                         std::to_string(i), cell.commands[e.command].utterance, e.scene, e.success ? "true" : "false",
+                         std::to_string(i), cell.commands[e.command].utterance, e.scene, e.success() ? "true" : "false",
                          e.failure, e.attribution, e.input_seen ? (*e.input_seen ? "true" : "false") : ""});
       }
   return csv;

@@ -97,13 +97,13 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   }
   std::vector<std::string> lines;
   if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
-  if (run.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
+  if (run.record.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
   if (run.not_run > 0)
-    lines.push_back(fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run,
-                                run.json.at("cells").size()));
+    lines.push_back(
+        fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run, run.record.cells.size()));
   if (!run.unreadable.empty())
     lines.push_back(fmt::format("{} of {} cells cannot be read, and were left out.", run.unreadable.size(),
-                                run.json.at("cells").size()));
+                                run.record.cells.size()));
   if (run.foreign > 0)
     lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
   for (const Mark& mark : table_marks)
@@ -135,7 +135,7 @@ std::vector<MethodError> method_errors(const RunResults& run) {
     if (cell.is_reference()) continue;
     Errors& row = all[cell.method];
     for (const auto& arm : cell.episodes)
-      for (const PlayedEpisode& e : arm.second) {
+      for (const Episode& e : arm.second) {
         ++row.episodes;
         if (e.failure != "method_error") continue;
         ++row.errors;

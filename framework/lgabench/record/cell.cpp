@@ -1,4 +1,4 @@
-#include <lgabench/job/cell.hpp>
+#include <lgabench/record/cell.hpp>
 
 #include <fmt/format.h>
 
@@ -97,6 +97,17 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();
   return cell;
+}
+
+Cell recorded_cell(const fs::path& directory) {
+  const fs::path file = directory / "cell.json";
+  return read_cell(read_json(file, Links::refused), file.string());
+}
+
+double recorded_seconds(const fs::path& directory) {
+  const fs::path file = directory / "timing.json";
+  const Json timing = read_json(file, Links::refused);
+  return JsonReader(timing, file.string()).at("total_s").number();
 }
 
 std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).substr(0, 16); }

@@ -1,6 +1,7 @@
 // A cell: the unit of work, failure and resuming. It trains one policy and plays every arm of its scenario.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,6 +59,13 @@ struct Cell {
 Json to_json(const Cell& cell);
 /// What cells of 0.1 lack takes the value that held then. @throws InputError with `file` and place.
 Cell read_cell(const Json& json, const std::string& file);
+
+/// The cell that cell.json in `directory` describes. No link is followed.
+/// @throws InputError if it is not there, or not a cell.
+Cell recorded_cell(const std::filesystem::path& directory);
+/// Wall-clock seconds that the cell in `directory` took, from its timing.json. No link is followed.
+/// @throws InputError if the file is not there, or holds no such number.
+double recorded_seconds(const std::filesystem::path& directory);
 
 /// First 16 digits of the SHA-256 of the canonical JSON: names the cell's directory.
 std::string key(const Cell& cell);

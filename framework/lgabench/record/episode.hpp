@@ -1,0 +1,39 @@
+// An episode, and its line of episodes.jsonl.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/action.hpp>
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+/// What a failure may be attributed to, in a fixed order: to perception where the same policy succeeds in the scene
+/// seen as it is, to the abstraction where it succeeds with the true mask, else to the policy.
+constexpr std::array<const char*, 3> attributions{"abstraction", "policy", "perception"};
+
+struct Episode {
+  std::string arm;
+  int index = 0, command = 0;  // within the arm; of the scenario's commands
+  std::string scene;           // its hash, 16 hexadecimal digits
+  Failure failure = failure::none;
+  Action action{};                   // what was carried out; empty where the actor gave none
+  std::string attribution{};         // of a failure; "" where it is not known
+  std::optional<bool> input_seen{};  // Policy::seen_in_training() of the action
+  std::string error{};               // of a method_error: what was thrown. Not on disk: its words may hold an address
+
+  bool success() const { return failure == failure::none; }
+};
+
+Json to_json(const Episode& episode);
+/// @throws InputError
+Episode read_episode(const JsonReader& reader);
+
+/// Outcomes as text, a letter an episode: this for success, else 'a' and on, as failures stand in `words`.
+constexpr char success_letter = '.';
+char outcome_letter(const Episode& episode, const std::vector<std::string>& words);
+
+}  // namespace lgabench
