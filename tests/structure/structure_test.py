@@ -32,7 +32,7 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "job", "cell", "harness", "report", "study",
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "study",
                        "leaderboard", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
@@ -80,10 +80,19 @@ class IncludeGraph(unittest.TestCase):
             self.forbid(f"envs/{environment}", rf"({'|'.join(others)})/")
 
     def test_a_run_and_its_cells_share_jobs_alone(self):
-        self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|job/)")
+        self.forbid("framework/lgabench/job", r"lgabench/(?!core/|plugin/|abstraction/|record/|job/)")
         self.forbid("framework/lgabench/harness", r"lgabench/(cell|report|leaderboard|cli)/")
         self.forbid("framework/lgabench/leaderboard", r"lgabench/(cell|cli)/")
         self.forbid("framework/lgabench/cell", r"lgabench/(harness|report|cli)/")
+
+    def test_records_know_core_and_abstraction(self):
+        self.forbid("framework/lgabench/record", r"lgabench/(?!core/|abstraction/|record/)|torch|opencv")
+
+    def test_a_file_of_a_run_is_named_in_its_record_alone(self):
+        names = re.compile(r'"(run\.json|cell\.json|selection\.json|training\.jsonl|episodes\.jsonl|timing\.json|status\.json|log\.txt)"')
+        found = {str(file.relative_to(SOURCE)): names.findall(file.read_text())
+                 for file in sorted((SOURCE / "framework").rglob("*.[ch]pp")) if file.parent.name != "record"}
+        self.assertEqual({file: all_of_it for file, all_of_it in found.items() if all_of_it}, {})
 
     def test_the_study_knows_core_abstraction_and_report(self):
         self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|report/|study/)|torch|opencv")

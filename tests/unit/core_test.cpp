@@ -167,8 +167,8 @@ TEST(PlainDirectory, IsReadByNoWayThatLeadsOutOfIt) {
   fs::create_symlink(secret / "key", files / "link");
   ASSERT_EQ(::mkfifo((files / "pipe").c_str(), 0600), 0);
   const PlainDirectory before(files);
-  EXPECT_EQ(before.file_names(), std::vector<std::string>{"own"});
-  EXPECT_EQ(before.file_names(), std::vector<std::string>{"own"}) << "a second time";
+  EXPECT_EQ(before.kept_names(), std::vector<std::string>{"own"});
+  EXPECT_EQ(before.kept_names(), std::vector<std::string>{"own"}) << "a second time";
   EXPECT_EQ(before.read_file("own"), "bytes");
   EXPECT_SAYS(message_of<InputError>([&] { before.read_file("link"); }), "files/link: a symbolic link");
   EXPECT_SAYS(message_of<InputError>([&] { before.read_file("own", 4); }), "expected at most 4");
@@ -179,7 +179,7 @@ TEST(PlainDirectory, IsReadByNoWayThatLeadsOutOfIt) {
   EXPECT_EQ(before.read_file("own"), "bytes");
   for (const fs::path& nothing : {files, secret / "key", directory.path / "none"}) {
     const PlainDirectory now(nothing);
-    EXPECT_TRUE(now.file_names().empty()) << nothing;
+    EXPECT_TRUE(now.kept_names().empty()) << nothing;
     EXPECT_THROW(now.read_file("key"), InputError) << nothing;
   }
 }

@@ -17,11 +17,11 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/record/cell_status.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -234,11 +234,11 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
 
   // 6 record: no clock but in timing.json.
   record(job, self,
-         {{"cell.json", canonical(to_json(cell)) + '\n'},
-          {"selection.json", selection_text(scenario, selected)},
-          {"training.jsonl", training.lines},
-          {"episodes.jsonl", episodes_text(episodes)},
-          {"timing.json", canonical(phases.seconds()) + '\n'}},
+         {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
+          {cell_file::selections, selection_text(scenario, selected)},
+          {cell_file::training, training.lines},
+          {cell_file::episodes, episodes_text(episodes)},
+          {cell_file::timing, canonical(phases.seconds()) + '\n'}},
          of_method, first_error(episodes));
 }
 

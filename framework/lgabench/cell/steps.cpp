@@ -8,9 +8,9 @@
 #include <utility>
 
 #include <lgabench/cell/environments.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 

@@ -8,9 +8,9 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -57,7 +57,7 @@ Costs costs_of(const fs::path& run) {
   expect_run(run);
   for (const std::string& name : read_run_record(run).cells) {
     const fs::path cell = run / "cells" / name;
-    if (fs::exists(cell / "timing.json")) costs.learn(recorded_cell(cell), recorded_seconds(cell));
+    if (fs::exists(cell / cell_file::timing)) costs.learn(recorded_cell(cell), recorded_seconds(cell));
   }
   return costs;
 }

@@ -18,6 +18,7 @@
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/cell.hpp>
 #include <lgabench/record/episode.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -58,10 +59,11 @@ Recorded recorded(const ReplayArguments& a) {
     throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", a.episode));
   const fs::path directory = cell_of(a.run, a.episode.substr(0, first));
   const Cell cell = recorded_cell(directory);
-  const Scenario scenario = read_scenario(*cell.scenario, (directory / "cell.json").string() + ": /scenario");
+  const Scenario scenario =
+      read_scenario(*cell.scenario, (directory / cell_file::configuration).string() + ": /scenario");
   const std::string arm = first == last ? scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
   scenario.arm(arm);  // says which there are
-  const std::string file = (directory / "episodes.jsonl").string();
+  const std::string file = (directory / cell_file::episodes).string();
   for (const Json& line : parse_json_lines(read_file(file, Links::refused), file)) {
     const Episode episode = read_episode(JsonReader(line, file));
     if (episode.arm != arm || episode.index != index) continue;

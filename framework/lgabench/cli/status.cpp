@@ -10,8 +10,8 @@
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::cli {
 namespace {

@@ -15,13 +15,13 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/agreement.hpp>
 #include <lgabench/report/pairs.hpp>
 
@@ -100,7 +100,7 @@ void add_differences(std::set<std::string>& why, const Json& there, const Json& 
 // The cell as this installation's data make it; the worker refuses to compute with other data than the cell names.
 Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   Cell cell = recorded.cell;
-  const std::string file = (recorded.directory / "cell.json").string();
+  const std::string file = (recorded.directory / cell_file::configuration).string();
   cell.data = data_hashes(read_scenario(*cell.scenario, file + ": /scenario"), cell.answers);
   add_differences(why, recorded.cell.data, cell.data, "data: ");
   return cell;

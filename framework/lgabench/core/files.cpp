@@ -86,17 +86,24 @@ PlainDirectory::~PlainDirectory() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-std::vector<std::string> PlainDirectory::file_names() const {
+std::vector<std::string> PlainDirectory::kept_names() const {
+  constexpr std::size_t most = 100, longest = 100;
+  constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
   std::vector<std::string> names;
   // Opened anew: a duplicate would share the place at which reading goes on.
   const int listed = descriptor_ < 0 ? -1 : ::openat(descriptor_, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   DIR* const stream = listed < 0 ? nullptr : ::fdopendir(listed);
   if (!stream && listed >= 0) ::close(listed);
   struct stat about {};
-  while (const dirent* entry = stream ? ::readdir(stream) : nullptr)
-    if (::fstatat(descriptor_, entry->d_name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(about.st_mode))
-      names.emplace_back(entry->d_name);
+  while (const dirent* entry = stream ? ::readdir(stream) : nullptr) {
+    const std::string_view name = entry->d_name;
+    const bool plain = name[0] != '.' && name.size() <= longest && name.find_first_not_of(allowed) == name.npos;
+    if (plain && ::fstatat(descriptor_, entry->d_name, &about, AT_SYMLINK_NOFOLLOW) == 0 && S_ISREG(about.st_mode))
+      names.emplace_back(name);
+  }
   if (stream) ::closedir(stream);
+  std::sort(names.begin(), names.end());
+  names.resize(std::min(names.size(), most));
   return names;
 }
 

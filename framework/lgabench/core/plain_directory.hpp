@@ -17,8 +17,9 @@ class PlainDirectory {
   PlainDirectory(const PlainDirectory&) = delete;
   PlainDirectory& operator=(const PlainDirectory&) = delete;
 
-  /// Names of the regular files that it holds now, in any order.
-  std::vector<std::string> file_names() const;
+  /// Names of what is kept of it: sorted, of at most 100 regular files whose names are letters, digits, "_", "-" and
+  /// ".", the last not first. What else it holds is passed over.
+  std::vector<std::string> kept_names() const;
   /// The bytes of the regular file of that name. @throws InputError as lgabench::read_file().
   std::string read_file(const std::string& name, std::uintmax_t most = std::uintmax_t{1} << 30) const;
 

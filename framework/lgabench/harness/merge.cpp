@@ -14,10 +14,10 @@
 #include <set>
 #include <string_view>
 
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -249,9 +249,9 @@ void copy_cell(const fs::path& from, const fs::path& to) {
   const PlainDirectory files(from / "files");
   for (const std::string& name : cell_files)
     if (fs::exists(from / name)) copy(name);
-  for (const std::string& name : artefact_names(files))
+  for (const std::string& name : files.kept_names())
     write_file(to / "files" / name, files.read_file(name), Sync::later);
-  copy("status.json");
+  copy(cell_file::status);
 }
 
 }  // namespace

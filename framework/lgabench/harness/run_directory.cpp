@@ -11,7 +11,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/run_layout.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -92,9 +92,7 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
     if (was_there && !is_run(path))
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
-      for (const char* name : {"cells", "answers", "summary.json", "summary.csv", "claims.json", "report.md",
-                               "report.html", "figures", "tables", "episodes.csv", "run.json"})
-        remove_tree(path / name);
+      for (const char* name : run_entries) remove_tree(path / name);
     } else if (was_there) {
       there = read_run_record(path);
       if (!same_cells(there.version, run.version))

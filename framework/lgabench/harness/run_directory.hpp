@@ -18,9 +18,6 @@ namespace lgabench {
 /// no "method" for a reference row).
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method);
 
-/// The files of a finished cell that hold no clock: its results, bit by bit.
-constexpr std::array<const char*, 4> result_files{"cell.json", "selection.json", "training.jsonl", "episodes.jsonl"};
-
 /// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
 /// before `suffix` alone: another build's. "" if there is none.
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);

@@ -14,12 +14,12 @@
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/harness/progress.hpp>
 #include <lgabench/host/confine.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -135,7 +135,7 @@ CellStatus failure(const WorkerEnd& end, double timeout_s, const fs::path& log, 
 }
 
 void add_phases(const fs::path& cell, TimeSpent& time) {
-  const fs::path file = cell / "timing.json";
+  const fs::path file = cell / cell_file::timing;
   const Json timing = read_json(file, Links::refused);
   const JsonReader reader(timing, file.string());
   for (const auto& phase : timing.items())
@@ -184,15 +184,15 @@ void cut_log(const fs::path& log) {
 // reason of a failure, or "".
 std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scratch, const Json& build,
                    double timeout_s) {
-  cut_log(scratch / "log.txt");
+  cut_log(scratch / cell_file::log);
   const bool ended_well = end.exit_code == 0 && end.signal == 0;
   const CellState state = ended_well && has_status(scratch) ? cell_state(scratch, key(cell), build) : CellState();
   if (state.complete) return "";
-  CellStatus status = failure(end, timeout_s, scratch / "log.txt", build);
+  CellStatus status = failure(end, timeout_s, scratch / cell_file::log, build);
   if (!state.why.empty()) status.reason = state.why;  // a plugin touched what was written
   for (const auto& entry : fs::directory_iterator(scratch))
-    if (entry.path().filename() != "log.txt") fs::remove_all(entry.path());  // parts of a result are none
-  write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
+    if (entry.path().filename() != cell_file::log) fs::remove_all(entry.path());  // parts of a result are none
+  write_file(scratch / cell_file::configuration, canonical(to_json(cell)) + '\n');
   write_cell_status(scratch, status);
   return status.reason;
 }
@@ -207,8 +207,8 @@ void record_failure(const RunDirectory& directory, const Cell& cell, const std::
   status.build = build;
   try {
     const fs::path scratch = directory.scratch(key(cell));
-    write_file(scratch / "log.txt", "");
-    write_file(scratch / "cell.json", canonical(to_json(cell)) + '\n');
+    write_file(scratch / cell_file::log, "");
+    write_file(scratch / cell_file::configuration, canonical(to_json(cell)) + '\n');
     write_cell_status(scratch, status);
     directory.keep(key(cell));
   } catch (const std::exception& e) {
@@ -298,7 +298,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     const fs::path own = hosts.path / std::to_string(i);
     fs::create_directory(own);
     return WorkerTask{to_json(cell_job(plan, catalogue, cell, scratch[i], plan.out / "answers", own)),
-                      scratch[i] / "log.txt"};
+                      scratch[i] / cell_file::log};
   };
   std::set<std::string> failed;
   PoolEvents events;
@@ -332,7 +332,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
       ++outcome.computed;
       schedule.learn(cell, end.seconds);
     } else {
-      outcome.failed.push_back({cell.title(), reason, kept / "log.txt"});
+      outcome.failed.push_back({cell.title(), reason, kept / cell_file::log});
       outcome.plugin_refused |= end.exit_code == refused && end.complaint && end.complaint->refused;
       failed.insert(key(cell));
     }
@@ -349,7 +349,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     if (state.complete) return;
     --count;
     outcome.failed.push_back({cell.title(), "was kept and is gone: " + (state.why.empty() ? "no files" : state.why),
-                              directory.cell(key(cell)) / "log.txt"});
+                              directory.cell(key(cell)) / cell_file::log});
   };
   for (const Cell* cell : complete) expect_there(*cell, outcome.reused);
   for (const Cell* cell : played)

@@ -9,7 +9,6 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/asked.hpp>
 #include <lgabench/host/host_process.hpp>
@@ -252,7 +251,7 @@ std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
   std::vector<std::pair<std::string, std::string>> all;
   std::uintmax_t bytes = 0;
   const PlainDirectory files(files_);  // which the method may have put something else in the place of
-  for (const std::string& name : artefact_names(files)) try {
+  for (const std::string& name : files.kept_names()) try {
       all.emplace_back(name, files.read_file(name, most - bytes));
       bytes += all.back().second.size();
     } catch (const InputError& e) {  // too large, or changed by now

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <ctime>
 
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::leaderboard {
 namespace {

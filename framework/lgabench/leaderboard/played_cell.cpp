@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -54,8 +55,7 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
     for (const Episode& e : result.episodes.at(arm)) scenes += e.scene;
     cell.outcomes[arm] = letters(result, arm, entry.failures);
   }
-  for (const char* file : {"selection.json", "training.jsonl", "episodes.jsonl"})
-    results += sha256_file(directory / file);
+  for (const char* file : result_files) results += sha256_file(directory / file);
   cell.scenes = sha256(scenes);
   cell.digest = sha256(results);
   if (const Json phi = selections_of(result); !phi.is_null()) {
@@ -76,7 +76,7 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
   };
   cell.learn_s = seconds("learn_s");
   cell.total_s = seconds("total_s");
-  const fs::path training = directory / "training.jsonl";
+  const fs::path training = directory / cell_file::training;
   const std::vector<Json> epochs = parse_json_lines(read_file(training, Links::refused), training.string());
   if (!epochs.empty()) cell.steps = JsonReader(epochs.back(), training.string()).at("steps").integer(0, INT64_MAX);
   return cell;

@@ -7,6 +7,7 @@
 #include <lgabench/abstraction/prompt.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
@@ -100,12 +101,12 @@ Cell read_cell(const Json& json, const std::string& file) {
 }
 
 Cell recorded_cell(const fs::path& directory) {
-  const fs::path file = directory / "cell.json";
+  const fs::path file = directory / cell_file::configuration;
   return read_cell(read_json(file, Links::refused), file.string());
 }
 
 double recorded_seconds(const fs::path& directory) {
-  const fs::path file = directory / "timing.json";
+  const fs::path file = directory / cell_file::timing;
   const Json timing = read_json(file, Links::refused);
   return JsonReader(timing, file.string()).at("total_s").number();
 }

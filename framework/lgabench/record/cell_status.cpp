@@ -5,13 +5,13 @@
 #include <limits>
 
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/record/cell.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {
 
-fs::path file_of(const fs::path& cell) { return cell / "status.json"; }
+fs::path file_of(const fs::path& cell) { return cell / cell_file::status; }
 
 }  // namespace
 
@@ -31,7 +31,7 @@ CellStatus read_cell_status(const fs::path& cell) {
   status.build = reader.at("build").json();
   if (!status.failed) {
     const JsonReader files = reader.at("files");
-    files.only(cell_files);
+    files.only({cell_files.begin(), cell_files.end()});
     for (const auto& file : files.json().items()) status.files[file.key()] = files.at(file.key()).string();
     if (reader.has("method_error")) status.method_error = reader.at("method_error").string();
     return status;
@@ -79,12 +79,12 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
       state.why = "failed: " + status.reason;
       return state;
     }
-    for (const std::string& name : cell_files)
-      if (name != log_file && status.files.count(name) == 0)
+    for (const std::string name : cell_files)
+      if (name != cell_file::log && status.files.count(name) == 0)
         throw InputError(fmt::format("{}: /files: expected a member \"{}\"", file_of(cell).string(), name));
     if (const fs::path changed = changed_file(cell, status); !changed.empty()) return not_its_own(changed);
-    if (sha256(canonical(read_json(cell / "cell.json"))).substr(0, key.size()) != key)
-      return not_its_own(cell / "cell.json");
+    if (sha256(canonical(read_json(cell / cell_file::configuration))).substr(0, key.size()) != key)
+      return not_its_own(cell / cell_file::configuration);
     for (const auto& [program, hash] : build.items())
       if (status.build.value(program, Json()) != hash) {
         state.other_build = true;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <lgabench/core/run_layout.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench {
 namespace {

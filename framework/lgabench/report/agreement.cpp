@@ -1,3 +1,4 @@
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/agreement.hpp>
 
 #include <fmt/format.h>
@@ -65,13 +66,13 @@ std::string to_string(Agreement agreement) {
 
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused) {
   std::vector<std::string> differences;
-  for (const char* name : {"selection.json", "training.jsonl", "episodes.jsonl"})
+  for (const char* name : result_files)
     if (std::string where = first_difference(recorded / name, recomputed / name); !where.empty())
       differences.push_back(std::move(where));
   if (differences.empty()) return {Agreement::identical, "", 0, 0};
   const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
   if (!excused) return {Agreement::differs, where + ", though build, processor and data are those of the record", 0, 0};
-  if (differences.front().rfind("selection.json", 0) == 0) return {Agreement::differs, where, 0, 0};
+  if (differences.front().rfind(cell_file::selections, 0) == 0) return {Agreement::differs, where, 0, 0};
   CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
   outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);
   return outcomes;

@@ -18,6 +18,7 @@
 #include <lgabench/core/selection.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/settings.hpp>
 
 namespace lgabench::report {
@@ -84,7 +85,8 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const Episode& episode = cell.episodes.at(arm)[i];
         const auto [known, is_new] = place.emplace(episode.scene, all.size());
         if (is_new)
-          all.push_back({{run / "cells" / cell.key / "cell.json", arm, static_cast<int>(i), episode.scene}, {}});
+          all.push_back(
+              {{run / "cells" / cell.key / cell_file::configuration, arm, static_cast<int>(i), episode.scene}, {}});
         all[known->second].environment = cell.environment;
         Request& request = all[known->second];
         request.failed = request.failed || !episode.success();
@@ -143,7 +145,7 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
     for (const Disagreement& d : agreement.disagreements) {
       if (added++ == most_disagreements) return;
       const auto key = [&d](const std::string& engine) { return end_key(*d.cell, d.arm, d.index, engine); };
-      requests.push_back({{run / "cells" / d.cell->key / "cell.json",
+      requests.push_back({{run / "cells" / d.cell->key / cell_file::configuration,
                            d.arm,
                            static_cast<int>(d.index),
                            d.episode().scene,

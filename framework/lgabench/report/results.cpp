@@ -12,9 +12,9 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/parallel.hpp>
-#include <lgabench/core/run_layout.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/cell_status.hpp>
+#include <lgabench/record/layout.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -147,7 +147,7 @@ CellResult read_cell(const fs::path& directory) {
   cell.key = directory.filename().string();
   expect_plain_entries(directory);
   const CellStatus status = read_cell_status(directory);
-  read_configuration(directory / "cell.json", cell);
+  read_configuration(directory / cell_file::configuration, cell);
   if (status.failed) {
     cell.failed = true;
     cell.fault = status.fault;
@@ -156,10 +156,10 @@ CellResult read_cell(const fs::path& directory) {
     return cell;
   }
   cell.method_error = one_line(status.method_error);
-  read_selections(directory / "selection.json", cell);
-  read_training(directory / "training.jsonl", cell);
-  read_episodes(directory / "episodes.jsonl", cell);
-  const fs::path timing_file = directory / "timing.json";
+  read_selections(directory / cell_file::selections, cell);
+  read_training(directory / cell_file::training, cell);
+  read_episodes(directory / cell_file::episodes, cell);
+  const fs::path timing_file = directory / cell_file::timing;
   cell.timing = read_json(timing_file, Links::refused);
   for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
@@ -176,7 +176,7 @@ std::optional<CellResult> failed_cell(const fs::path& directory, const std::stri
   CellResult cell;
   cell.key = directory.filename().string();
   try {
-    read_configuration(directory / "cell.json", cell);
+    read_configuration(directory / cell_file::configuration, cell);
   } catch (const InputError&) {
     return {};
   }

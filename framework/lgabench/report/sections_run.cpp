@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -87,7 +88,7 @@ Section failed_cells(const Material& material) {
   Section section{"failed", "Cells that failed"};
   const std::vector<CellResult>& failed = material.summary.failed;
   if (failed.empty()) return section;
-  section.add(reading, Paragraph{{"They count for nothing above; ", Span("log.txt", Emphasis::code),
+  section.add(reading, Paragraph{{"They count for nothing above; ", Span(cell_file::log, Emphasis::code),
                                   " in a cell's directory says more."}});
   Grid grid;
   grid.name = "failed_cells";

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include <lgabench/core/rounding.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/names.hpp>
 
 namespace lgabench::report {
@@ -148,7 +149,7 @@ std::vector<MethodError> method_errors(const RunResults& run) {
       found.push_back(
           {fmt::format("{} of {} episodes of {} are method_error: {}", row.errors, row.episodes, display_name(method),
                        row.first->method_error.empty() ? "no reason is recorded" : row.first->method_error),
-           (fs::path("cells") / row.first->key / "log.txt").string()});
+           (fs::path("cells") / row.first->key / cell_file::log).string()});
   return found;
 }
 

@@ -1,32 +1,14 @@
-#include <lgabench/core/run_layout.hpp>
+#include <lgabench/record/layout.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
-
-#include <lgabench/core/hash.hpp>
 
 namespace lgabench {
 
 const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "learn", "evaluate"};
-
-const std::vector<std::string> cell_files{"cell.json",      "selection.json", "training.jsonl",
-                                          "episodes.jsonl", "timing.json",    log_file};
-
-std::vector<std::string> artefact_names(const PlainDirectory& files) {
-  constexpr std::size_t most = 100, longest = 100;
-  constexpr std::string_view allowed = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
-  std::vector<std::string> names;
-  for (const std::string& name : files.file_names())
-    if (name[0] != '.' && name.size() <= longest && name.find_first_not_of(allowed) == std::string::npos)
-      names.push_back(name);
-  std::sort(names.begin(), names.end());
-  names.resize(std::min(names.size(), most));
-  return names;
-}
 
 void expect_training_line(const JsonReader& line) {
   constexpr double most = 1e100;

@@ -1,0 +1,47 @@
+// What a run's directory holds, by name.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+
+namespace lgabench {
+
+/// What a cell does, one after the other; timing.json has the seconds of each, as "select_s".
+extern const std::vector<std::string> cell_phases;
+
+/// Names of a cell's files. What a method leaves is in a directory `files` beside them.
+namespace cell_file {
+inline constexpr const char *configuration = "cell.json", *selections = "selection.json", *training = "training.jsonl",
+                            *episodes = "episodes.jsonl", *timing = "timing.json",
+                            *log = "log.txt",             // may hold anything: status.json has no checksum of it
+                                *status = "status.json";  // written last
+}  // namespace cell_file
+/// All but the status.
+inline constexpr std::array cell_files{cell_file::configuration, cell_file::selections, cell_file::training,
+                                       cell_file::episodes,      cell_file::timing,     cell_file::log};
+/// Those that hold no clock: the cell's results, bit by bit, of the configuration.
+inline constexpr std::array result_files{cell_file::selections, cell_file::training, cell_file::episodes};
+
+/// What `run` and `report` write into a run's directory, and `run --fresh` deletes.
+inline constexpr std::array run_entries{"cells",       "answers",      "summary.json", "summary.csv",
+                                        "claims.json", "report.md",    "report.html",  "figures",
+                                        "tables",      "episodes.csv", "run.json"};
+
+/// Expects a line of training.jsonl: epoch, steps, loss, and curves, whose values lie within 1e100 of 0, so that means
+/// over cells are finite. The line's writer and its readers ask here. @throws InputError
+void expect_training_line(const JsonReader& line);
+
+/// 16 hexadecimal digits: the name of a cell's directory.
+bool is_cell_key(const std::string& text);
+
+/// run.json's "cells". @throws InputError where one of them is no key.
+std::vector<std::string> read_cell_keys(const JsonReader& run);
+
+/// Expects run directories to hold regular files and directories, and no symbolic link: neither beside run.json nor in
+/// cells/, answers/, figures/ and tables/. A cell's own entries are checked where the cell is read.
+/// @throws InputError naming the first other entry.
+void expect_plain_run(const fs::path& run);
+
+}  // namespace lgabench
