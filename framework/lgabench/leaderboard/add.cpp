@@ -106,7 +106,7 @@ std::string answers_hash(const fs::path& run, const Installed& installed, const 
 std::string version_of(const RunResults& run, const std::string& kind, const std::string& id) {
   for (const RunRecord::Plugin& plugin : run.record.plugins)
     if (plugin.kind == kind && plugin.id == id) return plugin.version;
-  throw InputError(fmt::format("{}: no {} {} in its /plugins", (run.directory / "run.json").string(), kind, id));
+  throw InputError(fmt::format("{}: no {} {} in its /plugins", record_file(run.directory).string(), kind, id));
 }
 
 // A run's command without the program's directory, which is nobody else's business.

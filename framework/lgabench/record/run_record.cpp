@@ -7,8 +7,6 @@
 namespace lgabench {
 namespace {
 
-fs::path file_of(const fs::path& run) { return run / "run.json"; }
-
 std::string text_at(const JsonReader& reader, const char* member) {
   return reader.has(member) ? reader.at(member).string() : "";
 }
@@ -47,13 +45,15 @@ Json RunRecord::programs() const {
   return all;
 }
 
+fs::path record_file(const fs::path& run) { return run / "run.json"; }
+
 bool is_run(const fs::path& directory) {
   std::error_code not_there;
-  return fs::exists(file_of(directory), not_there);
+  return fs::exists(record_file(directory), not_there);
 }
 
 RunRecord read_run_record(const fs::path& run) {
-  return read_run_record(read_json(file_of(run), Links::refused), file_of(run).string());
+  return read_run_record(read_json(record_file(run), Links::refused), record_file(run).string());
 }
 
 RunRecord read_run_record(const Json& json, const std::string& file) {
@@ -100,7 +100,7 @@ Json to_json(const RunRecord& record) {
 }
 
 void write_run_record(const fs::path& run, const RunRecord& record) {
-  write_file(file_of(run), to_json(record).dump(1) + '\n');
+  write_file(record_file(run), to_json(record).dump(1) + '\n');
 }
 
 bool same_cells(const std::string& version, const std::string& other) {

@@ -47,6 +47,8 @@ struct RunRecord {
   Json programs() const;
 };
 
+/// run.json of the run in that directory.
+std::filesystem::path record_file(const std::filesystem::path& run);
 /// Whether that directory holds a run.
 bool is_run(const std::filesystem::path& directory);
 

@@ -248,7 +248,7 @@ RunResults read_run(const fs::path& run) {
     throw InputError(
         fmt::format("{}: /cells: {} and {} measure the same (scenario, layout, engine, method, "
                     "demonstrations, training seed, participant), expected one of them",
-                    (run / "run.json").string(), twice->key, (twice + 1)->key));
+                    record_file(run).string(), twice->key, (twice + 1)->key));
   return results;
 }
 
