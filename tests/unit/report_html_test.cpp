@@ -240,7 +240,7 @@ TEST(Html, EveryFailureAndEveryCauseHasAColour) {
   const std::string style = read_file(data_directory() / "page" / "page.css");
   EXPECT_LE(failure_words().size(), static_cast<std::size_t>(report::failure_colours)) << "two would look alike";
   for (std::ptrdiff_t i = 0; i < report::failure_colours; ++i) EXPECT_SAYS(style, fmt::format(".f{} {{ --c: #", i));
-  for (const char* cause : report::attributions) EXPECT_SAYS(style, fmt::format(".{} {{ --c: #", cause));
+  for (const char* cause : attributions) EXPECT_SAYS(style, fmt::format(".{} {{ --c: #", cause));
 }
 
 }  // namespace

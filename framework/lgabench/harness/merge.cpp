@@ -14,6 +14,7 @@
 #include <set>
 #include <string_view>
 
+#include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
@@ -247,7 +248,7 @@ void copy_cell(const fs::path& from, const fs::path& to) {
     write_file(to / name, read_file(from / name, Links::refused), Sync::later);
   };
   const PlainDirectory files(from / "files");
-  for (const std::string& name : cell_files)
+  for (const char* name : cell_files)
     if (fs::exists(from / name)) copy(name);
   for (const std::string& name : files.kept_names())
     write_file(to / "files" / name, files.read_file(name), Sync::later);

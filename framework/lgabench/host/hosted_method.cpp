@@ -9,6 +9,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/asked.hpp>
 #include <lgabench/host/host_process.hpp>

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/leaderboard/setting.hpp>
+#include <lgabench/record/episode.hpp>
 
 namespace lgabench::leaderboard {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <string_view>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/record/cell.hpp>
@@ -79,8 +80,8 @@ CellState cell_state(const fs::path& cell, const std::string& key, const Json& b
       state.why = "failed: " + status.reason;
       return state;
     }
-    for (const std::string name : cell_files)
-      if (name != cell_file::log && status.files.count(name) == 0)
+    for (const char* name : cell_files)
+      if (std::string_view(name) != cell_file::log && status.files.count(name) == 0)
         throw InputError(fmt::format("{}: /files: expected a member \"{}\"", file_of(cell).string(), name));
     if (const fs::path changed = changed_file(cell, status); !changed.empty()) return not_its_own(changed);
     if (sha256(canonical(read_json(cell / cell_file::configuration))).substr(0, key.size()) != key)
