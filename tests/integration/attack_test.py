@@ -191,7 +191,7 @@ class Runs(OneRun):
             self.refused("report", "run", says=r"selection.json: /commands/0/selection: expected")
         with self.subTest("request"):
             self.change("run.json", lambda run: run.update(request=[1]))
-            self.refused(*run_with("--seeds", "1", "--out", "run"), says="holds another run")
+            self.refused(*run_with("--seeds", "1", "--out", "run"), says="run.json: /request: expected an object")
 
     def test_paths_that_are_no_utf8(self):
         for option in ("--out", "--cache"):

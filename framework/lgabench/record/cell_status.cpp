@@ -37,11 +37,12 @@ CellStatus read_cell_status(const fs::path& cell) {
     if (reader.has("method_error")) status.method_error = reader.at("method_error").string();
     return status;
   }
-  status.reason = reader.at("reason").string();
-  status.fault = reader.at("fault").string();
+  const auto text = [&](const char* member) { return reader.has(member) ? reader.at(member).string() : std::string(); };
+  status.reason = text("reason");
+  status.fault = text("fault");
   if (reader.has("signal") && !reader.at("signal").json().is_null())
     status.signal = static_cast<int>(reader.at("signal").integer(1, std::numeric_limits<int>::max()));
-  status.log_tail = reader.at("log_tail").strings();
+  if (reader.has("log_tail")) status.log_tail = reader.at("log_tail").strings();
   return status;
 }
 
