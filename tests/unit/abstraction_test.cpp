@@ -337,24 +337,47 @@ TEST(SelectionText, NamesWhatIsSelected) {
 
 TEST(Quality, IsPrecisionAndRecallOfEachGroup) {
   const Selection truth = selection_of({{"a", "b", "c", "d"}, {"x"}});
-  const Json q = quality(selection_of({{"a", "b", "z"}, {}}), truth);
-  EXPECT_DOUBLE_EQ(q["target"]["object_types"]["precision"].get<double>(), 2.0 / 3);
-  EXPECT_DOUBLE_EQ(q["target"]["object_types"]["recall"].get<double>(), 0.5);
-  EXPECT_EQ(q["target"]["object_types"]["size"], 3);
-  EXPECT_EQ(q["target"]["object_types"]["true_size"], 4);
-  EXPECT_TRUE(q["target"]["textures"]["precision"].is_null());  // of nothing selected
-  EXPECT_EQ(q["target"]["textures"]["recall"], 0);
-  EXPECT_FALSE(q.contains("avoid"));
-  EXPECT_TRUE(quality({}, truth).is_null());  // a method that selects nothing
+  const Quality q = quality(selection_of({{"a", "b", "z"}, {}}), truth);
+  const NameQuality &types = q.at("target").object_types, &textures = q.at("target").textures;
+  EXPECT_DOUBLE_EQ(*types.precision, 2.0 / 3);
+  EXPECT_DOUBLE_EQ(*types.recall, 0.5);
+  EXPECT_EQ(types.size, 3);
+  EXPECT_EQ(types.true_size, 4);
+  EXPECT_FALSE(textures.precision);  // of nothing selected
+  EXPECT_EQ(textures.recall, 0);
+  EXPECT_EQ(q.count("avoid"), 0u);
+  EXPECT_TRUE(quality({}, truth).empty());  // a method that selects nothing
 }
 
 TEST(Quality, OfAnObstacleNobodySelectedIsRecallZero) {
   Selection truth = selection_of({{"a"}, {"x"}});
   truth.second = SecondSet{{{"pan"}, {"x"}}, "avoid"};
-  const Json q = quality(selection_of({{"a"}, {"x"}}), truth);
-  EXPECT_EQ(q["target"]["object_types"]["precision"], 1);
-  EXPECT_EQ(q["avoid"]["object_types"]["recall"], 0);
-  EXPECT_TRUE(q["avoid"]["object_types"]["precision"].is_null());
+  const Quality q = quality(selection_of({{"a"}, {"x"}}), truth);
+  EXPECT_EQ(q.at("target").object_types.precision, 1);
+  EXPECT_EQ(q.at("avoid").object_types.recall, 0);
+  EXPECT_FALSE(q.at("avoid").object_types.precision);
+}
+
+TEST(Quality, IsReadAsItWasWritten) {
+  Selection truth = selection_of({{"a", "b"}, {"x"}});
+  truth.second = SecondSet{{{"pan"}, {"x"}}, "avoid"};
+  for (const Quality& written : {quality(selection_of({{"a"}, {}}), truth), Quality{}}) {
+    const Json json = to_json(written);
+    EXPECT_EQ(to_json(read_quality(JsonReader(json, "selection.json"))), json);
+  }
+  Json of_0_1 = to_json(quality(selection_of({{"a"}, {}}), selection_of({{"a"}, {"x"}})));
+  of_0_1["avoid"] = nullptr;
+  EXPECT_EQ(read_quality(JsonReader(of_0_1, "selection.json")).size(), 1u);
+}
+
+TEST(Quality, AMeanLeavesOutWhatIsUndefined) {
+  const Selection truth = selection_of({{"a", "b"}, {"x"}});
+  const Quality mean = mean_quality(
+      {quality(selection_of({{"a"}, {}}), truth), quality(selection_of({{"a", "b", "c", "d"}, {"x"}}), truth)});
+  EXPECT_EQ(mean.at("target").object_types.precision, .75);
+  EXPECT_EQ(mean.at("target").object_types.size, 2.5);
+  EXPECT_EQ(mean.at("target").textures.precision, 1);
+  EXPECT_TRUE(mean_quality({}).empty());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ CommandResult command(const Json& selected, const Json& meant) {
   CommandResult result;
   result.truth = {{"target", meant}};
   result.selection = {{"target", selected}, {"provenance", "recorded"}};
-  result.quality = {{"target", Json::object()}};
+  result.quality = {{"target", {}}};
   return result;
 }
 
@@ -41,7 +41,7 @@ TEST(PhiWords, AreRightMissedOrWrong) {
 TEST(PhiWords, AreNoneWithoutASelectionOrItsSpace) {
   const Json set{{"object_types", "ALL"}, {"textures", "ALL"}};
   CommandResult selects_nothing = command(set, set);
-  selects_nothing.quality = nullptr;
+  selects_nothing.quality.clear();
   EXPECT_TRUE(phi_words(cell("tabletop"), selects_nothing).empty());
   EXPECT_TRUE(phi_words(cell("of another version"), command(set, set)).empty());
   for (const Json& broken : {Json(1), Json{{"object_types", 3}}, Json{{"textures", {1, 2}}}})

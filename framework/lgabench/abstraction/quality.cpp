@@ -1,39 +1,116 @@
 #include <lgabench/abstraction/quality.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace lgabench {
 namespace {
 
-Json quality(const std::vector<std::string>& selected, const std::vector<std::string>& truth) {
+NameQuality quality_of(const std::vector<std::string>& selected, const std::vector<std::string>& truth) {
   const auto right = std::count_if(selected.begin(), selected.end(), [&](const std::string& name) {
     return std::find(truth.begin(), truth.end(), name) != truth.end();
   });
   const auto share = [right](std::size_t of) {
-    return of == 0 ? Json() : Json(static_cast<double>(right) / static_cast<double>(of));
+    return of == 0 ? std::nullopt : std::optional(static_cast<double>(right) / static_cast<double>(of));
   };
-  return {{"precision", share(selected.size())},
-          {"recall", share(truth.size())},
-          {"size", selected.size()},
-          {"true_size", truth.size()}};
+  return {share(selected.size()), share(truth.size()), static_cast<double>(selected.size()),
+          static_cast<double>(truth.size())};
 }
 
-Json quality(const FeatureSet& selected, const FeatureSet& truth) {
-  return {{"object_types", quality(selected.object_types, truth.object_types)},
-          {"textures", quality(selected.textures, truth.textures)}};
+SetQuality quality_of(const FeatureSet& selected, const FeatureSet& truth) {
+  return {quality_of(selected.object_types, truth.object_types), quality_of(selected.textures, truth.textures)};
+}
+
+// The mean of what is there; the number itself where all agree, without rounding.
+std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
+  std::optional<double> first;
+  bool agree = true;
+  double sum = 0;
+  int n = 0;
+  for (const auto& one : all) {
+    if (!one) continue;
+    if (n++ == 0) first = one;
+    agree = agree && one == first;
+    sum += *one;
+  }
+  return agree ? first : sum / n;
+}
+
+NameQuality mean_of(const std::vector<NameQuality>& all) {
+  const auto over = [&all](auto member) {
+    std::vector<std::optional<double>> numbers;
+    for (const NameQuality& one : all) numbers.emplace_back(one.*member);
+    return mean_of(numbers);
+  };
+  return {over(&NameQuality::precision), over(&NameQuality::recall), over(&NameQuality::size).value_or(0),
+          over(&NameQuality::true_size).value_or(0)};
+}
+
+Json to_json(const NameQuality& quality) {
+  const auto share = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  const auto number = [](double value) {
+    return value == std::floor(value) ? Json(static_cast<long long>(value)) : Json(value);
+  };
+  return {{"precision", share(quality.precision)},
+          {"recall", share(quality.recall)},
+          {"size", number(quality.size)},
+          {"true_size", number(quality.true_size)}};
+}
+
+NameQuality read_names(const JsonReader& reader) {
+  const auto share = [&reader](const char* member) {
+    const JsonReader value = reader.at(member);
+    return value.json().is_null() ? std::nullopt : std::optional(value.number());
+  };
+  return {share("precision"), share("recall"), reader.at("size").number(), reader.at("true_size").number()};
 }
 
 }  // namespace
 
-Json quality(const Selection& selection, const Selection& truth) {
-  if (selection.provenance == Provenance::none) return nullptr;
-  Json json{{"target", quality(selection.target, truth.target)}};
+Quality quality(const Selection& selection, const Selection& truth) {
+  if (selection.provenance == Provenance::none) return {};
+  Quality all{{"target", quality_of(selection.target, truth.target)}};
   if (selection.second || truth.second) {
     const FeatureSet nothing;
-    json[(truth.second ? truth : selection).second->role] =
-        quality(selection.second ? *selection.second : nothing, truth.second ? *truth.second : nothing);
+    all[(truth.second ? truth : selection).second->role] =
+        quality_of(selection.second ? *selection.second : nothing, truth.second ? *truth.second : nothing);
   }
+  return all;
+}
+
+Quality mean_quality(const std::vector<Quality>& all) {
+  Quality mean;
+  if (all.empty()) return mean;
+  for (const auto& [set, first] : all.front()) {
+    std::vector<NameQuality> types, textures;
+    for (const Quality& one : all)
+      if (const auto found = one.find(set); found != one.end()) {
+        types.push_back(found->second.object_types);
+        textures.push_back(found->second.textures);
+      }
+    mean[set] = {mean_of(types), mean_of(textures)};
+  }
+  return mean;
+}
+
+Json to_json(const SetQuality& quality) {
+  return {{"object_types", to_json(quality.object_types)}, {"textures", to_json(quality.textures)}};
+}
+
+Json to_json(const Quality& quality) {
+  Json json;
+  for (const auto& [set, one] : quality) json[set] = to_json(one);
   return json;
+}
+
+Quality read_quality(const JsonReader& reader) {
+  Quality all;
+  if (reader.json().is_null()) return all;
+  if (!reader.has("target") || reader.at("target").json().is_null()) reader.fail("the quality of the target");
+  for (const auto& item : reader.json().items())
+    if (const JsonReader set = reader.at(item.key()); !set.json().is_null())
+      all[item.key()] = {read_names(set.at("object_types")), read_names(set.at("textures"))};
+  return all;
 }
 
 }  // namespace lgabench

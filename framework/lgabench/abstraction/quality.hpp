@@ -1,12 +1,37 @@
 // How well a Selection matches the true distribution.
 #pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include <lgabench/core/selection.hpp>
 
 namespace lgabench {
 
-/// {"target": {"object_types": Q, "textures": Q}} and likewise the second set, under its role's id, with
-/// Q = {"precision", "recall", "size", "true_size"}; a precision or recall over an empty set is null.
-/// Null for a Selection of provenance none.
-Json quality(const Selection& selection, const Selection& truth);
+/// Of the selected names of one kind. A precision or recall over an empty set is absent.
+struct NameQuality {
+  std::optional<double> precision, recall;
+  double size = 0, true_size = 0;  // numbers of names; whole but in a mean
+};
+
+struct SetQuality {
+  NameQuality object_types, textures;
+};
+
+/// By set: "target", and the second set's role id where there is one. Empty for a Selection of provenance none.
+using Quality = std::map<std::string, SetQuality>;
+
+Quality quality(const Selection& selection, const Selection& truth);
+
+/// Of each set of the first one; a precision or recall is the mean over those that have it.
+Quality mean_quality(const std::vector<Quality>& all);
+
+/// {"target": {"object_types": {"precision", "recall", "size", "true_size"}, "textures": ...}, ...}; null if empty.
+Json to_json(const Quality& quality);
+Json to_json(const SetQuality& quality);
+
+/// What to_json() wrote; a null set, as runs of 0.1 have, is left out. @throws InputError for anything else.
+Quality read_quality(const JsonReader& reader);
 
 }  // namespace lgabench

@@ -149,7 +149,7 @@ std::string selection_text(const Scenario& scenario, const Selected& selected) {
     const auto& [utterance, selection] = selected.instructions[c];
     commands.push_back({{"utterance", utterance},
                         {"selection", to_json(selection)},
-                        {"quality", quality(selection, scenario.commands[c].truth)}});
+                        {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
   }
   return canonical({{"commands", commands}}) + '\n';
 }

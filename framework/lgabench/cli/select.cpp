@@ -140,17 +140,18 @@ std::string list(const std::vector<std::string>& names, const std::vector<std::s
 }
 
 // "precision .71, recall 1.00 of 4 true ones", where there is a truth.
-std::string describe(const Json& quality) {
-  const auto share = [](const Json& value) { return value.is_null() ? "-" : fixed(value.get<double>()); };
-  return fmt::format("{} selected, {} true: precision {}, recall {}", quality.at("size").get<int>(),
-                     quality.at("true_size").get<int>(), share(quality.at("precision")), share(quality.at("recall")));
+std::string describe(const NameQuality& quality) {
+  const auto share = [](const std::optional<double>& value) { return value ? fixed(*value) : "-"; };
+  return fmt::format("{} selected, {} true: precision {}, recall {}", quality.size, quality.true_size,
+                     share(quality.precision), share(quality.recall));
 }
 
-void print_set(const char* name, const FeatureSet& set, const FeatureSpace& space, const Json& quality) {
+void print_set(const char* name, const FeatureSet& set, const FeatureSpace& space, const Quality& quality) {
+  const auto judged = quality.find(name);
   to_stdout("{}\n  object types  {}\n", name, list(set.object_types, space.object_types));
-  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("object_types")));
+  if (judged != quality.end()) to_stdout("                {}\n", describe(judged->second.object_types));
   to_stdout("  textures      {}\n", list(set.textures, space.textures));
-  if (!quality.is_null()) to_stdout("                {}\n", describe(quality.at("textures")));
+  if (judged != quality.end()) to_stdout("                {}\n", describe(judged->second.textures));
 }
 
 void select(const Asked& asked, LanguageModel* model, const SelectArguments& arguments) {
@@ -159,14 +160,14 @@ void select(const Asked& asked, LanguageModel* model, const SelectArguments& arg
     model = &recorded.emplace(asked.space, asked.answers_of,
                               arguments.answers == "recorded" ? asked.recorded : arguments.answers);
   const Selection selection = select_features(asked.command, asked.space, *model);
-  const Json judged = asked.truth ? quality(selection, *asked.truth) : Json();
+  const Quality judged = asked.truth ? quality(selection, *asked.truth) : Quality{};
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
     to_stdout("{}\n", canonical({{"utterance", asked.command.utterance},
                                  {"selection", to_json(selection)},
                                  {"text", text},
                                  {"true_text", asked.truth ? Json(selection_text(*asked.truth, asked.space)) : Json()},
-                                 {"quality", judged}}));
+                                 {"quality", to_json(judged)}}));
     return;
   }
   to_stdout("command     {}\n", asked.command.utterance);
@@ -177,9 +178,8 @@ void select(const Asked& asked, LanguageModel* model, const SelectArguments& arg
     to_stdout(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
   to_stdout("\n");
   to_stdout("in words    {}\n", text);
-  print_set("target", selection.target, asked.space, asked.truth ? judged.at("target") : Json());
-  if (const auto& second = selection.second)
-    print_set(second->role.c_str(), *second, asked.space, asked.truth ? judged.at(second->role) : Json());
+  print_set("target", selection.target, asked.space, judged);
+  if (const auto& second = selection.second) print_set(second->role.c_str(), *second, asked.space, judged);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <ctime>
 
+#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/leaderboard/entry.hpp>
 #include <lgabench/record/layout.hpp>
 
@@ -129,7 +130,7 @@ void expect_phi(const JsonReader& phi, const Setting& setting) {
         command.at("utterance").string();
         command.at("selection").at("provenance").string();
         command.at("selection").at("target");
-        command.at("quality");
+        read_quality(command.at("quality"));
       }
   }
 }

@@ -18,8 +18,9 @@ Json selections_of(const CellResult& result) {
   Json all = Json::array();
   bool selects = false;
   for (const report::CommandResult& command : result.commands) {
-    selects = selects || !command.quality.is_null();
-    all.push_back({{"utterance", command.utterance}, {"selection", command.selection}, {"quality", command.quality}});
+    selects = selects || !command.quality.empty();
+    all.push_back(
+        {{"utterance", command.utterance}, {"selection", command.selection}, {"quality", to_json(command.quality)}});
   }
   return selects ? all : Json();
 }

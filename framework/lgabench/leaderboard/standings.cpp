@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
@@ -72,20 +73,16 @@ void add_rates(Standing& standing) {
   standing.score = over_scenarios(by_scenario);
 }
 
-// The mean of a number over the cells' Selections: each command, each set and each kind of feature counts alike.
-std::optional<double> quality(const Entry& entry, const char* member) {
+// The mean of a share over the cells' Selections: each command, each set and each kind of feature counts alike.
+std::optional<double> mean_share(const Entry& entry, std::optional<double> NameQuality::*share) {
   std::vector<double> all;
   for (const PlayedCell& cell : entry.cells) {
     const auto lists = entry.phi.find(cell.place.scenario);
     if (lists == entry.phi.end() || !cell.failed.empty()) continue;
-    for (const Json& command : lists->at(cell.phi)) {
-      if (!command.at("quality").is_object()) continue;
-      for (const auto& about : command.at("quality").items()) {
-        if (!about.value().is_object()) continue;
-        for (const auto& group : about.value().items())
-          if (const Json value = group.value().value(member, Json()); value.is_number()) all.push_back(value);
-      }
-    }
+    for (const Json& command : lists->at(cell.phi))
+      for (const auto& set : read_quality(JsonReader(command.at("quality"), "quality")))
+        for (const NameQuality& names : {set.second.object_types, set.second.textures})
+          if (const std::optional<double> value = names.*share) all.push_back(*value);
   }
   return all.empty() ? std::nullopt : std::optional(mean(all));
 }
@@ -99,8 +96,8 @@ void add_costs(Standing& standing) {
     standing.lm_tokens += cell.lm_tokens / cells;
     standing.learn_s += cell.learn_s / cells;
   }
-  standing.precision = quality(entry, "precision");
-  standing.recall = quality(entry, "recall");
+  standing.precision = mean_share(entry, &NameQuality::precision);
+  standing.recall = mean_share(entry, &NameQuality::recall);
 }
 
 // Each entry's rank among those that are ranked, given all entries' shared resamples.

@@ -70,7 +70,7 @@ Json page_data(const Material& material) {
           if (!names->empty()) chips.push_back({of.about + " " + of.feature, kind, listed(*names, of.known)});
       selected.push_back(phis.emplace(chips, phis.size()).first->second);
       // What follows the scene's hash in the names of pictures.masks.
-      masks.push_back(command.quality.is_null() ? Json() : Json(mask_key("", cell, command.selection)));
+      masks.push_back(command.quality.empty() ? Json() : Json(mask_key("", cell, command.selection)));
       inputs.push_back(input_key("", cell, command));  // likewise, of pictures.inputs
     }
     Json played = Json::array();

@@ -37,13 +37,14 @@ bool holds(const Json& set, const char* group, const std::string& name) {
 }  // namespace
 
 std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& command) {
-  if (command.quality.is_null()) return {};
+  if (command.quality.empty()) return {};
   const std::optional<FeatureSpace>& found = space_of(cell.space);
   if (!found) return {};
   const FeatureSpace& space = *found;
   std::vector<PhiWords> all;
-  for (const auto& [about, quality] : command.quality.items()) {
-    if (quality.is_null() || !command.selection.contains(about) || !command.truth.contains(about)) continue;
+  for (const auto& set : command.quality) {
+    const std::string& about = set.first;
+    if (!command.selection.contains(about) || !command.truth.contains(about)) continue;
     for (const auto& [group, feature, known] :
          {std::tuple{"object_types", "object types", &space.object_types}, {"textures", "textures", &space.textures}}) {
       PhiWords words{about, feature, {}, {}, {}, known->size()};

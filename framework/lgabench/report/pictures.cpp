@@ -77,7 +77,7 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
     if (cell.failed || cell.is_reference()) continue;
     std::vector<std::string> masks, inputs;  // of each command, what follows the scene's hash in their names
     for (const CommandResult& command : cell.commands) {
-      masks.push_back(command.quality.is_null() ? "" : mask_key("", cell, command.selection));
+      masks.push_back(command.quality.empty() ? "" : mask_key("", cell, command.selection));
       inputs.push_back(input_key("", cell, command));
     }
     for (const std::string& arm : cell.arms)

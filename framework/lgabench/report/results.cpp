@@ -69,17 +69,6 @@ void expect_selection(const JsonReader& selection) {
     if (selection.at("cost").at(number).number() < 0) selection.at("cost").at(number).fail("0 or more");
 }
 
-void expect_quality(const JsonReader& quality) {
-  if (!quality.has("target") || quality.at("target").json().is_null()) quality.fail("the quality of the target");
-  for (const auto& item : quality.json().items()) {
-    const std::string& about = item.key();
-    if (item.value().is_null()) continue;  // a second set, in runs of 0.1
-    for (const char* group : {"object_types", "textures"})
-      for (const char* number : {"precision", "recall", "size", "true_size"})
-        if (const JsonReader value = quality.at(about).at(group).at(number); !value.json().is_null()) value.number();
-  }
-}
-
 // What was selected for each of the cell's commands.
 void read_selections(const fs::path& file, CellResult& cell) {
   const Json json = read_json(file, Links::refused);
@@ -93,8 +82,7 @@ void read_selections(const fs::path& file, CellResult& cell) {
       commands[i].at("utterance").fail(fmt::format("the scenario's command \"{}\"", command.utterance));
     expect_selection(commands[i].at("selection"));
     command.selection = commands[i].at("selection").json();
-    command.quality = commands[i].at("quality").json();
-    if (!command.quality.is_null()) expect_quality(commands[i].at("quality"));
+    command.quality = read_quality(commands[i].at("quality"));
   }
 }
 
@@ -105,8 +93,11 @@ void read_configuration(const fs::path& file, CellResult& cell) {
   cell.scenario = shown(scenario.at("id"));
   if (scenario.has("feature_space")) cell.space = shown(scenario.at("feature_space"));
   for (const JsonReader& command : scenario.at("commands").elements()) {
-    cell.commands.push_back({shown(command.at("utterance")), !command.has("seen") || command.at("seen").boolean(),
-                             command.has("truth") ? command.at("truth").json() : Json::object(), Json(), Json()});
+    cell.commands.push_back({shown(command.at("utterance")),
+                             !command.has("seen") || command.at("seen").boolean(),
+                             command.has("truth") ? command.at("truth").json() : Json::object(),
+                             Json(),
+                             {}});
     if (!cell.commands.back().truth.is_object()) command.at("truth").fail("an object");
   }
   cell.demonstrated_commands = static_cast<int>(

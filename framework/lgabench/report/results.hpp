@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/record/episode.hpp>
@@ -19,9 +20,10 @@ const std::vector<std::string>& phases();
 /// A command of the cell's scenario, and what the method selected for it.
 struct CommandResult {
   std::string utterance;
-  bool seen = true;         // trained on; the others are tested only
-  Json truth;               // as the scenario says: an object
-  Json selection, quality;  // as in selection.json; quality is null for a method that selects nothing
+  bool seen = true;  // trained on; the others are tested only
+  Json truth;        // as the scenario says: an object
+  Json selection;    // as in selection.json
+  Quality quality;   // of the Selection; empty for a method that selects nothing
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.

@@ -138,8 +138,8 @@ Section phi(const Material& material) {
     const Json& one = row.phi.at(of.command);
     const std::string place = fmt::format("/{}/", of.command), utterance = one.at("utterance"),
                       source = one.at("source"), asked_as = one.at("asked_as");
-    for (const auto& [about, groups] : one.at("quality").items()) {
-      if (groups.is_null()) continue;
+    for (const auto& set : one.at("quality").items()) {
+      const std::string& about = set.key();
       std::vector<Cell> cells{command_text(utterance, one.at("seen"), tell), named(material, row.method), about,
                               provenance_words(one.at("provenance")), source};
       for (const char* group : {"object_types", "textures"}) {

@@ -100,20 +100,14 @@ std::string source_of(const std::vector<Json>& selections) {
 
 // Provenance, cost and quality of a row's Selections for one command; null if none of its cells selects.
 Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
-  std::vector<Json> selections, qualities;
+  std::vector<Json> selections;
+  std::vector<Quality> qualities;
   for (const CellResult* cell : cells)
-    if (!cell->failed && !cell->commands[command].quality.is_null()) {
+    if (!cell->failed && !cell->commands[command].quality.empty()) {
       selections.push_back(cell->commands[command].selection);
       qualities.push_back(cell->commands[command].quality);
     }
   if (selections.empty()) return nullptr;
-  Json quality;
-  for (const auto& [about, groups] : qualities.front().items()) {
-    quality[about] = nullptr;
-    for (const auto& [group, numbers] : groups.items())
-      for (const auto& item : numbers.items())
-        quality[about][group][item.key()] = mean_at(qualities, Json::json_pointer("") / about / group / item.key());
-  }
   return {{"utterance", cells.front()->commands[command].utterance},
           {"seen", cells.front()->commands[command].seen},
           {"provenance", words_at(selections, "/provenance"_json_pointer)},
@@ -121,7 +115,7 @@ Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
           {"asked_as", words_at(selections, "/asked_as"_json_pointer)},
           {"lm_queries", mean_at(selections, "/cost/lm_queries"_json_pointer)},
           {"human_seconds", mean_at(selections, "/cost/human_seconds"_json_pointer)},
-          {"quality", quality}};
+          {"quality", to_json(mean_quality(qualities))}};
 }
 
 // The same for every command that the arm gives; null if no method selects.

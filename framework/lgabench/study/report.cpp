@@ -186,7 +186,7 @@ Section phi_section(const StudyResults& results) {
   section.add(everywhere, by_condition("phi", "φ̂ against the released truth, mean over trials",
                                        {"types: precision", "types: recall", "textures: precision", "textures: recall"},
                                        [&](Condition condition) {
-                                         const PhiQuality& q = results.phi[index(condition)];
+                                         const SetQuality& q = results.phi[index(condition)];
                                          return std::vector{share(q.object_types.precision),
                                                             share(q.object_types.recall), share(q.textures.precision),
                                                             share(q.textures.recall)};
@@ -260,8 +260,8 @@ Json spread_json(const std::optional<Spread>& s) {
   if (!s) return nullptr;
   return {{"mean", s->mean}, {"sd", optional_json(s->sd)}, {"se", optional_json(s->se)}};
 }
-Json quality_json(const PhiQuality& q) {
-  const auto of = [](const PhiQuality::Of& one) {
+Json quality_json(const SetQuality& q) {
+  const auto of = [](const NameQuality& one) {
     return Json{{"precision", optional_json(one.precision)}, {"recall", optional_json(one.recall)}};
   };
   return {{"object_types", of(q.object_types)}, {"textures", of(q.textures)}};
@@ -342,7 +342,7 @@ std::string trials_csv(const StudyResults& results) {
                         trial.why.empty() ? states[trial.state] : fmt::format("interrupted: {}", trial.why),
                         counts(*results.record->protocol, trial) ? "1" : "0", number(trial.raw_s),
                         number(trial.active_s), number(trial.server_s), std::to_string(trial.edits),
-                        done && trial.item->truth ? canonical(quality(selection, *trial.item->truth)) : ""});
+                        done && trial.item->truth ? canonical(to_json(quality(selection, *trial.item->truth))) : ""});
     }
   return text;
 }

@@ -3,43 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lgabench/abstraction/quality.hpp>
-
 namespace lgabench::study {
 namespace {
 
-class MeanOf {
- public:
-  void add(const Json& value) {
-    if (!value.is_number()) return;
-    sum_ += value.get<double>();
-    ++n_;
-  }
-  std::optional<double> value() const { return n_ == 0 ? std::nullopt : std::optional(sum_ / n_); }
-
- private:
-  double sum_ = 0;
-  int n_ = 0;
-};
-
-PhiQuality quality_of(const StudyResults& results, Condition condition) {
-  PhiQuality all;
-  const std::pair<const char*, PhiQuality::Of*> features[] = {{"object_types", &all.object_types},
-                                                              {"textures", &all.textures}};
-  for (const auto& [feature, of] : features) {
-    MeanOf precision, recall;
-    for (const PersonResult& person : results.people)
-      for (const Trial* trial : person.counted[index(condition)]) {
-        if (!person.excluded.empty()) continue;
-        Selection selection = trial->selection;
-        selection.provenance = Provenance::human;
-        const Json of_trial = quality(selection, *trial->item->truth).at("target").at(feature);
-        precision.add(of_trial.at("precision"));
-        recall.add(of_trial.at("recall"));
-      }
-    *of = {precision.value(), recall.value()};
-  }
-  return all;
+SetQuality quality_of(const StudyResults& results, Condition condition) {
+  std::vector<Quality> all;
+  for (const PersonResult& person : results.people)
+    for (const Trial* trial : person.counted[index(condition)]) {
+      if (!person.excluded.empty()) continue;
+      Selection selection = trial->selection;
+      selection.provenance = Provenance::human;
+      all.push_back(quality(selection, *trial->item->truth));
+    }
+  return mean_quality(all)["target"];
 }
 
 std::vector<CommandResult> commands_of(const StudyResults& results) {

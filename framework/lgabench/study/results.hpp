@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/quality.hpp>
 #include <lgabench/report/statistics.hpp>
 #include <lgabench/study/study.hpp>
 
@@ -18,14 +19,6 @@ struct PersonResult {
 
   /// Mean seconds of the trials that count, raw or active. @pre there is one
   double mean_s(Condition condition, double Trial::*seconds = &Trial::raw_s) const;
-};
-
-/// Precision and recall of φ̂ in a condition, mean over trials; none where nobody chose anything.
-struct PhiQuality {
-  struct Of {
-    std::optional<double> precision, recall;
-  };
-  Of object_types, textures;
 };
 
 /// A command in both conditions, in their order, with the test between them.
@@ -45,7 +38,7 @@ struct StudyResults {
   /// first over the second): each person's difference of periods on three columns. Empty where it has no solution.
   std::vector<report::Change> log_model;
   std::vector<CommandResult> commands;
-  std::array<PhiQuality, 2> phi;
+  std::array<SetQuality, 2> phi;  // of the target by condition, mean over trials; nothing where nobody chose anything
   std::array<std::optional<report::Spread>, 2> by_first;  // human minus lga_hill, of who began with each condition
   int interrupted = 0, too_long = 0, practice = 0, disagree = 0;  // trials; disagree: clicks that do not add up to φ̂
   int clocks_apart =
