@@ -1,6 +1,7 @@
 // The body of a language model's reply.
 #include <cstdlib>
 
+#include <lgabench/abstraction/final_answer.hpp>
 #include <lgabench/abstraction/openai_client.hpp>
 
 #include "fuzz.hpp"

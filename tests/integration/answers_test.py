@@ -33,11 +33,22 @@ class Server(http.server.ThreadingHTTPServer):
         self.bodies = []
         self.odd = {}  # candidate -> what is not as usual in its reply: "seconds", or members of the choice
         self.refuses_temperature = False
+        self.under_way, self.most_at_once, self.counting = 0, 0, threading.Lock()
         threading.Thread(target=self.serve_forever, daemon=True).start()
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
     def do_POST(self):
+        with self.server.counting:
+            self.server.under_way += 1
+            self.server.most_at_once = max(self.server.most_at_once, self.server.under_way)
+        try:
+            self.answer()
+        finally:
+            with self.server.counting:
+                self.server.under_way -= 1
+
+    def answer(self):
         request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         question = request["messages"][1]["content"]
         self.server.asked.append(question)
@@ -87,7 +98,10 @@ class Cassettes(Asking):
 
     def test_a_suite_is_asked_once_and_played_without_a_server(self):
         # The first command fits; the second would take more than is left, and goes on where the first ended.
-        self.assertIn("takes 112 queries, expected no more than 88", self.ask("--max-queries", "200", expect=2).stderr)
+        said = self.ask("--max-queries", "200", expect=2).stderr
+        self.assertIn("takes 112 queries, expected no more than 88", said)
+        self.assertIn("224 questions, 0 answered already, 4 at once\n", said)
+        self.assertNotIn("asked 100 of", said, "a line a question")
         self.assertEqual(len(self.server.asked), 112)
         run = ["run", self.suite, *RUN, "--out", "out", "--answers", "cassette:tape.jsonl"]
         refused = self.call(*run, expect=2)
@@ -97,6 +111,7 @@ class Cassettes(Asking):
         self.assertFalse((self.dir / "out").exists())
         self.call(*shlex.split(fill[1]))
         self.assertEqual(len(self.server.asked), 224)
+        self.assertIn("224 questions, 224 answered already", self.ask().stderr)
         shown = self.ask("--json").stdout.splitlines()
         self.assertEqual(len(self.server.asked), 224, "what is on the cassette is not asked again")
         self.assertEqual([json.loads(line)["selection"]["provenance"] for line in shown], ["cassette"] * 2)
@@ -226,6 +241,12 @@ class Live(Asking):
 
     def play(self, *more, **options):
         return self.call(*self.run_it, *self.ANSWERS, "--out", "out", *more, **options)
+
+    def test_as_many_questions_at_once_as_were_allowed(self):
+        self.server.seconds = .05
+        self.play("--concurrency", "9")
+        self.assertGreater(self.server.most_at_once, 4, "the default")
+        self.assertLessEqual(self.server.most_at_once, 9)
 
     def test_cells_ask_and_pay_once(self):
         table = self.play().stdout

@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include <lgabench/abstraction/final_answer.hpp>
 #include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 
@@ -262,22 +263,27 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
 
 TEST_F(Chat, AReplyWithoutAnAnswerIsAskedForAgain) {
   std::atomic<int> about_star{0};
-  const auto evasive_until = [&about_star](int tries) {
-    return [&about_star, tries](int, const httplib::Request& request, httplib::Response& response) {
+  const auto evasive_until = [&about_star](int tries, bool other_words) {
+    return [&about_star, tries, other_words](int, const httplib::Request& request, httplib::Response& response) {
       if (request.body.find("\\\"star\\\"?") == std::string::npos || ++about_star > tries) return false;
-      response.set_content(completion("I would not say so."), "application/json");
+      const std::string time = other_words ? std::to_string(about_star) : "";
+      response.set_content(completion("I would not say so." + time), "application/json");
       return true;
     };
   };
   {
-    Server never(evasive_until(1000));
+    Server never(evasive_until(1000, true));
     EXPECT_SAYS(failure(never),
                 "1 of 5 questions have no answer from m: \"star\"; the first: \"Bring me the red heart.\", asked about "
                 "\"star\": language model: expected a last line");
     EXPECT_EQ(never.requests, 4 + 3) << "the others are asked and kept";
   }
+  fs::remove(tape());
+  Server stubborn(evasive_until(1000, false));
+  EXPECT_SAYS(failure(stubborn), "(asked 2 times)");
+  EXPECT_EQ(stubborn.requests, 4 + 2) << "what says the same twice says it a third time";
   about_star = 0;
-  Server late(evasive_until(2));
+  Server late(evasive_until(2, true));
   const OpenAiOptions options = late.options();
   EXPECT_EQ(ask(&options).target.object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(late.requests, 3) << "about the star alone";
@@ -308,6 +314,57 @@ TEST_F(Chat, AReplyWithoutAnAnswerStopsNoOtherQuestion) {
       EXPECT_SAYS(e.questions[1], "asked about \"blue\": language model's reply: ");
     }
     EXPECT_EQ(server.requests, requests) << "each once, and what was answered not again";
+  }
+}
+
+TEST_F(Chat, AModelThatAnswersNothingIsNotAskedOn) {
+  FeatureSpace large = space;
+  for (int i = 0; i < 95; ++i) large.textures.push_back("texture " + std::to_string(i));
+  Server server([](int, const auto&, httplib::Response& response) {
+    response.set_content(completion("Yes."), "application/json");
+    return true;
+  });
+  Cassette cassette(tape());
+  OpenAiClient client(server.options());
+  ChatLanguageModel model(cassette, &client, {"m"});
+  EXPECT_EQ(model.open_questions(command, large, feature_questions(command, large)), 100);
+  EXPECT_SAYS(
+      message_of<MethodError>([&] { select_features(command, large, model); }),
+      "m: none of its first 20 replies has an answer, nothing more is asked; the last: language model: expected");
+  EXPECT_LE(server.requests, 2 * (20 + 4)) << "each twice, and those that were under way";
+}
+
+TEST_F(Chat, KeepsItsConnections) {
+  std::mutex mutex;
+  std::set<int> ports;
+  Server server([&](int, const httplib::Request& request, httplib::Response&) {
+    const std::lock_guard lock(mutex);
+    ports.insert(request.remote_port);
+    return false;
+  });
+  const OpenAiOptions options = server.options();
+  expect_red_hearts(ask(&options, {"m", 1, -1, {}}));
+  EXPECT_EQ(ports.size(), 1u);
+}
+
+TEST_F(Chat, WaitsFiveMinutesWhereTheServerSaysSo) {
+  Server server([](int, const auto&, httplib::Response& response) {
+    response.status = 429;
+    response.set_header("Retry-After", "300");
+    return true;
+  });
+  OpenAiOptions options = server.options();
+  options.waiting = [](const std::string& why) { throw MethodError(why); };  // rather than wait here
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "the next in 300 s");
+}
+
+TEST_F(Chat, AnErrorInsideAReplyIsToldInTheServersWords) {
+  for (const char* body : {R"({"error": {"message": "model is loading"}})", R"({"error": "model is loading"})"}) {
+    Server server([body](int, const auto&, httplib::Response& response) {
+      response.set_content(body, "application/json");
+      return true;
+    });
+    EXPECT_SAYS(failure(server), "the server says: model is loading");
   }
 }
 
@@ -589,14 +646,71 @@ TEST_F(Chat, ACertificateThatNobodyTrustsEndsItBeforeTheKeyIsSent) {
   EXPECT_EQ(read_file(tape()), "");
 }
 
-TEST(FinalAnswer, IsOnTheLastLine) {
-  for (const char* yes : {"Final answer: yes", "reasons\nfinal answer: YES.\n\n", "**Final answer:** yes",
-                          "Final Answer: **Yes**  ", "a\r\nFinal answer: yes\r\n", "Final answer: yes\n```"})
-    EXPECT_TRUE(final_answer(yes)) << yes;
-  EXPECT_FALSE(final_answer("Final answer: yes\nFinal answer: no"));
-  for (const char* none :
-       {"", "yes", "Final answer:", "Final answer: yes or no", "Final answer: yes, no", "Final answer: maybe",
-        "Final answer: y", "Final answer: yes (if red)", "Final answer: not yes", "Final answer: 1 yes"})
+TEST(FinalAnswer, IsReadFromTheEndingsThatModelsWrite) {
+  for (const char* yes : {"Final answer: yes",
+                          "reasons\nfinal answer: YES.\n\n",
+                          "**Final answer:** yes",
+                          "Final Answer: **Yes**  ",
+                          "a\r\nFinal answer: yes\r\n",
+                          "Final answer: yes\n```",
+                          "Final answer: yes<|eot_id|>",
+                          "Final answer: yes\n</s>",
+                          "Final answer: yes<|im_end|>\n",
+                          "Final answer: yes, because hearts are red.",
+                          "Final answer:\u00a0yes",
+                          "Final answer\uff1a yes",
+                          "Final answer: \u2705 yes",
+                          "Final answer: yes \U0001f600",
+                          "\\boxed{Final answer: yes}",
+                          "Final answer: $\\boxed{\\text{yes}}$",
+                          "\\[ \\text{Final answer: yes} \\]",
+                          "Final answer: yes\nLet me know if you want another command judged!",
+                          "Final answer:\nyes",
+                          "The final answer is yes.",
+                          "## Final answer\n\nYes",
+                          "> Final answer: yes",
+                          "- Final answer: `yes`",
+                          "1. Final answer: yes",
+                          "<answer>Final answer: yes</answer>",
+                          "FINAL ANSWER = YES",
+                          "Final answer - yes",
+                          "Final answer: \"yes\"",
+                          "<think>Final answer: no</think>\nFinal answer: yes",
+                          "I end with \"Final answer: yes\" or \"Final answer: no\".\nFinal answer: yes",
+                          "It is no pan.\nFinal answer: yes",
+                          "Final answer: yes\nFinal answer: yes",
+                          "\ufeffFinal answer: yes",
+                          "Final answer: <b>yes</b>",
+                          "| Final answer: yes |"})
+    try {
+      EXPECT_TRUE(final_answer(yes)) << yes;
+    } catch (const MethodError&) {
+      ADD_FAILURE() << yes;
+    }
+  EXPECT_FALSE(final_answer("It could be red, yes.\nFinal answer: no, because nothing else is."));
+}
+
+TEST(FinalAnswer, IsNoneWhereAReplySaysNothingOrBoth) {
+  for (const char* none : {"",
+                           "yes",
+                           "Final answer:",
+                           "Final answer: yes or no",
+                           "Final answer: yes, no",
+                           "Final answer: maybe",
+                           "Final answer: y",
+                           "Final answer: yes (if red)",
+                           "Final answer: not yes",
+                           "Final answer: 1 yes",
+                           "Final answer: yesterday",
+                           "Final answer: yes\nFinal answer: no",
+                           "Final answer: yes\nWait: no.",
+                           "Final answer: yes\nFinal answer: unclear",
+                           "Final answer: no, but yes",
+                           "<think>Final answer: yes</think>",
+                           "Final answer: yes unless it is red",
+                           "Answer: no",
+                           "Final: no",
+                           "Antwort: nein"})
     EXPECT_THROW(final_answer(none), MethodError) << none;
 }
 

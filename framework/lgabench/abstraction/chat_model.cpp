@@ -12,16 +12,21 @@
 #include <mutex>
 #include <thread>
 
+#include <lgabench/abstraction/final_answer.hpp>
+
 namespace lgabench {
 namespace {
 
-constexpr int most_tries = 3;  // of a question whose reply has no final answer
+constexpr int most_tries = 3;      // of a question whose reply has no final answer
+constexpr int hopeless_from = 20;  // questions without any answer
 
-// What can be read. @throws NoAnswer where the last of the tries cannot be; tokens and seconds are those of all tries.
+// What can be read. @throws NoAnswer where the last of the tries cannot be, or says again what the one before said;
+// tokens and seconds are those of all tries.
 ChatReply complete(ChatClient& client, const Json& request) {
   ChatReply all;
   for (int attempt = 1;; ++attempt) {
     const ChatReply reply = client.complete(request);
+    const bool again = attempt > 1 && reply.text == all.text;
     all.text = reply.text;
     all.tokens += reply.tokens;
     all.seconds += reply.seconds;
@@ -29,7 +34,7 @@ ChatReply complete(ChatClient& client, const Json& request) {
       final_answer(reply.text);
       return all;
     } catch (const MethodError& e) {
-      if (attempt == most_tries) throw NoAnswer(fmt::format("{} (asked {} times)", e.what(), most_tries));
+      if (again || attempt == most_tries) throw NoAnswer(fmt::format("{} (asked {} times)", e.what(), attempt));
     }
   }
 }
@@ -42,7 +47,8 @@ ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, Cha
       options_(std::move(options)),
       asked_model_(read_asked_model(options_.model)) {}
 
-// Several at once. A server that fails stops the rest, which has not begun; a question without an answer does not.
+// Several at once. A server that fails stops the rest, which has not begun; a question without an answer does not,
+// unless none has had one.
 void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::string& utterance) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
@@ -64,8 +70,12 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
       } catch (...) {
         thrown = std::current_exception();
       }
-      if (thrown) next = requests.size();
       const std::lock_guard lock(mutex);
+      if (!no_answer.empty() && ++without_answer_ >= hopeless_from && cassette_.models().empty())
+        thrown = std::make_exception_ptr(MethodError(
+            fmt::format("{}: none of its first {} replies has an answer, nothing more is asked; the last: {}",
+                        asked_model_.name, without_answer_, no_answer)));
+      if (thrown) next = requests.size();
       if (thrown && !failure) failure = thrown;
       if (!no_answer.empty()) unanswered[i] = no_answer;
       if (!thrown) ++finished;
@@ -103,8 +113,9 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
                    lines);
 }
 
-std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
-                                            const std::vector<Question>& questions) {
+std::vector<ChatLanguageModel::Request> ChatLanguageModel::requests_of(const Command& command,
+                                                                       const FeatureSpace& space,
+                                                                       const std::vector<Question>& questions) const {
   std::vector<Request> requests;
   for (const Question& question : questions) {
     const Prompt prompt = template_.fill(command, space, question);
@@ -115,6 +126,19 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
                         fmt::format("\"{}\"{}", question.candidate, of_target ? "" : " (" + command.second->id + ")"),
                         request});
   }
+  return requests;
+}
+
+int ChatLanguageModel::open_questions(const Command& command, const FeatureSpace& space,
+                                      const std::vector<Question>& questions) const {
+  const std::vector<Request> requests = requests_of(command, space, questions);
+  return static_cast<int>(std::count_if(requests.begin(), requests.end(),
+                                        [this](const Request& request) { return !cassette_.find(request.key); }));
+}
+
+std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
+                                            const std::vector<Question>& questions) {
+  const std::vector<Request> requests = requests_of(command, space, questions);
   const auto without_reply = [&] {
     std::vector<Request> some;
     std::copy_if(requests.begin(), requests.end(), std::back_inserter(some),

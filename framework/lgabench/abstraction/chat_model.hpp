@@ -51,13 +51,16 @@ class ChatLanguageModel : public LanguageModel {
   /// Both are borrowed and must outlive the model; `client` may be nullptr: then the cassette must hold every reply.
   ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options);
 
-  /// A reply without a final answer is asked for three times, one that is cut off, refused or empty once. @throws
-  /// MethodError where the server fails, Unanswered for questions without an answer: they are never a no. The replies
+  /// A reply without a final answer is asked for up to three times, until it repeats itself; one that is cut off,
+  /// refused or empty once. @throws MethodError where the server fails and where none of the first 20 questions of an
+  /// empty cassette has an answer, Unanswered for questions without an answer: they are never a no. The replies
   /// that came are in the cassette.
   /// InputError without a client where the cassette lacks a reply (names the command line that asks), or where
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
+  /// How many of these a server would be asked: those without a reply in the cassette.
+  int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
   /// As in ChatOptions: what is not the usual request belongs to the name.
   std::string model() const override { return options_.model; }
   /// live once this object had a reply from the server, else cassette.
@@ -69,6 +72,8 @@ class ChatLanguageModel : public LanguageModel {
     std::string key, candidate;
     Json json;
   };
+  std::vector<Request> requests_of(const Command& command, const FeatureSpace& space,
+                                   const std::vector<Question>& questions) const;
   void ask(const std::vector<Request>& requests, const std::string& utterance);
 
   Cassette& cassette_;
@@ -76,7 +81,7 @@ class ChatLanguageModel : public LanguageModel {
   ChatOptions options_;
   AskedModel asked_model_;
   PromptTemplate template_;
-  int asked_ = 0;
+  int asked_ = 0, without_answer_ = 0;
   SelectionCost cost_;
 };
 

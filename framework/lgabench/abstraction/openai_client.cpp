@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <thread>
+#include <vector>
 
 #include <lgabench/core/error.hpp>
 
@@ -29,30 +31,27 @@ std::size_t collect(char* bytes, std::size_t size, std::size_t count, void* into
   return size * count;
 }
 
-struct Easy {
-  CURL* handle = curl_easy_init();
-  curl_slist* headers = nullptr;
-  Easy() = default;
-  Easy(const Easy&) = delete;
-  Easy& operator=(const Easy&) = delete;
-  ~Easy() {
-    curl_slist_free_all(headers);
-    curl_easy_cleanup(handle);
-  }
-  void add_header(const std::string& header) { headers = curl_slist_append(headers, header.c_str()); }
+struct Headers {
+  curl_slist* list = nullptr;
+  Headers() = default;
+  Headers(const Headers&) = delete;
+  Headers& operator=(const Headers&) = delete;
+  ~Headers() { curl_slist_free_all(list); }
+  void add(const std::string& header) { list = curl_slist_append(list, header.c_str()); }
 };
 
-Response post(const OpenAiOptions& options, const std::string& body) {
-  Easy easy;
+Response post(CURL* handle, const OpenAiOptions& options, const std::string& body) {
+  Headers headers;
   Response response;
   char problem[CURL_ERROR_SIZE] = "";
-  easy.add_header("Content-Type: application/json");
-  if (!options.api_key.empty()) easy.add_header("Authorization: Bearer " + options.api_key);
-  const auto set = [&easy](CURLoption option, auto value) { curl_easy_setopt(easy.handle, option, value); };
+  headers.add("Content-Type: application/json");
+  if (!options.api_key.empty()) headers.add("Authorization: Bearer " + options.api_key);
+  curl_easy_reset(handle);  // which keeps its connections
+  const auto set = [handle](CURLoption option, auto value) { curl_easy_setopt(handle, option, value); };
   const std::string url = options.base_url + "/chat/completions";
   set(CURLOPT_URL, url.c_str());
   set(CURLOPT_PROTOCOLS_STR, "http,https");
-  set(CURLOPT_HTTPHEADER, easy.headers);
+  set(CURLOPT_HTTPHEADER, headers.list);
   set(CURLOPT_POSTFIELDS, body.c_str());
   set(CURLOPT_POSTFIELDSIZE_LARGE, static_cast<curl_off_t>(body.size()));
   set(CURLOPT_WRITEFUNCTION, collect);
@@ -62,21 +61,21 @@ Response post(const OpenAiOptions& options, const std::string& body) {
   set(CURLOPT_TIMEOUT, options.timeout_s);
   set(CURLOPT_CONNECTTIMEOUT, std::min(options.timeout_s, 60L));
   set(CURLOPT_TCP_KEEPALIVE, 1L);  // nothing else goes over the line while the server computes
-  const CURLcode code = curl_easy_perform(easy.handle);
+  const CURLcode code = curl_easy_perform(handle);
   if (code != CURLE_OK) {
     const bool untrusted = code == CURLE_PEER_FAILED_VERIFICATION, too_long = code == CURLE_WRITE_ERROR;
     response.final = untrusted || too_long;
     long sent = 0;
-    curl_easy_getinfo(easy.handle, CURLINFO_REQUEST_SIZE, &sent);
+    curl_easy_getinfo(handle, CURLINFO_REQUEST_SIZE, &sent);
     response.late = code == CURLE_OPERATION_TIMEDOUT && sent > 0;
     const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
                                 : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
     return response;
   }
-  curl_easy_getinfo(easy.handle, CURLINFO_RESPONSE_CODE, &response.status);
+  curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &response.status);
   curl_off_t seconds = 0;
-  if (curl_easy_getinfo(easy.handle, CURLINFO_RETRY_AFTER, &seconds) == CURLE_OK)
+  if (curl_easy_getinfo(handle, CURLINFO_RETRY_AFTER, &seconds) == CURLE_OK)
     response.retry_after_s = static_cast<double>(seconds);
   return response;
 }
@@ -94,15 +93,20 @@ std::string without_key(std::string text, const std::string& key) {
   return text;
 }
 
+// The server's words for what went wrong, {"error": {"message"}} or {"error": text}; empty without.
+std::string error_in(const Json& body) {
+  const Json error = body.is_object() ? body.value("error", Json()) : Json();
+  const Json message = error.is_object() ? error.value("message", Json()) : error;
+  return message.is_string() ? message.get<std::string>() : "";
+}
+
 // What went wrong, in a line.
 std::string complaint(const Response& response, const std::string& key) {
   std::string text = response.problem;
   if (response.status != 0) {
-    const Json body = json_or_null(response.body);
-    const bool says = body.is_object() && body.contains("error") && body["error"].is_object() &&
-                      body["error"].contains("message") && body["error"]["message"].is_string();
     constexpr std::size_t shown = 200;
-    const std::string message = says ? body["error"]["message"].get<std::string>() : response.body;
+    std::string message = error_in(json_or_null(response.body));
+    if (message.empty()) message = response.body;
     text = fmt::format("status {}: {}", response.status, without_key(message, key).substr(0, shown));
   }
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -135,6 +139,8 @@ long long tokens_of(const Json& body) {
 ChatReply read_completion(const std::string& body) {
   const Json json = parse_json(body, "language model's reply");
   const JsonReader reader(json, "language model's reply");
+  if (!reader.has("choices"))
+    if (const std::string says = error_in(json); !says.empty()) throw NoAnswer("the server says: " + says);
   const auto choices = reader.at("choices").elements();
   if (choices.size() != 1) reader.at("choices").fail("one choice");
   const Json reason = choices[0].has("finish_reason") ? choices[0].at("finish_reason").json() : Json();
@@ -151,10 +157,37 @@ ChatReply read_completion(const std::string& body) {
 
 }  // namespace
 
-OpenAiClient::OpenAiClient(OpenAiOptions options) : options_(std::move(options)) {
+// Handles that nobody uses now, each with the connection of its last request.
+struct OpenAiClient::Connections {
+  Connections() = default;
+  Connections(const Connections&) = delete;
+  Connections& operator=(const Connections&) = delete;
+  ~Connections() {
+    for (CURL* handle : idle) curl_easy_cleanup(handle);
+  }
+  CURL* take() {
+    const std::lock_guard lock(mutex);
+    if (idle.empty()) return curl_easy_init();
+    CURL* const handle = idle.back();
+    idle.pop_back();
+    return handle;
+  }
+  void give_back(CURL* handle) {
+    const std::lock_guard lock(mutex);
+    idle.push_back(handle);
+  }
+
+  std::mutex mutex;
+  std::vector<CURL*> idle;
+};
+
+OpenAiClient::OpenAiClient(OpenAiOptions options)
+    : options_(std::move(options)), connections_(std::make_unique<Connections>()) {
   static const CURLcode once = curl_global_init(CURL_GLOBAL_DEFAULT);
   if (once != CURLE_OK) throw Error("libcurl could not be initialised");
 }
+
+OpenAiClient::~OpenAiClient() = default;
 
 ChatReply OpenAiClient::complete(const Json& request) {
   if (options_.base_url == openai_server && options_.api_key.empty())
@@ -162,12 +195,14 @@ ChatReply OpenAiClient::complete(const Json& request) {
         "OPENAI_API_KEY is not set, and neither is OPENAI_BASE_URL, the address of another server; see "
         "docs/language-models.md");
   using Clock = std::chrono::steady_clock;
-  constexpr double longest_wait_s = 60;
+  constexpr double longest_wait_s = 60, longest_retry_after_s = 600;
   const Clock::time_point start = Clock::now();
   const std::string body = canonical(request);
   double wait_s = options_.first_wait_s;
   for (int attempt = 1;; ++attempt) {
-    const Response response = post(options_, body);
+    CURL* const handle = connections_->take();
+    const Response response = post(handle, options_, body);
+    connections_->give_back(handle);
     if (response.status == 200) {
       try {
         ChatReply reply = read_completion(response.body);
@@ -182,7 +217,8 @@ ChatReply OpenAiClient::complete(const Json& request) {
     const std::string what = complaint(response, options_.api_key);
     if (!may_pass(response)) throw MethodError(what);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
-    const double pause_s = std::min(std::max(wait_s, response.retry_after_s), longest_wait_s);
+    const double pause_s =
+        std::max(std::min(wait_s, longest_wait_s), std::min(response.retry_after_s, longest_retry_after_s));
     if (options_.waiting)
       options_.waiting(
           fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, what, pause_s));

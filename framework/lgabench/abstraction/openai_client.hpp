@@ -1,13 +1,15 @@
 // Chat completions over HTTP, as OpenAI's API and many servers that follow it offer them.
 #pragma once
+#include <memory>
+
 #include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/openai_options.hpp>
 
 namespace lgabench {
 
 /// POSTs to BASE/chat/completions. An attempt that finds no server or breaks off, or is answered 408, 409, 429 or 5xx,
-/// is followed by another, after the server's Retry-After where it names seconds; one whose reply takes too long is
-/// not. No message and no reply holds the key.
+/// is followed by another, after the server's Retry-After where it names seconds (ten minutes at most); one whose reply
+/// takes too long is not. Connections are kept for the next request. No message and no reply holds the key.
 class OpenAiClient : public ChatClient {
  public:
   /// Longest reply; a longer one ends the request.
@@ -15,13 +17,18 @@ class OpenAiClient : public ChatClient {
 
   /// Connects to nothing yet.
   explicit OpenAiClient(OpenAiOptions options);
+  ~OpenAiClient() override;
+  OpenAiClient(const OpenAiClient&) = delete;
+  OpenAiClient& operator=(const OpenAiClient&) = delete;
   /// @throws MethodError once the attempts are used up, for any other status, for a TLS certificate that this machine
   /// does not trust (the key is then not sent), and for a body that is too long. NoAnswer for a body that is no
   /// completion, a reply that is late, empty or a refusal, and one whose finish_reason says that it is not whole.
   ChatReply complete(const Json& request) override;
 
  private:
+  struct Connections;
   OpenAiOptions options_;
+  std::unique_ptr<Connections> connections_;
 };
 
 }  // namespace lgabench

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/hash.hpp>
@@ -31,28 +29,6 @@ Prompt PromptTemplate::fill(const Command& command, const FeatureSpace& space, c
                          {"{candidate}", question.candidate}});
   };
   return {fill(text_.system), fill(text_.user)};
-}
-
-bool final_answer(const std::string& reply) {
-  // The last line with a letter in it, in lower case, without what decorates it.
-  std::string line, last;
-  for (const char c : reply + '\n') {
-    if (c == '\n') {
-      if (!line.empty()) last = line;
-      line.clear();
-    } else if (std::isalpha(static_cast<unsigned char>(c))) {
-      line += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    } else if (!std::isspace(static_cast<unsigned char>(c)) &&
-               std::string_view(":.*_`\"'#!").find(c) == std::string_view::npos) {
-      line += c;
-    }
-  }
-  if (last == "finalansweryes") return true;
-  if (last == "finalanswerno") return false;
-  constexpr std::size_t shown = 80;
-  throw MethodError(fmt::format(
-      "language model: expected a last line \"Final answer: yes\" or \"... no\", got a reply that ends \"{}\"",
-      reply.substr(reply.size() - std::min(reply.size(), shown))));
 }
 
 }  // namespace lgabench

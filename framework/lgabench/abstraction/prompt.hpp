@@ -1,4 +1,4 @@
-// What a language model is asked, and how its reply is read.
+// What a language model is asked.
 #pragma once
 #include <string>
 
@@ -27,9 +27,5 @@ class PromptTemplate {
   Prompt text_;
   std::string version_;
 };
-
-/// The answer on the reply's last line, "Final answer: yes" or "Final answer: no" in any case, with or without Markdown
-/// or a full stop around it. @throws MethodError for anything else: no answer is never a no.
-bool final_answer(const std::string& reply);
 
 }  // namespace lgabench

@@ -8,21 +8,20 @@ namespace {
 using About = Question::About;
 using Group = Question::Group;
 
-SelectionCost difference(const SelectionCost& a, const SelectionCost& b) {
-  return {a.lm_queries - b.lm_queries, a.lm_tokens - b.lm_tokens, a.lm_seconds - b.lm_seconds,
-          a.human_seconds - b.human_seconds};
-}
-
 }  // namespace
 
-Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model) {
+std::vector<Question> feature_questions(const Command& command, const FeatureSpace& space) {
   std::vector<Question> questions;
   for (const About about : {About::target, About::second}) {
     if (about == About::second && !command.second) continue;
     for (const std::string& type : space.object_types) questions.push_back({about, Group::object_type, type});
     for (const std::string& texture : space.textures) questions.push_back({about, Group::texture, texture});
   }
+  return questions;
+}
 
+Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model) {
+  const std::vector<Question> questions = feature_questions(command, space);
   const SelectionCost before = model.cost();
   const std::vector<bool> answers = model.answer(command, space, questions);
   if (answers.size() != questions.size())
@@ -39,7 +38,7 @@ Selection select_features(const Command& command, const FeatureSpace& space, Lan
   selection.provenance = model.provenance();
   selection.source = model.model();
   selection.asked_as = model.asked_as(command);
-  selection.cost = difference(model.cost(), before);
+  selection.cost = model.cost() - before;
   return selection;
 }
 

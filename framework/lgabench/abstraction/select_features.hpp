@@ -4,6 +4,9 @@
 
 namespace lgabench {
 
+/// The questions of select_features(), in their order.
+std::vector<Question> feature_questions(const Command& command, const FeatureSpace& space);
+
 /// Asks of every object type and every texture of the space whether the target could have it, and the same
 /// of the task's second set where it has one: one question a candidate. The Selection holds what was answered yes, in
 /// the space's order, with the model's provenance and what these questions cost.

@@ -58,6 +58,7 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
     ChatOptions options{cell.answers.substr(std::string_view(live_prefix).size())};
     const LiveModel live = job.live.value_or(LiveModel());
     options.max_queries = live.max_queries;
+    options.concurrency = live.concurrency;
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     answers.cassette = std::make_unique<Cassette>(live.cassette);
     answers.lm = std::make_unique<AskedByCells>(*answers.cassette, server, options);

@@ -106,9 +106,10 @@ Json participant_hashes(const std::vector<Participant>& participants) {
 std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers, Json& about) {
   if (a.answers != "openai") {
     if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() ||
-        a.reply_timeout_s != OpenAiOptions().timeout_s)
+        a.reply_timeout_s != OpenAiOptions().timeout_s || a.concurrency != LiveModel().concurrency)
       throw InputError(
-          "--model, --cassette, --max-queries, --request and --reply-timeout: expected --answers openai with them");
+          "--model, --cassette, --max-queries, --request, --reply-timeout and --concurrency: expected --answers openai "
+          "with them");
     return std::nullopt;
   }
   if (a.model.empty() || a.cassette.empty() || one_line(a.model) != a.model)
@@ -117,7 +118,7 @@ std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers,
   const std::string model = to_text(asked_model(a.model, a.request));
   answers = live_prefix + model;
   about = {{"model", model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
-  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s};
+  return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency};
 }
 
 // Where --resume goes on: where the run would be, or was with another build. It begins none.
@@ -245,6 +246,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "With --answers openai: seconds that the server may take for a reply")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
+  verb.add_option("--concurrency", a.concurrency, "With --answers openai: questions asked at once")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   verb.add_option("--truth", a.truth,
                   "The true distributions: those that the paper's authors released with their code, or those printed "
                   "in its appendix, where they differ")
@@ -283,6 +287,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--max-queries", "N"},
            {"--request", "JSON"},
            {"--reply-timeout", "SECONDS"},
+           {"--concurrency", "N"},
            {"--truth", "released|printed"},
            {"--humans", "DIR"},
            {"--rehearsal", ""},

@@ -20,6 +20,7 @@ struct RunArguments {
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells
   double timeout_s = 3600, memory_gib = 0;
   long reply_timeout_s = OpenAiOptions().timeout_s;
+  int concurrency = LiveModel().concurrency;
   std::string program;  // as --version says
   bool unconfined = false, rehearsal = false, resume = false, fresh = false, dry_run = false, no_reference = false,
        json = false;

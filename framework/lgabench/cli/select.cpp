@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/forecast.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
@@ -39,11 +41,37 @@ struct Asked {
   std::optional<Selection> truth;
 };
 
+// How far the questions to a server are, over all commands: one line on a terminal, else a line every half minute.
+class Progress {
+ public:
+  void begin(int open) { open_ = open; }
+  void tell(int asked, int of_command) {
+    const int all = before_ + asked;
+    if (asked == of_command) before_ = all;
+    const auto now = Clock::now();
+    const bool redrawn = ::isatty(2) != 0, last = all == open_;
+    if (!redrawn && !last && now - told_ < std::chrono::seconds(30)) return;
+    told_ = now;
+    const double spent_s = std::chrono::duration<double>(now - start_).count();
+    const std::string left =
+        last || all == 0 ? "" : ", about " + duration_text(spent_s / all * (open_ - all)) + " left";
+    put(stderr,
+        fmt::format("{}asked {} of {}{}{}", redrawn ? "\r\x1b[K" : "", all, open_, left, last || !redrawn ? "\n" : ""));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point told_ = start_;
+  int open_ = 0, before_ = 0;
+};
+
 // Whoever answers all commands, and what it stands on; no model for recorded answers, which go by the scenario.
 struct Answerer {
+  std::shared_ptr<Progress> progress = std::make_shared<Progress>();
   std::unique_ptr<ChatClient> client;
   std::unique_ptr<Cassette> cassette;
-  std::unique_ptr<LanguageModel> model;
+  std::unique_ptr<ChatLanguageModel> model;
 };
 
 // The one of those that replied that has the name, or the only one where there is none.
@@ -82,11 +110,7 @@ Answerer make_answerer(const SelectArguments& a) {
     server.waiting =
         options.waiting = [](const std::string& why) { to_stderr("{}{}\n", ::isatty(2) ? "\n" : "", one_line(why)); };
     answerer.client = std::make_unique<OpenAiClient>(std::move(server));
-    options.progress = [](int asked_already, int all) {
-      const bool redrawn = ::isatty(2) != 0;
-      put(stderr, fmt::format("{}asked {} of {}{}", redrawn ? "\r" : "", asked_already, all,
-                              asked_already == all || !redrawn ? "\n" : ""));
-    };
+    options.progress = [progress = answerer.progress](int asked, int of_command) { progress->tell(asked, of_command); };
   }
   answerer.model = std::make_unique<ChatLanguageModel>(*answerer.cassette, answerer.client.get(), options);
   return answerer;
@@ -134,6 +158,17 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
   return {asked};
 }
 
+void say_what_is_open(const Answerer& answerer, const std::vector<Asked>& commands, int at_once) {
+  int all = 0, open = 0;
+  for (const Asked& asked : commands) {
+    const std::vector<Question> questions = feature_questions(asked.command, asked.space);
+    all += static_cast<int>(questions.size());
+    open += answerer.model->open_questions(asked.command, asked.space, questions);
+  }
+  answerer.progress->begin(open);
+  to_stderr("{} questions, {} answered already, {} at once\n", all, all - open, at_once);
+}
+
 std::string list(const std::vector<std::string>& names, const std::vector<std::string>& all) {
   if (names.empty()) return "(none)";
   return names == all ? fmt::format("any of the {}", all.size()) : fmt::format("{}", fmt::join(names, ", "));
@@ -159,7 +194,9 @@ void select(const Asked& asked, LanguageModel* model, const SelectArguments& arg
   if (!model)
     model = &recorded.emplace(asked.space, asked.answers_of,
                               arguments.answers == "recorded" ? asked.recorded : arguments.answers);
+  const auto start = std::chrono::steady_clock::now();
   const Selection selection = select_features(asked.command, asked.space, *model);
+  const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Quality judged = asked.truth ? quality(selection, *asked.truth) : Quality{};
   const std::string text = selection_text(selection, asked.space);
   if (arguments.json) {
@@ -176,6 +213,7 @@ void select(const Asked& asked, LanguageModel* model, const SelectArguments& arg
   to_stdout("cost        {} queries", selection.cost.lm_queries);
   if (selection.cost.lm_tokens > 0)
     to_stdout(", {} tokens, {:.1f} s of waiting", selection.cost.lm_tokens, selection.cost.lm_seconds);
+  if (selection.provenance == Provenance::live) to_stdout(", {:.1f} s by the clock", passed_s);
   to_stdout("\n");
   to_stdout("in words    {}\n", text);
   print_set("target", selection.target, asked.space, judged);
@@ -247,9 +285,11 @@ void add_select(CLI::App& app, int&) {
     if (arguments->command.empty() && arguments->suite.empty())
       throw InputError("select: expected a command, a scenario's id, or --suite");
     const Answerer answerer = make_answerer(*arguments);
+    const std::vector<Asked> commands = find_commands(*arguments);
+    if (answerer.client) say_what_is_open(answerer, commands, arguments->concurrency);
     bool first = true;
     std::vector<std::string> unanswered;
-    for (const Asked& asked : find_commands(*arguments)) {
+    for (const Asked& asked : commands) {
       if (!first && !arguments->json) to_stdout("\n");
       first = false;
       try {

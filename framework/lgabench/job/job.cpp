@@ -43,13 +43,15 @@ Json to_json(const LiveModel& live) {
   return {{"cassette", full_path(live.cassette)},
           {"asks", live.asks},
           {"max_queries", live.max_queries},
-          {"reply_timeout_s", live.reply_timeout_s}};
+          {"reply_timeout_s", live.reply_timeout_s},
+          {"concurrency", live.concurrency}};
 }
 
 LiveModel live_of(const JsonReader& reader) {
   return {reader.at("cassette").string(), reader.at("asks").boolean(),
           static_cast<int>(reader.at("max_queries").integer(-1, 1 << 30)),
-          static_cast<long>(reader.at("reply_timeout_s").integer(1, 1 << 30))};
+          static_cast<long>(reader.at("reply_timeout_s").integer(1, 1 << 30)),
+          static_cast<int>(reader.at("concurrency").integer(1, 64))};
 }
 
 std::string text(const Json& line, const char* member) {

@@ -1,0 +1,98 @@
+#include <lgabench/abstraction/final_answer.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <vector>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+struct Word {
+  std::string text;
+  int line = 0;
+};
+
+// In lower case; letters and digits make words, all else parts them. Tags and LaTeX's commands are left out.
+std::vector<Word> words_of(const std::string& text) {
+  std::vector<Word> words;
+  int line = 0;
+  bool parted = true, command = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    constexpr std::size_t longest_tag = 20;
+    if (const std::size_t end = text[i] == '<' ? text.find('>', i) : std::string::npos; end < i + longest_tag) i = end;
+    const char c = text[i];
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) == 0) {
+      line += c == '\n';
+      command = c == '\\';
+      parted = true;
+      continue;
+    }
+    if (command) continue;
+    if (parted) words.push_back({"", line});
+    words.back().text += static_cast<char>(std::tolower(byte));
+    parted = false;
+  }
+  return words;
+}
+
+struct Statement {
+  std::optional<bool> answer;  // none: something else follows
+  bool begins_its_line = false;
+  std::size_t end = 0;  // the word after it
+};
+
+std::vector<Statement> statements_of(const std::vector<Word>& words) {
+  std::vector<Statement> all;
+  for (std::size_t i = 0; i + 1 < words.size(); ++i) {
+    if (words[i].text != "final" || words[i + 1].text != "answer") continue;
+    std::size_t at = i + 2;
+    if (at < words.size() && words[at].text == "is") ++at;
+    Statement one{std::nullopt, i == 0 || words[i - 1].line != words[i].line, at + 1};
+    if (at < words.size() && (words[at].text == "yes" || words[at].text == "no")) one.answer = words[at].text == "yes";
+    all.push_back(one);
+  }
+  return all;
+}
+
+bool is_condition(const std::string& word) {
+  constexpr std::array conditions{"if", "or", "unless", "but", "maybe", "depending", "depends"};
+  return std::find(conditions.begin(), conditions.end(), word) != conditions.end();
+}
+
+// None where the reply has no answer, or more than one.
+std::optional<bool> answer_in(const std::string& reply) {
+  const std::string thought = "</think>";
+  const std::size_t end = reply.rfind(thought);
+  const std::vector<Word> words = words_of(end == std::string::npos ? reply : reply.substr(end + thought.size()));
+  const std::vector<Statement> statements = statements_of(words);
+  if (statements.empty() || !statements.back().answer) return std::nullopt;
+  const Statement& last = statements.back();
+  const auto contradicts = [&last](const Statement& one) {
+    return one.begins_its_line && one.answer && *one.answer != *last.answer;
+  };
+  if (std::any_of(statements.begin(), statements.end(), contradicts)) return std::nullopt;
+  for (std::size_t i = last.end; i < words.size(); ++i) {
+    if (words[i].text == (*last.answer ? "no" : "yes") || (*last.answer && words[i].text == "not")) return std::nullopt;
+    if (words[i].line == words[last.end - 1].line && is_condition(words[i].text)) return std::nullopt;
+  }
+  return last.answer;
+}
+
+}  // namespace
+
+bool final_answer(const std::string& reply) {
+  if (const std::optional<bool> answer = answer_in(reply)) return *answer;
+  constexpr std::size_t shown = 80;
+  throw MethodError(fmt::format(
+      "language model: expected a last line \"Final answer: yes\" or \"... no\", got a reply that ends \"{}\"",
+      reply.substr(reply.size() - std::min(reply.size(), shown))));
+}
+
+}  // namespace lgabench
