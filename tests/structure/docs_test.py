@@ -61,9 +61,15 @@ class Pages(unittest.TestCase):
             for shown, height in zip(table[row], heights):  # the axis' words stand 4 below its lines
                 self.assertAlmostEqual(shown, (bottom - 4 - float(height)) / (bottom - top), delta=.0055, msg=row)
         result = (SOURCE / "README.md").read_text().split("## The result")[1].split("\n## ")[0]
-        for row, words in ("LGA", "in .57 of"), ("GCBC-SEG", "in .16 ("), ("GCBC-DART", ".09 ("), ("random visible object", "in .43."):
+        said = {"LGA": "in 0.57 of", "GCBC-SEG": "in 0.16 (", "GCBC-DART": "0.09 (", "random visible object": "in 0.43."}
+        for row, words in said.items():
             self.assertIn(words, " ".join(result.split()))
-            self.assertIn(f"{table[row][-1]:.2f}"[1:], words)
+            self.assertIn(f"{table[row][-1]:.2f}", words)
+
+    def test_the_first_page_is_short_and_begins_with_a_clone(self):
+        page = (SOURCE / "README.md").read_text()
+        self.assertLessEqual(len(page.split()), 1200)
+        self.assertRegex(split_code(page)[1][0], "^git clone ")
 
     def test_shown_code_is_the_example(self):
         for page, name, lines in ("method", "select_only", 25), ("network", "own_network", 90):
