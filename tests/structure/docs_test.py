@@ -43,8 +43,8 @@ def anchors(page):
 def q1_table():
     """Row -> success rates at 10 to 50 demonstrations, as docs/results.md prints those of q1's paper preset."""
     table = (SOURCE / "docs/results.md").read_text().split("## q1: success")[1].split("\n**C1")[0]
-    return {name: [float(number) for number in re.findall(r"\| (\.\d\d|1\.00)\b", row)]
-            for name, row in re.findall(r"^\| \*?([\w -]+?)\*?(?: \([^)]*\))? (\| \.\d.*)$", table, re.M)}
+    return {name: [float(number) for number in re.findall(r"\| ([01]\.\d\d)\b", row)]
+            for name, row in re.findall(r"^\| \*?([\w -]+?)\*?(?: \([^)]*\))? (\| [01]\.\d.*)$", table, re.M)}
 
 
 class Pages(unittest.TestCase):
@@ -140,6 +140,14 @@ class Documents(unittest.TestCase):
                     wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: {cells[i]} cells below {cells[i - 1]}")
                 if re.fullmatch(r"[|: -]*-[|: -]*", line) and cells[i] and not cells[i - 1]:
                     wrong.append(f"{page.relative_to(SOURCE)}:{i + 1}: a table without a head")
+        self.assertEqual(wrong, [])
+
+    def test_numbers_are_written_as_the_programs_print_them(self):
+        """0.57, not .57."""
+        wrong = []
+        for page in PAGES:
+            for line in split_code(page.read_text())[0]:
+                wrong += [f"{page.relative_to(SOURCE)}: {found}" for found in re.findall(r"(?<![\w.])\.\d+", line)]
         self.assertEqual(wrong, [])
 
     def test_documents_that_sources_name_are_there(self):
