@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 SOURCE, DOXYFILE = (pathlib.Path(p) for p in sys.argv[1:3])
@@ -65,6 +66,18 @@ class Pages(unittest.TestCase):
         for row, words in said.items():
             self.assertIn(words, " ".join(result.split()))
             self.assertIn(f"{table[row][-1]:.2f}", words)
+
+    def test_the_figures_of_the_findings_are_their_tables(self):
+        page, pictures = (SOURCE / "docs/results.md").read_text(), SOURCE / "docs/pictures"
+        with tempfile.TemporaryDirectory() as made:
+            subprocess.run([sys.executable, pictures / "findings.py", made], check=True)
+            figures = sorted(file.name for file in pathlib.Path(made).iterdir())
+            self.assertEqual(figures, sorted(file.name for file in pictures.glob("finding_*.svg")))
+            for name in figures:
+                self.assertEqual((pictures / name).read_text(), (pathlib.Path(made) / name).read_text(), "docs/pictures/findings.py draws it")
+                finding = re.search(rf"^\| !\[.*\(pictures/{name}\) \| (.*) \|$", page, re.M)[1]
+                drawn = re.findall(r">(\d\.\d\d)<", (pictures / name).read_text())
+                self.assertTrue(set(drawn) & set(re.findall(r"\d\.\d\d", finding)), finding)
 
     def test_the_first_page_is_short_and_begins_with_a_clone(self):
         page = (SOURCE / "README.md").read_text()
@@ -128,6 +141,13 @@ class Documents(unittest.TestCase):
         pages = [str(page.relative_to(SOURCE / "docs")) for page in PAGES if page.is_relative_to(SOURCE / "docs")]
         self.assertEqual([page for page in pages if page != "README.md" and f"({page})" not in index], [])
         self.assertEqual([page for page in pages if f": docs/{page}\n" not in site], [])
+
+    def test_no_page_has_two_headings_of_one_name(self):
+        wrong = []
+        for page in PAGES:
+            heads = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M), re.M)
+            wrong += [f"{page.relative_to(SOURCE)}: {head}" for head in set(heads) if heads.count(head) > 1 and page.name != "CHANGELOG.md"]
+        self.assertEqual(wrong, [])
 
     def test_tables_render(self):
         """GitHub takes no table whose head and rule differ in cells, and drops what a row has too many."""
