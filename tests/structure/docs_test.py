@@ -149,6 +149,12 @@ class Documents(unittest.TestCase):
             wrong += [f"{page.relative_to(SOURCE)}: {head}" for head in set(heads) if heads.count(head) > 1 and page.name != "CHANGELOG.md"]
         self.assertEqual(wrong, [])
 
+    def test_cells_of_fidelity_can_be_read_at_a_glance(self):
+        """Thirty words at most; more stands below the table."""
+        cells = [cell for line in (SOURCE / "docs/fidelity.md").read_text().splitlines() if line.startswith("| ")
+                 for cell in re.split(r"(?<!\\)\|", line)]
+        self.assertEqual([cell for cell in cells if len(cell.split()) > 30], [])
+
     def test_tables_render(self):
         """GitHub takes no table whose head and rule differ in cells, and drops what a row has too many."""
         wrong = []
