@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Draws the pictures of docs/suites.md with `lgabench render`, and makes them smaller with ImageMagick's convert.
+# Usage: docs/pictures/suites.sh [LGABENCH]
+set -euo pipefail
+cd "$(dirname "$0")/suites"
+lgabench=${1:-../../../build/release/bin/lgabench}
+scene=$(mktemp --suffix .png)
+trap 'rm -f "$scene"' EXIT
+
+draw() {  # SCENARIO ARM SIZE [LAYOUT]
+  "$lgabench" render "$1" --arm "$2" ${4:+--layout "$4"} --out "$scene" > /dev/null
+  convert "$scene" -sample "$3" -define png:exclude-chunks=date,time "$1-$2.png"
+}
+
+draw heart test 25% continuous
+for arm in control texture distractor hard; do draw q2_heart $arm 25% continuous; done
+for arm in seen unseen seen_varied; do draw q3_utensil $arm 25% continuous; done
+for arm in same_place moved crowd; do draw bring_fruit $arm 12.5%; done
