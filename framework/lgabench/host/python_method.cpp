@@ -11,7 +11,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/scratch.hpp>
-#include <lgabench/host/descriptor.hpp>
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
