@@ -84,10 +84,23 @@ def _text(found, name, default, file):
     return value
 
 
-def describe(written):
-    """Of FILE.py:Class: the descriptor, what it depends on and where its interpreter reads."""
+def interpreter():
+    """This one, and where it reads: asked without a method's file."""
     if sys.version_info < (3, 10):  # importlib.metadata.packages_distributions()
         raise NoMethod(f"Python {sys.version_info[0]}.{sys.version_info[1]}, expected 3.10 or later")
+    paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
+    if sys.prefix != sys.base_prefix:
+        paths |= {sys.prefix}
+    if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
+        paths |= {sys.base_prefix + "/lib"}
+    user = site.ENABLE_USER_SITE and pathlib.Path(site.getusersitepackages()).is_dir()  # of pip install --user
+    if user:
+        paths |= {site.getusersitepackages()}
+    return {"interpreter": sys.executable, "reads": sorted(paths), "user_base": site.getuserbase() if user else ""}
+
+
+def describe(written):
+    """Of FILE.py:Class: the descriptor and what it depends on."""
     name, separator, class_name = written.rpartition(":")
     file = pathlib.Path(name)
     if not separator or not class_name.isidentifier():
@@ -111,18 +124,9 @@ def describe(written):
         json.dumps(options, allow_nan=False, sort_keys=True)
     except (TypeError, ValueError) as error:
         raise NoMethod(f"{file}: options: expected values that JSON has: {error}") from error
-    paths = {path for key, path in sysconfig.get_paths().items() if key in ("stdlib", "platstdlib", "purelib", "platlib")}
-    if sys.prefix != sys.base_prefix:
-        paths |= {sys.prefix}
-    if sys.base_prefix not in ("/usr", "/usr/local"):  # its libraries lie beside it
-        paths |= {sys.base_prefix + "/lib"}
-    user = site.ENABLE_USER_SITE and pathlib.Path(site.getusersitepackages()).is_dir()  # of pip install --user
-    if user:
-        paths |= {site.getusersitepackages()}
     return {"file": str(real), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
             "sha256": hashlib.sha256(source).hexdigest(),
-            "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})},
-            "interpreter": sys.executable, "reads": sorted(paths), "user_base": site.getuserbase() if user else ""}
+            "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})}}

@@ -16,6 +16,8 @@ IN_CI = os.environ.get("CI") == "true"
 
 
 class Confinement(Case):
+    maxDiff = None
+
     def probes(self, words, *more, out="out", expect=3, fixture="fixture_probe",
                plugins=FIXTURES / "faulty"):
         """how, or how+path=... -> what came of it."""
@@ -54,6 +56,21 @@ class Confinement(Case):
         self.assertEqual(found["read", f"{self.dir}/mine/out/run.json"], "EACCES")
         self.assertEqual(found["read", f"{self.dir}/mine/fixture_probe.so"], "reached")
 
+    def test_earlier_runs_and_caches_beside_the_plugin(self):
+        shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
+        self.environment["LGABENCH_CACHE"] = str(self.dir / "mine/cache")
+        self.probes(["own_files"], out="mine/runs/first", plugins="mine", expect=0)
+        cell = next((self.dir / "mine/runs/first/cells").iterdir())
+        hidden = [self.dir / "mine/runs/first/run.json", cell / "cell.json", cell / "episodes.jsonl",
+                  next((self.dir / "mine/cache").glob("*.hdf5"))]
+        (self.dir / "mine/runs/notes.txt").write_text("the author's")
+        readable = [self.dir / "mine/runs/notes.txt", self.dir / "mine/fixture_probe.so"]
+        self.environment["LGABENCH_CACHE"] = str(self.dir / "cache")
+        found = self.probes([f"read+path={path}" for path in hidden + readable], out="mine/runs/second", plugins="mine")
+        self.need("Landlock")
+        self.assertEqual([found["read", str(path)] for path in hidden], ["EACCES"] * len(hidden))
+        self.assertEqual([found["read", str(path)] for path in readable], ["reached"] * len(readable))
+
     def test_system_calls(self):
         words = ["socket", "unix_socket", "ptrace", "kill", "kill_all", "prlimit", "memory_of_worker", "memfd",
                  "socketpair", "raise"]
@@ -63,6 +80,37 @@ class Confinement(Case):
             self.assertEqual(found[word, ""], "EPERM", word)
         for word in words[-2:]:
             self.assertEqual(found[word, ""], "reached", word)
+
+    # What each answers where it is not EPERM: newer than the list, or needed.
+    OTHER = {"clone3": "ENOSYS", "unknown": "ENOSYS", "fchmodat2": "ENOSYS", "setxattrat": "ENOSYS", "thread": "reached",
+             "program": "reached"}
+    CALLS = ["setxattr", "getxattr", "fsetxattr", "utimensat", "utime", "chmod", "fchmod", "chown", "fchownat", "lock",
+             "read_lock", "lease", "set_flags", "mincore", "page_out", "fadvise", "readahead", "preadv2", "inotify", "fanotify",
+             "notify", "set_owner", "set_signal", "setpriority", "sched_setaffinity", "sched_setscheduler", "ioprio_set",
+             "datagrams", "named_socket", "pipe_size", "new_namespace", "device", "fspick", "quotactl", "acct",
+             "setdomainname", "swapoff", "clock_adjtime", *OTHER]
+    # The call's own name, where it is another.
+    NAMES = {"lock": "flock", "page_out": "madvise", "fadvise": "fadvise64", "inotify": "inotify_init1", "device": "mknodat",
+             "datagrams": "socketpair", "named_socket": "bind", "new_namespace": "clone", "set_flags": "ioctl",
+             "fanotify": "fanotify_init", **dict.fromkeys(["read_lock", "lease", "notify", "set_owner", "set_signal",
+                                                           "pipe_size"], "fcntl")}
+
+    def test_system_calls_are_those_of_a_list(self):
+        shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
+        (self.dir / "mine/file").write_text("x" * 4096)
+        found = self.probes([f"{word}+path={self.dir}/mine/file" for word in self.CALLS], plugins="mine", fixture="fixture_probe",
+                            expect=3)
+        self.need(", seccomp")
+        self.assertEqual({word: said for (word, _), said in found.items()},
+                         {word: self.OTHER.get(word, "EPERM") for word in self.CALLS})
+        for key, (cell, _) in self.cells("out").items():
+            how = cell["method"]["options"]["how"]
+            log = (self.dir / "out/cells" / key / "log.txt").read_text()
+            named = [line.rpartition(": ")[2] for line in log.splitlines() if line.startswith("system call refused: ")]
+            self.assertEqual(named, [] if how in self.OTHER else [self.NAMES.get(how, how)], how)
+        said = self.call("check-plugin", "mine/fixture_probe.so", "--set", "how=chmod", "--set", "path=mine/file", expect=1)
+        self.assertIn("refused: chmod", said.stdout)
+        self.assertIn("none refused", self.call("check-plugin", FIXTURES / "good/fixture_constant.so").stdout)
 
     def test_the_network_for_a_method_that_declares_it(self):
         server = socket.create_server(("127.0.0.1", 0))
@@ -120,6 +168,20 @@ class Confinement(Case):
     def test_shared_memory_counts(self):
         found = self.probes(["shared_memory"], "--memory", "1")
         self.assertIn("out of memory", found["shared_memory", ""])
+
+    def test_files_and_pipes_are_bounded(self):
+        found = self.probes(["disk", "deleted", "many_files", "pipes"], "--memory", ".5")
+        self.assertIn("its files in its scratch directory took more than 0.5 GiB", found["disk", ""])
+        self.assertIn("its files in its scratch directory took more than 0.5 GiB", found["deleted", ""])
+        self.assertIn("it made more than 10000 files", found["many_files", ""])
+        self.assertRegex(found["pipes", ""], "out of memory|no more descriptors")
+        self.assertEqual([*self.dir.glob("lgabench-*")], [])
+
+    def test_a_tree_that_is_left_is_removed(self):
+        self.probes(["tree"], expect=0)
+        self.assertEqual([*self.dir.glob("lgabench-*")], [])
+        cell = next((self.dir / "out/cells").iterdir())
+        self.assertEqual(len([*(cell / "files").iterdir()]), 100)
 
     def test_files_of_its_own_are_kept(self):
         self.probes(["own_files"], expect=0)

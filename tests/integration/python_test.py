@@ -253,6 +253,16 @@ class PythonMethods(Case):
             self.assertNotIn(f"\n{self.dir}\n", told)
             (self.dir / "told").unlink()
 
+    def test_describing_reads_nothing_else(self):
+        """What runs when the interpreter starts writes a file where it was not told of the method, and nowhere else."""
+        subprocess.run([PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", self.dir / "venv"], check=True)
+        packages = next((self.dir / "venv/lib").glob("python3*")) / "site-packages"
+        (packages / "of_the_venv.py").write_text(f"try:\n    import sys\n    with open('{self.dir}/told', 'a') as file:\n"
+                                                 "        file.write(sys.orig_argv[-1] + ' ')\nexcept OSError:\n    pass\n")
+        (packages / "start.pth").write_text("import of_the_venv\n")
+        self.call(*with_options(RUN, "--python", "venv/bin/python"), "--methods", "mine.py:Mine", "--dry-run")
+        self.assertEqual((self.dir / "told").read_text(), "--interpreter ")
+
     def test_a_virtual_environment_named_from_here(self):
         subprocess.run([PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", self.dir / "venv"], check=True)
         packages = next((self.dir / "venv/lib").glob("python3*")) / "site-packages"
@@ -302,7 +312,7 @@ class PythonMethods(Case):
             (self.dir / "endless.py").write_text("class A:\n    options = {'x': {'default': 1e999}}\n")
             self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
         (self.dir / "old.py").write_text("import sys\nfrom lgabench_method import describe\nsys.version_info = (3, 9, 2)\n"
-                                         "try:\n    describe.describe('mine.py:Mine')\n"
+                                         "try:\n    describe.interpreter()\n"
                                          "except describe.NoMethod as error:\n    print(error)\n")
         done = subprocess.run([PYTHON, self.dir / "old.py"], capture_output=True, text=True, cwd=self.dir,
                               env=dict(os.environ, PYTHONPATH=f"{BUILD}/share/lgabench/python"))

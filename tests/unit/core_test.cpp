@@ -1,5 +1,7 @@
 // Random numbers, JSON, scenarios, actions: values that everything else stands on.
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 #include <set>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
@@ -15,6 +18,7 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/core/tree.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/two_poses.hpp>
 
@@ -154,6 +158,49 @@ TEST(ReadFile, ReadsRegularFilesAlone) {
   fs::create_symlink(file, link);
   EXPECT_SAYS(message_of<InputError>([&] { expect_plain_entries(directory.path); }),
               "link: a symbolic link; a run holds");
+}
+
+TEST(Tree, IsMeasuredWithoutFollowingLinks) {
+  const Scratch scratch("tree");
+  fs::create_directories(scratch.path / "of/many/levels");
+  write_file(scratch.path / "of/many/file", std::string(10000, 'x'));
+  fs::create_directory_symlink("/usr", scratch.path / "link");
+  const Descriptor opened(::open(scratch.path.c_str(), O_RDONLY | O_DIRECTORY));
+  const TreeSize size = tree_size(opened.fd, 1000);
+  EXPECT_EQ(size.files, 5u);
+  EXPECT_GE(size.bytes, 10000u);
+  EXPECT_LT(size.bytes, 100000u);
+  EXPECT_EQ(tree_size(opened.fd, 3).files, 4u);
+  fs::path deep = scratch.path;
+  for (int i = 0; i < 100; ++i) fs::create_directory(deep /= "d");
+  EXPECT_GT(tree_size(opened.fd, 1000).files, 1000u);
+}
+
+TEST(Tree, IsRemovedHoweverDeepAndShut) {
+  const Scratch scratch("tree");
+  const fs::path top = scratch.path / "top";
+  fs::create_directory(top);
+  write_file(scratch.path / "kept", "x");
+  fs::create_symlink(scratch.path / "kept", top / "link");
+  fs::create_directory(top / "0.up");  // a name that moving takes
+  write_file(top / "0.up/file", "x");
+  const std::string name(200, 'n');
+  int at = ::open(top.c_str(), O_RDONLY | O_DIRECTORY);  // more than a path can name
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_EQ(::mkdirat(at, name.c_str(), 0700), 0);
+    const int below = ::openat(at, name.c_str(), O_RDONLY | O_DIRECTORY);
+    ::close(::openat(below, "file", O_CREAT | O_WRONLY, 0600));
+    ::mkdirat(below, "shut", 0300);
+    ::close(::openat(below, "shut/file", O_CREAT | O_WRONLY, 0600));
+    ::mkdirat(below, "closed", 0);
+    ::close(at);
+    at = below;
+  }
+  ::close(at);
+  remove_tree(top);
+  EXPECT_FALSE(fs::exists(fs::symlink_status(top)));
+  EXPECT_EQ(read_file(scratch.path / "kept"), "x");
+  remove_tree(top);  // which is not there
 }
 
 TEST(PlainDirectory, IsReadByNoWayThatLeadsOutOfIt) {

@@ -14,6 +14,7 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
@@ -156,6 +157,7 @@ class MethodCheck {
       report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
     }
     if (is_library()) judge_process();
+    note_refused_calls();
     report_.ok("time", fmt::format("select {:.3f} s, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
                                    seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
     return std::move(report_);
@@ -183,6 +185,15 @@ class MethodCheck {
     report_.judge("rounding mode", method_.state().flushed ? "" : "the plugin cleared flush-to-zero",
                   "flush-to-zero kept",
                   "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+  }
+
+  void note_refused_calls() {
+    const std::vector<std::string> names = method_.refused_calls();
+    if (names.empty())
+      report_.ok("system calls", "none refused");
+    else
+      report_.note("system calls", fmt::format("refused: {}", fmt::join(names, ", ")),
+                   "a method's process has those of the list in docs/trust.md alone; bear it, or do without");
   }
 
   long long heap_bytes() const { return is_library() ? method_.state().heap_bytes : 0; }
@@ -394,6 +405,7 @@ std::optional<Scenario> with_unseen_commands(const std::string& environment) {
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
+  job.hidden = runs_below(job.method.file.parent_path());
   std::optional<Scenario> unseen = with_unseen_commands(job.environment);
   if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;

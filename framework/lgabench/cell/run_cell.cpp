@@ -13,6 +13,7 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
@@ -71,6 +72,8 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
                  job.confined,
                  {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
                  job.limits.data_bytes};
+    const std::vector<fs::path> earlier = runs_below(job.method->file.parent_path());
+    host.hidden.insert(host.hidden.end(), earlier.begin(), earlier.end());
     if (job.live) host.hidden.push_back(job.live->cassette);
     host.debugger = job.debugger;
     return std::make_unique<HostedMethod>(host);

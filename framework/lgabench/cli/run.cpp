@@ -65,6 +65,7 @@ int run(const RunArguments& a) {
     to_stderr("note: {}\n", missing);
   if (a.dry_run) return print_forecast(plan, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
+  if (a.unconfined) to_stderr("--unconfined: methods run as you, with your files\n");
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
     to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));

@@ -260,8 +260,10 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_flag("--rehearsal", a.rehearsal,
                 "With --humans: accept files of a rehearsal or of simulated people; run, tables and claims are "
                 "marked, and the run is not for the leaderboard");
-  verb.add_flag("--unconfined", a.unconfined,
-                "Let methods access all that you may access (docs/trust.md); not for the leaderboard");
+  verb.add_flag(
+      "--unconfined", a.unconfined,
+      "Without the confinement of methods, which then run as you, with your files (docs/trust.md); not for the "
+      "leaderboard");
   verb.add_option("--debug", a.debug,
                   "Compute one cell, named by the first digits of its KEY (list prints all keys), in the foreground "
                   "and unconfined: a plugin under gdb, Python where breakpoint() works. Its results are not kept")

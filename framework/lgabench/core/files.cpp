@@ -11,6 +11,7 @@
 #include <cstring>
 #include <random>
 
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/plain_directory.hpp>
 
@@ -24,14 +25,6 @@ namespace {
 [[noreturn]] void refuse_link(const fs::path& file) {
   throw InputError(fmt::format("{}: a symbolic link; a run holds none", file.string()));
 }
-
-// Owns a file descriptor; closes it on every way out.
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
 
 // False, with errno set, if not all of it could be written.
 bool write_all(int fd, std::string_view bytes) {
@@ -127,7 +120,7 @@ void write_file(const fs::path& file, std::string_view bytes, Sync sync) {
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
 
   fs::path temporary = file;
-  Descriptor out{-1};
+  Descriptor out;
   if (sync == Sync::later) {
     out.fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   } else {  // a name that no other process takes, on no machine that shares the directory

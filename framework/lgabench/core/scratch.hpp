@@ -9,6 +9,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/tree.hpp>
 
 namespace lgabench {
 
@@ -20,10 +21,7 @@ struct Scratch {
     if (!::mkdtemp(pattern.data())) throw InputError(fmt::format("{}: {}", pattern, std::strerror(errno)));
     path = pattern;
   }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
+  ~Scratch() { remove_tree(path); }
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
 };

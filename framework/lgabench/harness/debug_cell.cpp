@@ -67,7 +67,7 @@ int debug_cell(RunPlan plan, const Catalogue& catalogue, const std::string& key)
       cell_job(plan, catalogue, cell, scratch.path / "cell", scratch.path / "answers", scratch.path / "method");
   job.limits = Limits();  // a person has time
   job.debugger = debugger;
-  to_stderr("{}\n{}; nothing is kept\n", cell.title(),
+  to_stderr("{}\nthe method runs as you, with your files; {}; nothing is kept\n", cell.title(),
             python ? "breakpoint() in the file stops there"
                    : "set breakpoints (break MyMethod::select), then run; quit ends the cell");
   return run_in_foreground(to_json(job));

@@ -324,8 +324,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     } catch (const std::exception& e) {
       record_failure(directory, cell, reason = e.what(), "plugin", build);
     }
-    std::error_code ignored;
-    fs::remove_all(hosts.path / std::to_string(i), ignored);
+    remove_tree(hosts.path / std::to_string(i));
     outcome.time.workers_s += end.seconds;
     const fs::path kept = directory.cell(key(cell));
     if (reason.empty()) {

@@ -3,9 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <linux/landlock.h>
-#include <seccomp.h>
 #include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -17,6 +15,7 @@
 #include <iterator>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/host/system_calls.hpp>
 
 namespace lgabench {
 namespace {
@@ -31,6 +30,8 @@ constexpr std::uint64_t execute = 1 << 0, write_file = 1 << 1, read_file = 1 << 
                         truncate = 1 << 14, ioctl_dev = 1 << 15;
 constexpr std::uint64_t reading = execute | read_file | read_dir;
 constexpr std::uint64_t of_files = execute | write_file | read_file | truncate | ioctl_dev;  // what a file can have
+
+constexpr std::uint64_t devices_and_sockets = 1 << 6 | 1 << 9 | 1 << 10 | 1 << 11;  // that mknod and bind make
 
 std::uint64_t handled_by(int version) {
   const int bits = version >= 5 ? 16 : version >= 3 ? 15 : version >= 2 ? 14 : 13;
@@ -79,61 +80,11 @@ class Rules {
   std::uint64_t handled_;
 };
 
-// Everything is allowed but what reaches out of the process. The process's own number stays its own over exec.
-bool forbid_system_calls(bool network) {
-  scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
-  if (!filter) return false;
-  const std::uint32_t refused = SCMP_ACT_ERRNO(EPERM);
-  const auto self = static_cast<scmp_datum_t>(::getpid());
-  bool good = true;
-  const auto add = [&](int call, auto... conditions) {
-    if (call < 0) return;  // not of this architecture
-    good = seccomp_rule_add(filter, refused, call, sizeof...(conditions), conditions...) == 0 && good;
-  };
-  add(SCMP_SYS(socketpair), SCMP_A0(SCMP_CMP_NE, AF_UNIX));
-  if (!network) {
-    add(SCMP_SYS(socket));
-  } else {  // of IP alone: a rule compares an argument once, so every other family has its own
-    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_LT, AF_INET));
-    add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_GT, AF_INET6));
-    for (unsigned family = AF_INET + 1; family < AF_INET6; ++family)
-      add(SCMP_SYS(socket), SCMP_A0(SCMP_CMP_EQ, family));
-  }
-  // To nobody else, by any of the ways to name a process.
-  add(SCMP_SYS(kill), SCMP_A0(SCMP_CMP_NE, self));
-  add(SCMP_SYS(tgkill), SCMP_A0(SCMP_CMP_NE, self));
-  add(SCMP_SYS(rt_sigqueueinfo), SCMP_A0(SCMP_CMP_NE, self));
-  add(SCMP_SYS(rt_tgsigqueueinfo), SCMP_A0(SCMP_CMP_NE, self));
-  add(SCMP_SYS(prlimit64), SCMP_A0(SCMP_CMP_NE, 0));  // 0: itself
-  for (const int call :
-       {SCMP_SYS(tkill), SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidfd_getfd), SCMP_SYS(ptrace),
-        SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev), SCMP_SYS(process_madvise), SCMP_SYS(kcmp),
-        SCMP_SYS(bpf), SCMP_SYS(userfaultfd), SCMP_SYS(io_uring_setup), SCMP_SYS(io_uring_enter),
-        SCMP_SYS(io_uring_register), SCMP_SYS(keyctl), SCMP_SYS(add_key), SCMP_SYS(request_key),
-        SCMP_SYS(perf_event_open), SCMP_SYS(mount), SCMP_SYS(umount2), SCMP_SYS(pivot_root), SCMP_SYS(chroot),
-        SCMP_SYS(move_mount), SCMP_SYS(open_tree), SCMP_SYS(fsopen), SCMP_SYS(fsmount), SCMP_SYS(mount_setattr),
-        SCMP_SYS(unshare), SCMP_SYS(setns), SCMP_SYS(open_by_handle_at), SCMP_SYS(name_to_handle_at),
-        // What would count as nobody's memory, or outlive the process.
-        SCMP_SYS(memfd_create), SCMP_SYS(memfd_secret), SCMP_SYS(shmget), SCMP_SYS(msgget), SCMP_SYS(semget),
-        SCMP_SYS(mq_open), SCMP_SYS(init_module), SCMP_SYS(finit_module), SCMP_SYS(kexec_load), SCMP_SYS(reboot),
-        SCMP_SYS(swapon), SCMP_SYS(settimeofday), SCMP_SYS(clock_settime), SCMP_SYS(sethostname)})
-    add(call);
-  good = good && seccomp_load(filter) == 0;
-  seccomp_release(filter);
-  return good;
-}
-
 }  // namespace
 
 int landlock_version() {
   constexpr unsigned version_flag = 1;
   return std::max(0, static_cast<int>(::syscall(SYS_landlock_create_ruleset, nullptr, 0, version_flag)));
-}
-
-bool has_seccomp() {
-  constexpr unsigned get_action_avail = 2;
-  const std::uint32_t action = SCMP_ACT_ERRNO(0);
-  return ::syscall(SYS_seccomp, get_action_avail, 0, &action) == 0;
 }
 
 std::string confinement_text() {
@@ -181,11 +132,11 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
     const fs::path real = fs::canonical(path, not_there);
     if (!not_there) rules.add_visible(real, hidden);
   }
-  for (const fs::path& path : reach.writes) rules.add(path, ~std::uint64_t{0});
+  for (const fs::path& path : reach.writes) rules.add(path, ~devices_and_sockets);
   rules_ = std::move(rules.file);
 }
 
-bool Confinement::apply() const {
+bool Confinement::apply(int socket) const {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
   if (rules_.fd >= 0) {
     // The process's own view of itself: its number is known only here.
@@ -194,7 +145,7 @@ bool Confinement::apply() const {
     if (itself >= 0) ::syscall(SYS_landlock_add_rule, rules_.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
     if (::syscall(SYS_landlock_restrict_self, rules_.fd, 0) != 0) return false;
   }
-  return !has_seccomp() || forbid_system_calls(network_);
+  return !has_seccomp() || allow_system_calls(network_, socket);
 }
 
 }  // namespace lgabench

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/host/descriptor.hpp>
+#include <lgabench/core/descriptor.hpp>
 
 namespace lgabench {
 
@@ -21,8 +21,9 @@ class Confinement {
   /// Paths that are not there are passed over. @throws EngineError where the kernel refuses a rule.
   explicit Confinement(const Reach& reach);
   /// In the child, before exec. From then on it and all that it starts see what `reach` says, signal and trace nobody
-  /// else, and without `network` connect to nobody. False where the kernel refused.
-  bool apply() const;
+  /// else, and without `network` connect to nobody; RefusedCalls is told on the
+  /// socket, if there is one. False where the kernel refused.
+  bool apply(int socket = -1) const;
 
  private:
   Descriptor rules_;  // of Landlock, or none
@@ -33,6 +34,5 @@ class Confinement {
 std::string confinement_text();
 /// Version of the kernel's Landlock; 0 without.
 int landlock_version();
-bool has_seccomp();
 
 }  // namespace lgabench

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/json.hpp>
-#include <lgabench/host/descriptor.hpp>
 
 namespace lgabench {
 

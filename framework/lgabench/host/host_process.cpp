@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,11 +18,14 @@
 #include <cstring>
 #include <fstream>
 #include <new>
+#include <set>
+#include <utility>
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/core/tree.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -71,6 +75,13 @@ std::vector<pid_t> descendants() {
   return all;
 }
 
+// What processes have of the system.
+struct Use {
+  long long memory = 0;         // bytes
+  std::uintmax_t nameless = 0;  // bytes on the disk of open files that were deleted
+  std::set<std::pair<dev_t, ino_t>> counted{};
+};
+
 // Bytes of its own and of shared memory; pages of mapped files are the system's to drop.
 long long memory_of(pid_t pid) {
   std::ifstream file(fmt::format("/proc/{}/status", pid));
@@ -81,15 +92,33 @@ long long memory_of(pid_t pid) {
   return kib << 10;
 }
 
+// Each pipe and socket as if it were full.
+void add_descriptors(pid_t pid, Use& use) {
+  constexpr long long pipe_bytes = 1 << 16, socket_bytes = 1 << 18;
+  std::error_code gone;
+  fs::directory_iterator link(fmt::format("/proc/{}/fd", pid), gone);
+  for (; !gone && link != fs::directory_iterator(); link.increment(gone)) {
+    struct stat about {};
+    if (::stat(link->path().c_str(), &about) != 0 || !use.counted.emplace(about.st_dev, about.st_ino).second) continue;
+    if (S_ISFIFO(about.st_mode)) use.memory += pipe_bytes;
+    if (S_ISSOCK(about.st_mode)) use.memory += socket_bytes;
+    const bool in_memory = fs::read_symlink(link->path(), gone).native().rfind("/memfd:", 0) == 0;  // the worker's
+    if (S_ISREG(about.st_mode) && about.st_nlink == 0 && !in_memory)
+      use.nameless += static_cast<std::uintmax_t>(about.st_blocks) * 512;
+  }
+}
+
 }  // namespace
 
 HostProcess::HostProcess(const HostCommand& command)
     : memory_bytes_(command.memory_bytes), in_foreground_(command.in_foreground) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // what the host leaves behind becomes ours
+  scratch_ = Descriptor(::open(command.scratch.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  if (scratch_.fd < 0) fail(command.scratch.c_str());
   int sockets[2], output[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0) fail("socketpair");
   socket_ = Descriptor(sockets[0]);
-  const Descriptor theirs(sockets[1]);
+  Descriptor theirs(sockets[1]);
   if (::pipe2(output, O_CLOEXEC) != 0) fail("pipe");
   output_ = Descriptor(output[0]);
   const Descriptor printing(output[1]);
@@ -100,14 +129,16 @@ HostProcess::HostProcess(const HostCommand& command)
     start.descriptors.emplace_back(persons_input, 0);
   else
     start.descriptors.insert(start.descriptors.end(), {{nothing.fd, 0}, {printing.fd, 1}, {printing.fd, 2}});
-  start.in_child = [&command] {
+  start.in_child = [&command, &theirs] {
     if (command.in_foreground)
       ::signal(SIGINT, SIG_DFL);
     else
       ::setsid();
-    return !command.confinement || command.confinement->apply();
+    return !command.confinement || command.confinement->apply(theirs.fd);
   };
   pid_ = start_process(start);
+  theirs.close();
+  if (command.confinement && has_seccomp()) refused_ = RefusedCalls(socket_.fd);
 }
 
 HostProcess::~HostProcess() {
@@ -116,22 +147,44 @@ HostProcess::~HostProcess() {
 }
 
 void HostProcess::wait(int fd, short events) {
-  std::array<pollfd, 2> watched{{{fd, events, 0}, {output_.fd, POLLIN, 0}}};
-  ::poll(watched.data(), watched.size(), 200);
-  pass_on_output();
-  watch_memory();
+  attend(fd, events, 200);
+  watch_use();
 }
 
-void HostProcess::watch_memory() {
-  constexpr auto often = std::chrono::milliseconds(100);
-  const auto now = std::chrono::steady_clock::now();
-  if (memory_bytes_ <= 0 || reaped_ || now - looked_ < often) return;
-  looked_ = now;
-  long long total = 0;
-  for (const pid_t pid : descendants()) total += memory_of(pid);
-  if (total <= memory_bytes_) return;
+void HostProcess::attend(int fd, short events, int milliseconds) {
+  std::array<pollfd, 3> watched{{{fd, events, 0}, {output_.fd, POLLIN, 0}, {refused_.descriptor(), POLLIN, 0}}};
+  ::poll(watched.data(), watched.size(), milliseconds);
+  pass_on_output();
+  refused_.take(watched[2].revents);
+}
+
+// Ten times a second, and less often where looking takes long.
+void HostProcess::watch_use() {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30, most_files = 10000;
+  const Clock::time_point start = Clock::now();
+  if (reaped_ || start < look_again_) return;
+  Use use;
+  for (const pid_t pid : descendants()) {
+    use.memory += memory_of(pid);
+    add_descriptors(pid, use);
+  }
+  const TreeSize files = tree_size(scratch_.fd, most_files);
+  look_again_ = start + std::max<Clock::duration>(std::chrono::milliseconds(100), 20 * (Clock::now() - start));
+  if (memory_bytes_ > 0 && use.memory > memory_bytes_) {
+    stop();
+    throw std::bad_alloc();
+  }
+  const std::uintmax_t allowed =
+      memory_bytes_ > 0 ? std::min(most_bytes, static_cast<std::uintmax_t>(memory_bytes_)) : most_bytes;
+  if (files.files <= most_files && files.bytes + use.nameless <= allowed) return;
   stop();
-  throw std::bad_alloc();
+  throw MethodGone(
+      files.files > most_files
+          ? fmt::format("it made more than {} files, or directories 100 deep, in its scratch directory", most_files)
+          : fmt::format("its files in its scratch directory took more than {:.1f} GiB",
+                        static_cast<double>(allowed) / (1 << 30)),
+      0);
 }
 
 void HostProcess::pass_on_output() {
@@ -171,8 +224,7 @@ void HostProcess::explain() {
   siginfo_t ended{};
   for (int i = 0; i < 400 && ended.si_pid == 0; ++i) {
     if (::waitid(P_PID, static_cast<id_t>(pid_), &ended, WEXITED | WNOHANG | WNOWAIT) != 0) break;
-    pass_on_output();
-    if (ended.si_pid == 0) ::usleep(5000);
+    if (ended.si_pid == 0) attend(-1, 0, 5);
   }
   const bool by_itself = ended.si_pid != 0;
   stop();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <lgabench/host/confine.hpp>
+#include <lgabench/host/system_calls.hpp>
 
 namespace lgabench {
 
@@ -20,8 +21,8 @@ struct HostCommand {
   std::filesystem::path scratch;             // its directory, HOME and TMPDIR; there already
   std::vector<std::string> also_set;         // variables beside those of the allow-list, as NAME=value
   const Confinement* confinement = nullptr;  // lent; none: it may reach what we may
-  long long memory_bytes = 0;                // of it and what it started, shared memory included; 0: no limit
-  bool in_foreground = false;                // on our terminal, until whoever debugs it ends it
+  long long memory_bytes = 0;  // of it and what it started, shared memory, pipes and sockets included; 0: no limit
+  bool in_foreground = false;  // on our terminal, until whoever debugs it ends it
 };
 
 /// Descriptor on which a worker that is debugged reads what the person types; its standard input is the job.
@@ -41,22 +42,26 @@ class HostProcess {
   /// Our end; to be taken once.
   Descriptor take_socket() { return std::move(socket_); }
   /// Returns when the socket `fd` has one of the poll() events, or after a moment; passes on what the host prints.
-  /// @throws std::bad_alloc where it has more memory than it may; it is then gone.
+  /// It is gone where it has more than it may: of memory @throws std::bad_alloc, of files in its directory MethodGone.
   void wait(int fd, short events);
+  /// Names of the system calls that it was refused so far.
+  const std::vector<std::string>& refused_calls() const { return refused_.names(); }
   /// The connection is at its end. @throws MethodGone that says how the process ended, always.
   [[noreturn]] void explain();
 
  private:
+  void attend(int fd, short events, int milliseconds);
   void pass_on_output();
-  void watch_memory();
+  void watch_use();
   void stop();
 
   long long memory_bytes_;
   bool in_foreground_;
-  std::chrono::steady_clock::time_point looked_{};
+  std::chrono::steady_clock::time_point look_again_{};
   pid_t pid_ = -1;
   bool reaped_ = false;
-  Descriptor socket_, output_;
+  Descriptor socket_, output_, scratch_;
+  RefusedCalls refused_;
   std::size_t printed_ = 0;
 };
 

@@ -9,18 +9,15 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
-#include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/asked.hpp>
 #include <lgabench/host/host_process.hpp>
 #include <lgabench/host/messages.hpp>
+#include <lgabench/host/reach.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
 namespace {
-
-// An installed interpreter has no lgabench_method: it comes with lgabench's data.
-fs::path python_package() { return fs::canonical(data_directory() / "python"); }
 
 HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   HostCommand command{
@@ -53,21 +50,15 @@ Json method_json(const PluginInfo& method) {
   return json;
 }
 
-// What a method's process may read: the data that learners use, and what a library or an interpreter starts with.
+// What a method's process may read: what it starts with, its own folder, and the data that learners use.
 Reach reach_of(const HostJob& job) {
-  const fs::path data = data_directory(), bin = program_directory();
-  Reach reach{{"/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib", "/etc/ld.so.cache", "/etc/ssl/openssl.cnf",
-               "/etc/localtime", "/usr/share/zoneinfo", "/usr/share/locale", "/proc/cpuinfo", "/proc/meminfo",
-               "/sys/devices/system/cpu", "/sys/kernel/mm/transparent_hugepage", "/dev/urandom",
-               bin / "lgabench-method", bin.parent_path() / "lib", job.method.file.parent_path()},
-              {job.scratch, "/dev/null", "/dev/zero"},
-              job.hidden,
-              job.method.asks == "network"};
-  if (const Json& python = job.method.python; !python.is_null()) {
-    reach.reads.push_back(python_package());
-    reach.reads.push_back(python.at("interpreter").get<std::string>());
-    for (const Json& path : python.at("reads")) reach.reads.push_back(path.get<std::string>());
-  }
+  const fs::path data = data_directory();
+  Reach reach = system_reach();
+  reach.network = job.method.asks == "network";
+  reach.reads.push_back(job.method.file.parent_path());
+  reach.writes.push_back(job.scratch);
+  reach.hidden = job.hidden;
+  if (!job.method.python.is_null()) add_python(reach, job.method.python);
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
     const std::string name = entry.path().filename();
@@ -130,6 +121,7 @@ class HostSession {
   }
 
   const protocol::Layout& layout() const { return layout_; }
+  const std::vector<std::string>& refused_calls() const { return process_.refused_calls(); }
   protocol::SharedMemory& observation() { return observation_; }
 
  private:
@@ -166,6 +158,11 @@ class HostSession {
 
 namespace {
 
+fs::path made(const fs::path& directory) {
+  fs::create_directory(directory);
+  return directory;
+}
+
 class HostedPolicy : public Policy {
  public:
   explicit HostedPolicy(std::shared_ptr<HostSession> session) : session_(std::move(session)) {}
@@ -195,10 +192,9 @@ class HostedPolicy : public Policy {
 
 }  // namespace
 
-HostedMethod::HostedMethod(const HostJob& job) : files_(job.scratch / "files") {
-  fs::create_directory(files_);
-  session_ = std::make_shared<HostSession>(job);
-}
+// Opened before the method runs, which may put something else in its place.
+HostedMethod::HostedMethod(const HostJob& job)
+    : files_(made(job.scratch / "files")), session_(std::make_shared<HostSession>(job)) {}
 HostedMethod::~HostedMethod() = default;
 
 Needs HostedMethod::needs(const Json&) const {
@@ -251,9 +247,8 @@ std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
   constexpr std::uintmax_t most = 64 << 20;
   std::vector<std::pair<std::string, std::string>> all;
   std::uintmax_t bytes = 0;
-  const PlainDirectory files(files_);  // which the method may have put something else in the place of
-  for (const std::string& name : files.kept_names()) try {
-      all.emplace_back(name, files.read_file(name, most - bytes));
+  for (const std::string& name : files_.kept_names()) try {
+      all.emplace_back(name, files_.read_file(name, most - bytes));
       bytes += all.back().second.size();
     } catch (const InputError& e) {  // too large, or changed by now
       to_stdout("files/{} is not kept: {}\n", name, e.what());
@@ -262,6 +257,8 @@ std::vector<std::pair<std::string, std::string>> HostedMethod::files() const {
 }
 
 void HostedMethod::end() { session_->call({{"type", "bye"}}, "bye"); }
+
+std::vector<std::string> HostedMethod::refused_calls() const { return session_->refused_calls(); }
 
 void HostedMethod::drop_method() { session_->call({{"type", "drop"}, {"what", "method"}}, "dropped"); }
 

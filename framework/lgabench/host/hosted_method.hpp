@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <lgabench/core/method.hpp>
+#include <lgabench/core/plain_directory.hpp>
 #include <lgabench/host/process_state.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -50,6 +51,8 @@ class HostedMethod : public Method {
   /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
   void end();
 
+  /// Names of the system calls that its process was refused so far.
+  std::vector<std::string> refused_calls() const;
   /// For check-plugin: destroys one of them; after both, needs() makes a new method in the same process.
   void drop_method();
   void drop_policy();
@@ -57,7 +60,7 @@ class HostedMethod : public Method {
   ProcessState state() const;
 
  private:
-  std::filesystem::path files_;
+  PlainDirectory files_;
   std::shared_ptr<HostSession> session_;
 };
 

@@ -8,10 +8,11 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/scratch.hpp>
-#include <lgabench/host/descriptor.hpp>
+#include <lgabench/host/reach.hpp>
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
@@ -36,11 +37,12 @@ std::vector<std::string> describing_environment() {
   return all;
 }
 
-// What the interpreter prints on the method, without a shell, started in an empty directory.
-Output output_of(const std::string& interpreter, const std::string& written) {
+// What the interpreter prints, without a shell, started in an empty directory; confined where the method's file is
+// read.
+Output output_of(const std::string& interpreter, const std::string& word, const Confinement* confinement) {
   const Scratch scratch("python");
   const std::string out = (scratch.path / "out").string(), error = (scratch.path / "error").string();
-  const std::string package = fs::weakly_canonical(data_directory() / "python").string();
+  const std::string package = python_package().string();
   const bool is_path = interpreter.find('/') != std::string::npos;
   const fs::path empty = scratch.path / "empty";
   fs::create_directory(empty);
@@ -48,11 +50,12 @@ Output output_of(const std::string& interpreter, const std::string& written) {
     return Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
   };
   const Descriptor to_out = made(out), to_error = made(error);
-  const pid_t pid = start_process({{is_path ? fs::absolute(interpreter).string() : interpreter, "-c", start,
-                                    fs::absolute(package).string(), fs::absolute(written).string()},
-                                   describing_environment(),
-                                   {{to_out.fd, 1}, {to_error.fd, 2}},
-                                   empty});
+  const pid_t pid =
+      start_process({{is_path ? fs::absolute(interpreter).string() : interpreter, "-c", start, package, word},
+                     describing_environment(),
+                     {{to_out.fd, 1}, {to_error.fd, 2}},
+                     empty,
+                     [confinement] { return !confinement || confinement->apply(); }});
   const int status = wait_for(pid);
   return {read_file(out), read_file(error), status};
 }
@@ -63,18 +66,38 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);
 }
 
+// What it printed. @throws PluginError with its last words where it failed.
+std::string answer_of(const std::string& interpreter, const std::string& word, const Confinement* confinement) {
+  const auto [out, error, status] = output_of(interpreter, word, confinement);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started)
+    throw PluginError(fmt::format("{}: cannot be started; --python names the interpreter", interpreter));
+  if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
+  return out;
+}
+
+// The descriptor that the file holds, by its absolute name, with where its interpreter reads. That is asked first,
+// without the file: its reader then reaches nothing else.
+Json description_of(const std::string& interpreter, const std::string& file) {
+  Json python = parse_json(answer_of(interpreter, "--interpreter", nullptr), interpreter);
+  const JsonReader reader(python, interpreter);
+  reader.at("reads").strings();
+  Reach reach = system_reach();
+  add_python(reach, python);
+  std::error_code not_there;  // its reader says so
+  reach.reads.push_back(fs::weakly_canonical(file.substr(0, file.rfind(':')), not_there).parent_path());
+  const Confinement confinement(reach);
+  python.update(parse_json(answer_of(reader.at("interpreter").string(), file, &confinement), file));
+  return python;
+}
+
 }  // namespace
 
 bool is_python_method(const std::string& word) { return row_words(word).front().find(".py:") != std::string::npos; }
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
-  const auto [out, error, status] = output_of(interpreter, written);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started)
-    throw PluginError(fmt::format("{}: cannot be started; --python names the interpreter", interpreter));
-  if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
   PluginInfo plugin;
   try {
-    const Json json = parse_json(out, written);
+    const Json json = description_of(interpreter, fs::absolute(written).string());
     const JsonReader reader(json, written);
     plugin.file = reader.at("file").string();
     plugin.kind = "method";
@@ -91,8 +114,6 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
       plugin.python[member] = reader.at(member).json();
     plugin.fingerprint = canonical(plugin.python["versions"]);
   } catch (const InputError& e) {
-    throw PluginError(fmt::format("{}: {}", written, e.what()));
-  } catch (const PluginError& e) {
     throw PluginError(fmt::format("{}: {}", written, e.what()));
   }
   check_asks(plugin.kind, plugin.asks);

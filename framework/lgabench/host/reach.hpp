@@ -1,0 +1,19 @@
+// Where a process reads that runs a method, or reads its file.
+#pragma once
+#include <filesystem>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/host/confine.hpp>
+
+namespace lgabench {
+
+/// What a library or an interpreter starts with: the system's, lgabench's own libraries, and nothing of a person.
+Reach system_reach();
+
+/// lgabench_method, which comes with lgabench's data: no installed interpreter has it.
+std::filesystem::path python_package();
+
+/// Adds the package, the interpreter and where it finds others: members of PluginInfo::python.
+void add_python(Reach& reach, const Json& python);
+
+}  // namespace lgabench
