@@ -16,7 +16,7 @@
 #include <lgabench/leaderboard/archive.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
-#include <lgabench/leaderboard/replay.hpp>
+#include <lgabench/leaderboard/recompute.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -26,7 +26,7 @@ struct LeaderboardArguments {
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;
-  leaderboard::ReplayOptions replay;
+  leaderboard::VerifyOptions verify;
   int jobs = 0;  // as many as there are cores
 };
 
@@ -56,10 +56,10 @@ void expect_board(const fs::path& board) {
 
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
 int verify(LeaderboardArguments a) {
-  if (a.replay.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
+  if (a.verify.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
   Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-  a.replay.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<fs::path> entries;
   if (!a.what.empty())
     entries.push_back(leaderboard::find_entry(a.board, a.what));
@@ -73,7 +73,7 @@ int verify(LeaderboardArguments a) {
     try {
       entry = leaderboard::read_entry(a.board, directory);
       if (!entry.withdrawn.is_null()) continue;
-      line = leaderboard::replay(a.board, entry, leaderboard::new_nonce(), catalogue, a.replay);
+      line = leaderboard::verification(a.board, entry, leaderboard::new_nonce(), catalogue, a.verify);
     } catch (const Error& e) {  // a plugin that is not here, another version, a cell that the host failed
       to_stderr("not verified: {}: {}\n", directory.string(), one_line(e.what()));
       ++unverified;
@@ -83,7 +83,7 @@ int verify(LeaderboardArguments a) {
     leaderboard::add_verification(a.board, entry, *line);
     const bool passed = line->at("passed");
     const std::string found =
-        a.replay.fresh ? fmt::format("{:+.3f} [{:+.3f}, {:+.3f}] on fresh scenes", line->at("difference").get<double>(),
+        a.verify.fresh ? fmt::format("{:+.3f} [{:+.3f}, {:+.3f}] on fresh scenes", line->at("difference").get<double>(),
                                      line->at("low").get<double>(), line->at("high").get<double>())
                        : fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
                                      line->at("bit_identical").get<int>(), line->at("cells").size(),
@@ -135,14 +135,14 @@ void add_leaderboard(CLI::App& app, int& exit) {
                    "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
   verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
   CLI::Option* const cells =
-      verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
+      verb->add_option("--cells", a->verify.cells, "verify: how many cells, chosen by a nonce drawn now")
           ->check(CLI::Range(1, 1000000))
           ->capture_default_str();
-  verb->add_flag("--fresh", a->replay.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
-  verb->add_option("--by", a->replay.by, "verify: who verifies");
+  verb->add_flag("--fresh", a->verify.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
+  verb->add_option("--by", a->verify.by, "verify: who verifies");
   verb->add_option("--jobs", a->jobs, "verify: cells computed at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->replay.pool.timeout_s, "verify: seconds after which a cell is stopped")
+  verb->add_option("--timeout", a->verify.pool.timeout_s, "verify: seconds after which a cell is stopped")
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "verify: FILE.py:Class of methods in Python")->delimiter(',');
@@ -175,7 +175,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->what));
-    a->replay.program = app.version();
+    a->verify.program = app.version();
     if (a->action != "add") expect_board(a->board);
     exit = a->action == "verify"  ? verify(*a)
            : a->action == "add"   ? add(*a)

@@ -64,6 +64,8 @@ struct Entry {
   fs::path place() const;
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
+  /// Of the machine that computed it first.
+  std::string processor() const { return evidence.front().at("machine").at("processor"); }
   Tier tier() const;
   /// What verifications on fresh scenes found: -1 where success differs, by Holm's correction over all of them, so that
   /// an honest entry is not lost by repetition; else 1; 0 where none was made.

@@ -157,8 +157,10 @@ std::vector<std::string> read_failures(const JsonReader& reader) {
 }
 
 void expect_verification(const JsonReader& line) {
-  line.only({"kind", "nonce", "cells", "bit_identical", "flips", "episodes", "passed", "by", "when", "program", "build",
-             "machine", "confinement", "scene_seed", "demonstrations", "training_seed", "difference", "low", "high"});
+  line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
+             "episodes", "passed",      "by",         "when",           "program",       "build",
+             "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
+             "low",      "high"});
   const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
   if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)

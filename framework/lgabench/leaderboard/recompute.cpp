@@ -1,4 +1,4 @@
-#include <lgabench/leaderboard/replay.hpp>
+#include <lgabench/leaderboard/recompute.hpp>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -10,13 +10,12 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/scratch.hpp>
+#include <lgabench/harness/recompute.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
+#include <lgabench/report/agreement.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
-
-constexpr double most_flips = .01;  // share of other outcomes that another processor may show
 
 void expect_same(const std::string& what, const std::string& here, const std::string& there) {
   if (here != there) throw InputError(fmt::format("{}: {} here, {} in the entry", what, here, there));
@@ -35,15 +34,12 @@ Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
   return installed;
 }
 
-RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cells, const fs::path& scratch,
-                const ReplayOptions& options) {
+RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cells, const VerifyOptions& options) {
   RunPlan plan;
   plan.cells = std::move(cells);
   plan.request = {{"suite", entry.setting.suite}, {"preset", entry.setting.preset}};
   plan.command = "lgabench leaderboard verify";
   plan.program = options.program;
-  plan.out = scratch / "run";
-  plan.cache = scratch / "cache";
   plan.pool = options.pool;
   const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
   if (is_live(entry.identity.answers))
@@ -53,28 +49,18 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   return plan;
 }
 
-// The played cells, in order. @throws InputError for one that the host failed.
-std::vector<PlayedCell> lines_of(const RunPlan& plan, const Entry& entry) {
-  Entry scratch = entry;  // whose Selections grow
+// The recomputed cells, in order, as lines of `now`, whose Selections grow. @throws InputError for one that the host
+// failed.
+std::vector<PlayedCell> lines_of(const RunPlan& plan, const Recomputed& recomputed, Entry& now) {
   std::vector<PlayedCell> lines;
-  for (const Cell& cell : plan.cells) {
-    const std::string name = key(cell);
-    const fs::path directory = plan.out / "cells" / name;
-    const report::CellResult result = report::read_cell(directory);
+  for (std::size_t i = 0; i < plan.cells.size(); ++i) {
+    const report::CellResult result = report::read_cell(recomputed.cells[i]);
     if (result.failed && result.fault != "plugin")
       throw InputError(
-          fmt::format("{}: failed by the {}: {}: not recorded", cell.title(), result.fault, result.reason));
-    lines.push_back(played_cell(result, directory, name, scratch));
+          fmt::format("{}: failed by the {}: {}: not recorded", plan.cells[i].title(), result.fault, result.reason));
+    lines.push_back(played_cell(result, recomputed.cells[i], key(plan.cells[i]), now));
   }
   return lines;
-}
-
-int other_outcomes(const PlayedCell& there, const PlayedCell& here) {
-  int flips = 0;
-  for (const auto& [arm, letters] : there.outcomes)
-    for (std::size_t i = 0; i < letters.size(); ++i)
-      flips += (letters[i] == success_letter) != (here.outcomes.at(arm).at(i) == success_letter);
-  return flips;
 }
 
 // What a cell's line says of its results: a digest of the files alone would vouch for outcomes that are not theirs.
@@ -85,25 +71,49 @@ Json results_of(const PlayedCell& cell) {
   return json;
 }
 
-// Recorded cells beside the same ones now: how many agree to the bit, and how many episodes ended otherwise.
-Json compared(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
+// A recorded line beside that of the same cell now. `excused`: on another processor.
+report::CellAgreement compared(const PlayedCell& before, const PlayedCell& now, bool excused) {
+  report::CellAgreement cell;
+  cell.episodes = before.episodes();
+  for (const auto& [arm, letters] : before.outcomes)
+    for (std::size_t i = 0; i < letters.size(); ++i) {
+      const bool there = letters[i] == success_letter, here = now.outcomes.at(arm).at(i) == success_letter;
+      cell.only_recorded += there && !here;
+      cell.only_recomputed += here && !there;
+    }
+  const bool comparable =
+      before.phi == now.phi && before.scenes == now.scenes && before.failed.empty() == now.failed.empty();
+  if (results_of(before) == results_of(now))
+    cell.agreement = report::Agreement::identical;
+  else if (excused && comparable)
+    cell.agreement =
+        before.outcomes == now.outcomes ? report::Agreement::same_outcomes : report::Agreement::other_outcomes;
+  return cell;
+}
+
+// A replay's line, without who made it.
+Json replayed(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
               const std::string& processor) {
-  int identical = 0, flips = 0, episodes = 0;
+  std::vector<std::pair<std::string, report::CellAgreement>> cells;
+  int identical = 0, only_recorded = 0, only_recomputed = 0, episodes = 0;
   Json keys = Json::array();
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const PlayedCell& before = entry.cells[chosen[i]];
     keys.push_back(before.key);
-    identical += results_of(before) == results_of(now[i]);
-    flips += other_outcomes(before, now[i]);
-    episodes += before.episodes();
+    const report::CellAgreement& cell =
+        cells.emplace_back("", compared(before, now[i], processor != entry.processor())).second;
+    identical += cell.agreement == report::Agreement::identical;
+    only_recorded += cell.only_recorded;
+    only_recomputed += cell.only_recomputed;
+    episodes += cell.episodes;
   }
-  const bool same_processor = std::any_of(entry.evidence.begin(), entry.evidence.end(), [&](const Json& one) {
-    return one.at("machine").at("processor") == processor;
-  });
-  const bool passed = identical == static_cast<int>(chosen.size()) ||
-                      (!same_processor && flips <= most_flips * static_cast<double>(episodes));
-  return {{"kind", "replay"}, {"cells", keys},        {"bit_identical", identical},
-          {"flips", flips},   {"episodes", episodes}, {"passed", passed}};
+  return {{"kind", "replay"},
+          {"cells", keys},
+          {"bit_identical", identical},
+          {"flips", only_recorded + only_recomputed},
+          {"only_recorded", only_recorded},
+          {"episodes", episodes},
+          {"passed", report::verdict_of(cells) != report::Reproduction::differs}};
 }
 
 // Successes of the first arm, over the cells of one scenario and layout: the same policy on the board's scenes and on
@@ -164,8 +174,8 @@ std::string new_nonce() {
   return nonce;
 }
 
-std::optional<Json> replay(const fs::path& board, const Entry& entry, const std::string& nonce,
-                           const Catalogue& catalogue, const ReplayOptions& options) {
+std::optional<Json> verification(const fs::path& board, const Entry& entry, const std::string& nonce,
+                                 const Catalogue& catalogue, const VerifyOptions& options) {
   Installed installed = installed_as(entry, catalogue);
   const std::vector<std::size_t> chosen =
       options.fresh ? one_of_each(entry, nonce) : chosen_cells(entry, nonce, options.cells);
@@ -174,12 +184,13 @@ std::optional<Json> replay(const fs::path& board, const Entry& entry, const std:
       cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
   std::vector<Cell> cells;
   for (const std::size_t i : chosen) cells.push_back(all[i]);
-  const Scratch scratch("verify");
-  const RunPlan plan = plan_of(board, entry, std::move(cells), scratch.path, options);
-  if (run_suite(plan, catalogue).interrupted) return std::nullopt;
-  const RunRecord run = read_run_record(plan.out);
-  const std::vector<PlayedCell> now = lines_of(plan, entry);
-  Json line = options.fresh ? compared_fresh(entry, chosen, now) : compared(entry, chosen, now, run.processor());
+  const RunPlan plan = plan_of(board, entry, std::move(cells), options);
+  const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
+  if (!recomputed) return std::nullopt;
+  const RunRecord& run = recomputed->record;
+  Entry scratch = entry;  // whose Selections grow
+  const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
+  Json line = options.fresh ? compared_fresh(entry, chosen, now) : replayed(entry, chosen, now, run.processor());
   line.update({{"nonce", nonce},
                {"by", options.by},
                {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},

@@ -1,0 +1,31 @@
+// An entry's cells, computed again by this installation: are its outcomes what its method does?
+#pragma once
+#include <optional>
+#include <string>
+
+#include <lgabench/harness/run_suite.hpp>
+#include <lgabench/leaderboard/entry.hpp>
+
+namespace lgabench::leaderboard {
+
+struct VerifyOptions {
+  std::size_t cells = 30;   // 30 find 10 % falsified cells in 96 of 100 cases
+  bool fresh = false;       // play all scenarios on other test scenes instead
+  std::string by, program;  // who verifies, with what: as --version says
+  PoolOptions pool;
+};
+
+/// 128 bits that nobody knew before, as 32 hexadecimal digits.
+std::string new_nonce();
+
+/// A line of verifications.jsonl. Plays the cells that `nonce` chooses, confined and on a cache of their own; by
+/// report::verdict_of() it passes unless it differs, and the same bits are owed on the processor that the entry was
+/// computed on. With `fresh`: one number of demonstrations and one training seed, which the nonce chooses as well as
+/// the scene seed; it passes where the 95 % interval of the difference to the board's scenes (Agresti and Caffo 2000)
+/// holds 0. None where it was interrupted.
+/// @throws InputError where this installation cannot play the entry: another preset, another version of method or
+/// engine, a cell that the host failed. PluginError for a plugin that is not there.
+std::optional<Json> verification(const fs::path& board, const Entry& entry, const std::string& nonce,
+                                 const Catalogue& catalogue, const VerifyOptions& options);
+
+}  // namespace lgabench::leaderboard
