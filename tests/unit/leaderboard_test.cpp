@@ -8,6 +8,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
 #include "../schemas.hpp"
@@ -15,25 +16,6 @@
 
 namespace lgabench::leaderboard {
 namespace {
-
-Json replay_of(const Entry& entry, const std::string& by, const std::string& processor, bool passed = true) {
-  const std::string nonce(32, '7');
-  Json cells = Json::array();
-  for (const std::size_t i : chosen_cells(entry, nonce, 3)) cells.push_back(entry.cells[i].key);
-  return {{"kind", "replay"},
-          {"nonce", nonce},
-          {"cells", cells},
-          {"bit_identical", 3},
-          {"flips", 0},
-          {"episodes", 120},
-          {"passed", passed},
-          {"by", by},
-          {"when", "2026-01-02"},
-          {"program", "lgabench 0.2.0"},
-          {"build", Json::object()},
-          {"machine", {{"processor", processor}}},
-          {"confinement", "Landlock 6, seccomp"}};
-}
 
 TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
   const TemporaryDirectory board;
@@ -43,7 +25,9 @@ TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
   for (auto& arm : entry.cells[2].outcomes) arm.second = std::string(40, failed_cell_letter);
   write_entry(board.path, entry);
   add_verification(board.path, entry, replay_of(entry, "somebody", "another"));
-  const Entry read = read_entry(board.path, entry.place());
+  EXPECT_EQ(read_entries(board.path).front().tier(), Tier::recomputed) << "a claim";
+  vouch(board.path, entry.id(), "1");
+  const Entry read = read_entries(board.path).front();
   EXPECT_EQ(entry_text(read), entry_text(entry));
   EXPECT_EQ(cells_text(read), cells_text(entry));
   EXPECT_EQ(read.tier(), Tier::reproduced);
@@ -137,14 +121,21 @@ TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
               "/cells: expected a cell or more");
 }
 
-TEST(LeaderboardEntry, TiersFollowFromVerifications) {
+TEST(LeaderboardEntry, TiersFollowFromLinesThatSomebodyVouchesFor) {
   Entry entry = made_entry(small_setting(), "a", .5);
+  EXPECT_EQ(why_not_ranked(entry), "not yet replayed");
+  entry.verifications.push_back(replay_of(entry, "a", "another"));
   EXPECT_EQ(entry.tier(), Tier::recomputed);
-  entry.verifications.push_back(replay_of(entry, "a", "another"));  // by the same person
+  EXPECT_EQ(why_not_ranked(entry), "not yet replayed");
+  add_vouched(entry, replay_of(entry, "a", "another"));  // by the same person
   EXPECT_EQ(entry.tier(), Tier::replayed);
-  entry.verifications.push_back(replay_of(entry, "b", "another"));
+  EXPECT_EQ(why_not_ranked(entry), "");
+  add_vouched(entry, replay_of(entry, "b", "another"));
   EXPECT_EQ(entry.tier(), Tier::reproduced);
   entry.verifications.push_back(replay_of(entry, "c", "third", false));
+  EXPECT_EQ(why_not_ranked(entry), "") << "a claim";
+  EXPECT_EQ(claims(entry), std::vector<std::string>{"claimed by c: a replay differed"});
+  entry.vouched.insert(line_hash(entry.verifications.back()));
   EXPECT_EQ(entry.tier(), Tier::recomputed);
   EXPECT_EQ(why_not_ranked(entry), "a replay differed");
 }
@@ -160,15 +151,16 @@ TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten)
 }
 
 TEST(LeaderboardEntry, RepeatedFreshVerificationsAreTestedTogether) {
-  Entry entry = made_entry(small_setting(), "a", .5);
+  Entry entry = replayed_entry(small_setting(), "a", .5);
   EXPECT_EQ(entry.fresh(), 0);
   const auto verify = [&entry](double difference) {  // with a standard error of .05
-    Json line = replay_of(entry, "b", "another", std::abs(difference) <= .098);
+    Json line = replay_of(entry, "b", "another");
     line.update({{"kind", "fresh"},
+                 {"passed", std::abs(difference) <= .098},
                  {"difference", difference},
                  {"low", difference - .05 * 1.959964},
                  {"high", difference + .05 * 1.959964}});
-    entry.verifications.push_back(line);
+    add_vouched(entry, line);
   };
   verify(.11);  // p = .028
   EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
@@ -232,9 +224,9 @@ TEST(Standings, AHugeDifferenceBearsTheCorrectionForManyEntries) {
 
 TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   const Setting setting = small_setting();
-  const std::vector<Entry> entries{made_entry(setting, "a", .8), made_entry(setting, "b", .8),
-                                   made_entry(setting, "c", .3), made_entry(setting, "oracle", 1, "reference"),
-                                   made_entry(setting, "random_object", .5, "reference")};
+  const std::vector<Entry> entries{replayed_entry(setting, "a", .8), replayed_entry(setting, "b", .8),
+                                   replayed_entry(setting, "c", .3), replayed_entry(setting, "oracle", 1, "reference"),
+                                   replayed_entry(setting, "random_object", .5, "reference")};
   std::vector<const Entry*> table;
   for (const Entry& entry : entries) table.push_back(&entry);
   const std::vector<Standing> all = standings(table);
@@ -256,7 +248,7 @@ TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.cells[0].failed = "signal 11";
   entry.cells[0].outcomes["test"] = std::string(40, failed_cell_letter);
   const Standing standing = standings({&entry}).front();
@@ -266,7 +258,7 @@ TEST(Standings, EpisodesOfAFailedCellAreLost) {
 }
 
 TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   PlayedCell& cell = entry.cells[0];
   cell.failed = "signal 11";
   cell.outcomes["test"] = std::string(40, failed_cell_letter);
@@ -278,8 +270,21 @@ TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
   EXPECT_EQ(standings({&entry}).front().lm_queries, 0);
 }
 
+TEST(Standings, AnEntryThatNobodyReplayedHasNoInfluence) {
+  std::vector<Entry> entries{replayed_entry(small_setting(), "a", .8), replayed_entry(small_setting(), "b", .3)};
+  const auto rank = [&entries] {
+    std::vector<const Entry*> table;
+    for (const Entry& entry : entries) table.push_back(&entry);
+    EXPECT_EQ(not_yet_replayed(table).size(), entries.size() - 2);
+    return standings(table).back().rank;
+  };
+  EXPECT_EQ(rank(), 2);
+  entries.push_back(made_entry(small_setting(), "c", 1));
+  EXPECT_EQ(rank(), 2);
+}
+
 TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.identity.row.asks = "truth";
   EXPECT_EQ(why_not_ranked(entry), "asks for the truth");
   entry.identity.row.asks = "";

@@ -22,7 +22,7 @@ namespace lgabench::cli {
 namespace {
 
 struct LeaderboardArguments {
-  std::string action, what, about, against, reason, python = "python3";
+  std::string action, what, line, about, against, reason, python = "python3";
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;
@@ -103,6 +103,13 @@ int withdraw(const LeaderboardArguments& a) {
   return ok;
 }
 
+int vouch(const LeaderboardArguments& a) {
+  if (a.what.empty() || a.line.empty())
+    throw InputError("leaderboard vouch: expected ENTRY, and LINE: its number in verifications.jsonl, or withdrawn");
+  to_stdout("vouched for {}\n", leaderboard::vouch(a.board, a.what, a.line));
+  return ok;
+}
+
 int check(const LeaderboardArguments& a) {
   const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
   for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
@@ -125,11 +132,13 @@ int build(const LeaderboardArguments& a) {
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
-  const Words actions{"add", "verify", "build", "check", "withdraw"};
-  verb->add_option("ACTION", a->action, "add, verify, build, check or withdraw")
+  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw"};
+  verb->add_option("ACTION", a->action, "add, verify, vouch, build, check or withdraw")
       ->required()
       ->check(one_of("action", actions));
-  verb->add_option("WHAT", a->what, "add: a run's directory; verify (else all), withdraw: an entry's, or its id");
+  verb->add_option("WHAT", a->what,
+                   "add: a run's directory; verify (else all), vouch, withdraw: an entry's, or its id");
+  verb->add_option("LINE", a->line, "vouch: a line's number in verifications.jsonl, or withdrawn");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
                    "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
@@ -153,7 +162,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
-  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
+  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
   arrange(*verb, "verify",
           {{"--by", "NAME"},
@@ -169,16 +178,20 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
       "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"
-      "verify plays cells again, confined and without a cache, and records what it finds. check reads files alone.\n"
+      "verify plays cells again, confined and without a cache, and records what it finds; vouch lets a line that was\n"
+      "found count: without it a line is a claim, and an entry has no rank. check reads files alone.\n"
       "Exit 1: refused, different, or a problem. Exit 2: none of these, and verify could not verify some entry.");
   verb->callback([a, actions, verb, &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->what));
+    if (!a->line.empty() && a->action != "vouch")
+      throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->line));
     a->verify.program = app.version();
     if (a->action != "add") expect_board(a->board);
     exit = a->action == "verify"  ? verify(*a)
            : a->action == "add"   ? add(*a)
+           : a->action == "vouch" ? vouch(*a)
            : a->action == "build" ? build(*a)
            : a->action == "check" ? check(*a)
                                   : withdraw(*a);

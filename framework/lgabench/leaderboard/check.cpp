@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include <lgabench/abstraction/recorded.hpp>
@@ -129,22 +130,38 @@ void expect_current(const fs::path& board, const std::vector<Entry>& entries, co
   }
 }
 
+// Every line that is vouched for is there: an entry that changed would lose what it was vouched for.
+void expect_vouched(const std::vector<Entry>& entries, const Vouched& vouched, Checked& checked) {
+  std::set<std::string> there;
+  for (const Entry& entry : entries) {
+    for (const Json& line : entry.verifications) there.insert(entry.hash() + line_hash(line));
+    if (!entry.withdrawn.is_null()) there.insert(entry.hash() + line_hash(entry.withdrawn));
+  }
+  for (const auto& [entry, lines] : vouched)
+    for (const std::string& line : lines)
+      if (there.count(entry + line) == 0)
+        checked.problems.push_back(
+            fmt::format("{}: /{}: no entry of this hash has the line {}", vouched_file, entry, line));
+}
+
 }  // namespace
 
 Checked check(const fs::path& board, const std::string& against, const std::vector<fs::path>& documents) {
   Checked checked;
   std::vector<Entry> entries;
   try {
+    const Vouched vouched = read_vouched(board);
     for (const fs::path& directory : entry_directories(board)) {
       ++checked.entries;
       try {
-        entries.push_back(read_entry(board, directory));
+        entries.push_back(read_entry(board, directory, vouched));
         expect_cassette(board, entries.back(), checked);
       } catch (const InputError& e) {
         checked.problems.emplace_back(e.what());
       }
     }
-  } catch (const InputError& e) {  // something else than directories
+    expect_vouched(entries, vouched, checked);
+  } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }
   expect_same_scenes(entries, checked);

@@ -73,6 +73,13 @@ std::string to_string(Tier tier) {
   return words[static_cast<int>(tier)];
 }
 
+// Only the run that the entry was made from: whoever adds evidence changes nobody's tier.
+Tier tier_of(const Entry& entry, const Json& line) {
+  const Json& first = entry.evidence.front();
+  const bool elsewhere = first.at("by") != line.at("by") && first.at("machine") != line.at("machine");
+  return elsewhere ? Tier::reproduced : Tier::replayed;
+}
+
 fs::path Entry::place() const {
   const std::string& method = identity.row.id;
   const bool plain = !method.empty() && method.find_first_not_of(
@@ -84,25 +91,29 @@ fs::path Entry::place() const {
 
 std::string Entry::hash() const { return sha256(id() + "\n" + cells_text(*this)); }
 
+bool Entry::was_replayed() const {
+  return std::any_of(verifications.begin(), verifications.end(),
+                     [this](const Json& line) { return line.at("kind") == "replay" && counts(line); });
+}
+
+bool Entry::replay_differed() const {
+  return std::any_of(verifications.begin(), verifications.end(), [this](const Json& line) {
+    return line.at("kind") == "replay" && counts(line) && !line.at("passed").get<bool>();
+  });
+}
+
 Tier Entry::tier() const {
   Tier tier = Tier::recomputed;
-  const auto elsewhere = [this](const Json& line) {
-    return std::none_of(evidence.begin(), evidence.end(), [&](const Json& one) {
-      return one.at("by") == line.at("by") || one.at("machine") == line.at("machine");
-    });
-  };
+  if (replay_differed()) return tier;
   for (const Json& line : verifications)
-    if (line.at("kind") == "replay") {
-      if (!line.at("passed").get<bool>()) return Tier::recomputed;  // one that failed is not outvoted
-      tier = std::max(tier, elsewhere(line) ? Tier::reproduced : Tier::replayed);
-    }
+    if (line.at("kind") == "replay" && counts(line)) tier = std::max(tier, tier_of(*this, line));
   return tier;
 }
 
 int Entry::fresh() const {
   std::vector<double> p;
   for (const Json& line : verifications)
-    if (line.at("kind") == "fresh") p.push_back(p_of_fresh(line));
+    if (line.at("kind") == "fresh" && counts(line)) p.push_back(p_of_fresh(line));
   const std::vector<double> adjusted = report::holm(p);
   return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= .05 ? -1 : 1;
 }
@@ -137,7 +148,8 @@ std::vector<fs::path> entry_directories(const fs::path& board) {
 
 std::vector<Entry> read_entries(const fs::path& board) {
   std::vector<Entry> all;
-  for (const fs::path& directory : entry_directories(board)) all.push_back(read_entry(board, directory));
+  const Vouched vouched = read_vouched(board);
+  for (const fs::path& directory : entry_directories(board)) all.push_back(read_entry(board, directory, vouched));
   return all;
 }
 

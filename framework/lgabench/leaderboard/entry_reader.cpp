@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include <lgabench/abstraction/quality.hpp>
-#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench::leaderboard {
@@ -156,38 +156,9 @@ std::vector<std::string> read_failures(const JsonReader& reader) {
   return words;
 }
 
-void expect_verification(const JsonReader& line) {
-  line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
-             "episodes", "passed",      "by",         "when",           "program",       "build",
-             "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
-             "low",      "high"});
-  const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
-  if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
-  if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
-    line.at("nonce").fail("32 hexadecimal digits");
-  line.at("passed").boolean();
-  for (const char* text : {"by", "when", "program", "confinement"}) line.at(text).string();
-  line.at("machine").at("processor").string();
-  if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
-  for (const char* count : {"bit_identical", "flips", "episodes"}) line.at(count).integer(0, INT64_MAX);
-  if (kind != "fresh") return;
-  for (const char* number : {"difference", "low", "high"}) line.at(number).number();
-  if (line.at("low").number() >= line.at("high").number()) line.at("high").fail("more than /low");
-}
-
-// The cells that a verification says it played are those that its nonce chooses.
-void expect_chosen(const JsonReader& line, const Entry& entry) {
-  if (line.at("kind").string() != "replay") return;
-  const std::vector<std::string> said = line.at("cells").strings();
-  std::vector<std::string> chosen;
-  for (const std::size_t i : chosen_cells(entry, line.at("nonce").string(), said.size()))
-    chosen.push_back(entry.cells[i].key);
-  if (said != chosen) line.at("cells").fail("the cells that the nonce chooses");
-}
-
 }  // namespace
 
-Entry read_entry(const fs::path& board, const fs::path& directory) {
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched& vouched) {
   const fs::path path = board / directory;
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
@@ -242,10 +213,10 @@ Entry read_entry(const fs::path& board, const fs::path& directory) {
   if (fs::exists(checks))
     for (const Json& line : parse_json_lines(read_file(checks, Links::refused), checks.string())) {
       const JsonReader at(line, fmt::format("{}: line {}", checks.string(), ++number));
-      expect_verification(at);
-      expect_chosen(at, entry);
+      expect_verification(at, entry);
       entry.verifications.push_back(line);
     }
+  if (const auto own = vouched.find(entry.hash()); own != vouched.end()) entry.vouched = own->second;
   return entry;
 }
 

@@ -9,7 +9,7 @@
 namespace lgabench::leaderboard {
 
 struct VerifyOptions {
-  std::size_t cells = 30;   // 30 find 10 % falsified cells in 96 of 100 cases
+  std::size_t cells = enough_cells;
   bool fresh = false;       // play all scenarios on other test scenes instead
   std::string by, program;  // who verifies, with what: as --version says
   PoolOptions pool;
