@@ -9,6 +9,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import time
 import unittest
 
 from case import Case, command_line
@@ -162,6 +163,63 @@ class Forgeries(Case):
         vouched["0" * 64] = ["1" * 64]
         (self.board / "vouched.json").write_text(json.dumps(vouched, indent=1) + "\n")
         self.assertIn("vouched.json: /" + "0" * 64 + ": no entry of this hash has the line", self.leaderboard("check", expect=1).stderr)
+
+    def test_maintainers_files_and_old_lines_stay(self):
+        file = self.board / "vouched.json"
+        text = file.read_text()
+        file.write_text(text.replace("\n ", "\n  "))
+        said = "vouched.json: changed since HEAD: it is the maintainers' (--maintainer)"
+        self.assertIn(said, self.check(expect=1))
+        self.assertIn("0 problems", self.check("--maintainer", expect=0))
+        file.unlink()
+        self.assertIn(said, self.check(expect=1))
+        file.write_text(text)
+        (self.rival / "verifications.jsonl").write_text("")
+        self.assertIn("verifications.jsonl: a verification changed since HEAD", self.check(expect=1))
+
+    def test_a_revision_that_is_not_there(self):
+        said = self.leaderboard("check", "--against", "origin/mian", expect=2).stderr
+        self.assertIn("--against origin/mian: expected a revision of git that board has, and its history", said)
+
+    def test_a_preset_or_an_engine_that_nobody_has(self):
+        def few(entry):
+            entry["preset"].update(seeds=[0], episodes=10)
+        forged = self.forge(few, lambda line: None if line["training_seed"] else {**line, "outcomes": {
+            arm: "." * 10 for arm in line["outcomes"]}})
+        self.assertRegex(self.check(expect=1), rf"{forged.parent.name}/q2-leaderboard: preset q2-leaderboard: \w+ here, \w+ in the entry")
+        shutil.rmtree(forged)
+        self.invent(lambda entry: entry["identity"]["engine"].update(version="9.9"))
+        self.assertIn("version of mujoco: 0.1 here, 9.9 in the entry", self.check(expect=1))
+
+    def test_sizes_are_bounded_before_anything_is_computed(self):
+        self.forge(lambda entry: entry["preset"].update(episodes=1000000), like=self.entry("random_object"))
+        started = time.monotonic()
+        self.assertIn("/preset/episodes: expected a whole number from 1 to 10000", self.leaderboard("check", "--against", "HEAD", expect=1).stderr)
+        self.assertLess(time.monotonic() - started, 60)
+
+    def test_commands_on_pages_are_words(self):
+        evil = "text'; touch owned; '"
+        forged = self.invent(lambda entry: entry["identity"]["options"].update(network=evil))
+        self.add_line(forged, cells=12)
+        self.leaderboard("vouch", forged.parent.name, "1")
+        self.rows()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', (self.board / "q2.html").read_text(), re.S)[1])
+        command = next(entry["command"] for entry in data["entries"] if entry["id"] == forged.parent.name)
+        self.assertIn(f"network={evil}", next(word for word in shlex.split(command) if word.startswith("lga+")))
+        subprocess.run(["sh", "-c", f"lgabench() {{ :; }}; {command}"], cwd=self.dir, check=True)
+        self.assertFalse((self.dir / "owned").exists())
+
+    def test_a_replay_compares_what_a_method_asks_and_its_options(self):
+        """Before anything is played: a plugin that asks for more than its entry says would be given it."""
+        for like, change, says in (
+                ("human", lambda entry: entry["identity"].pop("asks"), "whom human asks: specify here, nobody in the entry"),
+                ("lga", lambda entry: entry["identity"]["options"].pop("loss"), 'options of lga: {"batch_size"'),
+                ("lga", lambda entry: entry["identity"]["options"].update(loss="none"), "loss")):
+            with self.subTest(says):
+                forged = self.forge(change, like=self.entry(like))
+                said = self.leaderboard("verify", forged.parent.name, "--by", "B. Reader", "--cells", "1", expect=2).stderr
+                self.assertIn(says, said)
+                self.assertFalse((forged / "verifications.jsonl").exists())
 
     def test_counts_that_contradict_each_other(self):
         for members, says in (({"flips": 99999}, "/flips: expected a whole number from 0"),

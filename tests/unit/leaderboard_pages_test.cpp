@@ -120,7 +120,7 @@ TEST(Board, DocumentsHaveTheTablesOfReadme) {
   const TemporaryDirectory scratch;
   const fs::path board = scratch.path / "results/board", document = scratch.path / "docs/results.md";
   const std::string before = "# Results\n\nBy hand.\n\n<!-- board:q1-board -->\n", after = "<!-- /board -->\n\nMore.\n";
-  const auto problems = [&] { return all(check(board, "", {document}).problems); };
+  const auto problems = [&] { return all(check(board, {"", false, {document}}).problems); };
   fs::create_directories(board / "entries");
   write_file(document, before + after);
   build(board, {document});
@@ -169,21 +169,25 @@ TEST(Board, AnOldOutcomeDoesNotChangeAndARecordStays) {
   Entry entry = made_entry(small_setting(), "a", .5), gone = made_entry(small_setting(), "b", .5);
   for (const Entry& one : {entry, gone}) write_replayed(board.path, one);
   build(board.path);
-  EXPECT_SAYS(all(check(board.path, "HEAD").notes), "not compared with HEAD");
+  const auto problems_since = [&](const std::string& revision, bool maintainer) {
+    return all(check(board.path, {revision, maintainer, {}}).problems);
+  };
+  EXPECT_SAYS(message_of<InputError>([&] { problems_since("HEAD", true); }), "--against HEAD: expected a revision");
   git(board.path, "init -q");
   git(board.path, "add .");
   git(board.path, "commit -qm before");
   write_replayed(board.path, made_entry(small_setting(), "c", .5));  // a new one may come
   withdraw(board.path, gone.id(), "a mistake", "2026-01-01");        // and an old one be withdrawn
   build(board.path);
-  EXPECT_EQ(all(check(board.path, "HEAD").problems), "");
-  EXPECT_EQ(all(check(board.path, "HEAD").notes), "");
+  EXPECT_SAYS(message_of<InputError>([&] { problems_since("HAED", true); }), "--against HAED: expected a revision");
+  EXPECT_EQ(problems_since("HEAD", true), "");
+  EXPECT_EQ(problems_since("HEAD", false), "vouched.json: changed since HEAD: it is the maintainers' (--maintainer)");
   char& letter = entry.cells[3].outcomes["test"][0];
   letter = letter == '.' ? 'a' : '.';
   entry.about["by"] = "somebody else";
   write_entry(board.path, entry);
   fs::remove_all(board.path / gone.place());
-  const std::string problems = all(check(board.path, "HEAD").problems);
+  const std::string problems = problems_since("HEAD", true);
   EXPECT_SAYS(problems, "cells.jsonl: an outcome or a cell changed since HEAD");
   EXPECT_SAYS(problems, "/about changed since HEAD");
   EXPECT_SAYS(problems, "is gone (leaderboard withdraw keeps the record) since HEAD");

@@ -90,6 +90,23 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
               "the hash of /identity");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["preset"]["episodes"] = 20; }); }),
               "the hash of /preset");
+  const auto preset = [&](const char* member, const Json& value) {
+    return after([&](auto& path) { json(path, [&](Json& e) { e["preset"][member] = value; }); });
+  };
+  EXPECT_SAYS(preset("episodes", 1000000), "/preset/episodes: expected a whole number from 1 to 10000");
+  EXPECT_SAYS(preset("seeds", std::vector<int>(9000)), "/preset: expected at most 10000 cells");
+  EXPECT_SAYS(preset("layouts", {"$(x)"}), "/preset/layouts/0: expected letters, digits and _");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["identity"]["engine"]["id"] = "a; touch b"; }); }),
+              "/identity/engine/id: expected an id");
+  EXPECT_SAYS(after([&](auto& path) {
+                json(path,
+                     [](Json& e) { e["phi"]["heart"][0][0]["quality"]["target"]["textures"]["precision"] = 1e300; });
+              }),
+              "/precision: expected a number from 0 to 1");
+  EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"lm_queries\":112.0", "\"lm_queries\":1e+300"); }),
+              "/lm_queries: expected a number from 0 to 1e+15");
+  EXPECT_SAYS(after([&](auto& path) { write_file(path / "cells.jsonl", std::string((16 << 20) + 1, ' ')); }),
+              "cells.jsonl: expected at most 16777216 bytes");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),

@@ -27,6 +27,7 @@ struct LeaderboardArguments {
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;
   leaderboard::VerifyOptions verify;
+  bool maintainer = false;
   int jobs = 0;  // as many as there are cores
 };
 
@@ -111,8 +112,9 @@ int vouch(const LeaderboardArguments& a) {
 }
 
 int check(const LeaderboardArguments& a) {
-  const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
-  for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
+  leaderboard::CheckOptions options{a.against, a.maintainer, a.documents};
+  options.installed = scan_plugins(plugin_directories(a.plugin_path));
+  const leaderboard::Checked checked = leaderboard::check(a.board, options);
   to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
             checked.problems.size() == 1 ? "" : "s");
   return print_all(checked.problems, "");
@@ -158,6 +160,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
+  verb->add_flag("--maintainer", a->maintainer, "build, check: with --against, vouched.json may differ");
   verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
@@ -174,7 +177,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
            {"--methods", "FILE.py:CLASS,..."},
            {"--python", "PROGRAM"}});
   arrange(*verb, "build and check",
-          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}});
+          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
       "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"

@@ -33,6 +33,12 @@ Json to_json(const Identity& identity) {
   return json;
 }
 
+bool is_id(const std::string& text) {
+  return !text.empty() && text.find_first_not_of(
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                              "0123456789_-") == std::string::npos;
+}
+
 std::string id_of(const Identity& identity) { return sha256(canonical(to_json(identity))).substr(0, 16); }
 
 int PlayedCell::episodes() const {
@@ -82,10 +88,8 @@ Tier tier_of(const Entry& entry, const Json& line) {
 
 fs::path Entry::place() const {
   const std::string& method = identity.row.id;
-  const bool plain = !method.empty() && method.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789_-") == std::string::npos;
-  if (!plain) throw InputError(fmt::format("method \"{}\": expected an id of letters, digits, _ and -", method));
+  if (!is_id(method))
+    throw InputError(fmt::format("method \"{}\": expected an id of letters, digits, _ and -", method));
   return fs::path("entries") / method / id() / setting.name();
 }
 

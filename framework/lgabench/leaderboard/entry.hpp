@@ -21,6 +21,8 @@ struct Identity {
   std::uint64_t scene_seed = 0;
 };
 Json to_json(const Identity& identity);
+/// Letters, digits, _ and -: an id that may stand in a path.
+bool is_id(const std::string& text);
 /// The first 16 digits of the SHA-256 of its canonical JSON.
 std::string id_of(const Identity& identity);
 

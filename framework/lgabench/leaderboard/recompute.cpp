@@ -21,17 +21,17 @@ void expect_same(const std::string& what, const std::string& here, const std::st
   if (here != there) throw InputError(fmt::format("{}: {} here, {} in the entry", what, here, there));
 }
 
-// What this installation would play as the entry.
-Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
-  Installed installed = installed_setting(entry.setting.suite, entry.setting.preset);
-  expect_same("preset " + entry.setting.name(), hash(installed.setting).substr(0, 8),
-              entry.identity.preset_sha256.substr(0, 8));
-  expect_same("scene seed", std::to_string(installed.setting.scene_seed), std::to_string(entry.setting.scene_seed));
-  const Competitor& row = entry.identity.row;
-  if (!row.is_reference()) expect_same("version of " + row.id, catalogue.find("method", row.id).version, row.version);
-  expect_same("version of " + entry.identity.engine, catalogue.find("engine", entry.identity.engine).version,
-              entry.identity.engine_version);
-  return installed;
+// What an entry says of its method is what the installed one says of itself: whom it asks, and all of its options.
+void expect_method(const Competitor& row, const Catalogue& catalogue) {
+  if (row.is_reference()) {
+    expect_same("options of " + row.id, "{}", canonical(row.options));
+    return;
+  }
+  const PluginInfo& installed = catalogue.find("method", row.id);
+  const auto named = [](const std::string& asks) { return asks.empty() ? "nobody" : asks; };
+  expect_same("version of " + row.id, installed.version, row.version);
+  expect_same("whom " + row.id + " asks", named(installed.asks), named(row.asks));
+  expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
 }
 
 RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cells, const VerifyOptions& options) {
@@ -167,6 +167,16 @@ std::vector<std::size_t> one_of_each(const Entry& entry, const std::string& nonc
 
 }  // namespace
 
+Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
+  Installed installed = installed_setting(entry.setting.suite, entry.setting.preset);
+  expect_same("preset " + entry.setting.name(), hash(installed.setting).substr(0, 8),
+              entry.identity.preset_sha256.substr(0, 8));
+  expect_same("scene seed", std::to_string(installed.setting.scene_seed), std::to_string(entry.setting.scene_seed));
+  expect_same("version of " + entry.identity.engine, catalogue.find("engine", entry.identity.engine).version,
+              entry.identity.engine_version);
+  return installed;
+}
+
 std::string new_nonce() {
   std::random_device random;
   std::string nonce;
@@ -177,6 +187,7 @@ std::string new_nonce() {
 std::optional<Json> verification(const fs::path& board, const Entry& entry, const std::string& nonce,
                                  const Catalogue& catalogue, const VerifyOptions& options) {
   Installed installed = installed_as(entry, catalogue);
+  expect_method(entry.identity.row, catalogue);
   const std::vector<std::size_t> chosen =
       options.fresh ? one_of_each(entry, nonce) : chosen_cells(entry, nonce, options.cells);
   if (options.fresh) installed.grid.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);

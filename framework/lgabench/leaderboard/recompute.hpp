@@ -15,6 +15,10 @@ struct VerifyOptions {
   PoolOptions pool;
 };
 
+/// The preset that the entry was played in, as it is installed. @throws InputError where that is another, or the engine
+/// has another version; PluginError where there is no such engine.
+Installed installed_as(const Entry& entry, const Catalogue& catalogue);
+
 /// 128 bits that nobody knew before, as 32 hexadecimal digits.
 std::string new_nonce();
 
@@ -24,7 +28,8 @@ std::string new_nonce();
 /// the scene seed; it passes where the 95 % interval of the difference to the board's scenes (Agresti and Caffo 2000)
 /// holds 0. None where it was interrupted.
 /// @throws InputError where this installation cannot play the entry: another preset, another version of method or
-/// engine, a cell that the host failed. PluginError for a plugin that is not there.
+/// engine, a method that asks somebody else or has other options, a cell that the host failed. PluginError for a plugin
+/// that is not there.
 std::optional<Json> verification(const fs::path& board, const Entry& entry, const std::string& nonce,
                                  const Catalogue& catalogue, const VerifyOptions& options);
 

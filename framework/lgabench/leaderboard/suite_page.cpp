@@ -7,6 +7,7 @@
 #include <set>
 
 #include <lgabench/core/rounding.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
@@ -206,12 +207,13 @@ std::string success_bits(const Entry& entry) {
 
 std::string command_of(const Entry& entry) {
   const Identity& identity = entry.identity;
-  std::string text = fmt::format("lgabench run {} --preset {} --engines {}", entry.setting.suite, entry.setting.preset,
-                                 identity.engine);
-  if (!identity.row.is_reference()) text += fmt::format(" --methods '{}' --no-reference", entry.spec());
-  if (identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers))
-    return text + fmt::format(" --answers cassette:answers/{}.jsonl", identity.answers_sha256);
-  return text + " --answers " + identity.answers;
+  std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
+                                 entry.setting.preset, "--engines", identity.engine};
+  if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
+  const bool cassette = identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers);
+  words.insert(words.end(), {"--answers", cassette ? fmt::format("cassette:answers/{}.jsonl", identity.answers_sha256)
+                                                   : identity.answers});
+  return shell_line(words);
 }
 
 }  // namespace
