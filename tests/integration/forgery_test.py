@@ -114,6 +114,17 @@ class Forgeries(Case):
         self.assertEqual(row[2], "recomputed; not yet replayed; claimed by Prof. B. Independent: reproduced; "
                                  "claimed by Prof. B. Independent: agrees on fresh scenes")
 
+    def test_arms_that_were_learned_by_heart(self):
+        """Perfect in all arms but the first, which alone was looked at before."""
+        (self.lga / "verifications.jsonl").unlink()
+        arms = json.loads((self.lga / "entry.json").read_text())["preset"]["scenarios"][0]["arms"]
+        lines = [json.loads(text) for text in (self.lga / "cells.jsonl").read_text().splitlines()]
+        for line in lines:
+            line["outcomes"] = {arm: letters if arm == arms[0] else "." * len(letters) for arm, letters in line["outcomes"].items()}
+        (self.lga / "cells.jsonl").write_text("".join(map(canonical, lines)))
+        said = self.leaderboard("verify", self.lga.parent.name, "--fresh", "--by", "B. Reader", expect=1).stdout
+        self.assertRegex(said, rf"^DIFFERS .*: -0.\d+ \[.*\] on fresh scenes; arm (?!{arms[0]} )\w+ differs: -0")
+
     def test_people_who_are_the_truth(self):
         def human(entry):
             entry["identity"]["version"] = "0.2"

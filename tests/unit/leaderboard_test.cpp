@@ -167,26 +167,99 @@ TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten)
   EXPECT_SAYS(message_of<InputError>([&] { played_cell(result, "", "", entry); }), "27 words for failures");
 }
 
-TEST(LeaderboardEntry, RepeatedFreshVerificationsAreTestedTogether) {
+// A line of fresh scenes: in each arm so many successes more than on the board's.
+Json fresh_of(const Entry& entry, const std::map<std::string, int>& more, char nonce = '7') {
+  Json line = replay_of(entry, "b", "another");
+  line.update({{"kind", "fresh"},
+               {"nonce", std::string(32, nonce)},
+               {"bit_identical", 0},
+               {"cells", Json::array()},
+               {"successes", Json::array()}});
+  line.erase("only_recorded");
+  int episodes = 0;
+  for (const std::size_t i : fresh_cells(entry, line.at("nonce"))) {
+    const PlayedCell& cell = entry.cells[i];
+    line["cells"].push_back(cell.key);
+    Json& successes = line["successes"].emplace_back();
+    for (const auto& [arm, letters] : cell.outcomes) {
+      const auto before = static_cast<int>(std::count(letters.begin(), letters.end(), success_letter));
+      successes[arm] = std::clamp(before + (more.count(arm) ? more.at(arm) : 0), 0, entry.setting.episodes);
+    }
+    episodes += cell.episodes();
+  }
+  line["episodes"] = episodes;
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  line["passed"] = std::none_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+  line["difference"] = estimates.back().difference;
+  line["low"] = estimates.back().low;
+  line["high"] = estimates.back().high;
+  return line;
+}
+
+TEST(LeaderboardEntry, EveryArmIsLookedAtOnFreshScenes) {
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  const auto estimates = [&](const std::map<std::string, int>& more) {
+    const Json line = fresh_of(entry, more);
+    return fresh_estimates(entry, {&line});
+  };
+  const std::vector<FreshEstimate> memorised = estimates({{"hard", -14}});
+  ASSERT_EQ(memorised.size(), 3u);
+  EXPECT_EQ(memorised[0].arm, "hard");
+  EXPECT_NEAR(memorised[0].difference, -14 / 40., 1e-12);
+  EXPECT_TRUE(memorised[0].differs());
+  EXPECT_FALSE(memorised[1].differs()) << memorised[1].arm;
+  EXPECT_EQ(memorised[2].arm, "") << "the mean over arms";
+  EXPECT_NEAR(memorised[2].difference, -14 / 40. / 4, 1e-12) << "one of two arms in one of two scenarios";
+  for (const FreshEstimate& one : estimates({})) EXPECT_FALSE(one.differs());
+}
+
+TEST(LeaderboardEntry, FreshScenesArePooled) {
   Entry entry = replayed_entry(small_setting(), "a", .5);
   EXPECT_EQ(entry.fresh(), 0);
-  const auto verify = [&entry](double difference) {  // with a standard error of .05
-    Json line = replay_of(entry, "b", "another");
-    line.update({{"kind", "fresh"},
-                 {"passed", std::abs(difference) <= .098},
-                 {"difference", difference},
-                 {"low", difference - .05 * 1.959964},
-                 {"high", difference + .05 * 1.959964}});
-    add_vouched(entry, line);
+  const Json failed = fresh_of(entry, {{"test", -18}});
+  add_vouched(entry, failed);
+  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+  for (int i = 0; i < 3; ++i) add_vouched(entry, failed);
+  EXPECT_EQ(entry.fresh(), -1) << "what is found again is no chance";
+  // Thirty lines of somebody who does not count bury nothing.
+  Json harmless = fresh_of(entry, {});
+  for (int i = 0; i < 30; ++i) {
+    harmless["by"] = fmt::format("a friend {}", i);
+    entry.verifications.push_back(harmless);
+  }
+  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+
+  Entry lucky = replayed_entry(small_setting(), "a", .5);
+  add_vouched(lucky, fresh_of(lucky, {{"test", 10}}));
+  EXPECT_EQ(lucky.fresh(), -1);
+  for (int i = 0; i < 9; ++i) add_vouched(lucky, fresh_of(lucky, {}));
+  EXPECT_EQ(why_not_ranked(lucky), "") << "one line in ten, by chance";
+}
+
+TEST(LeaderboardEntry, AFreshLineIsWhatItsSuccessesSay) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  const auto complaint = [&](const std::function<void(Json&)>& change) {
+    write_entry(board.path, entry);
+    Json line = fresh_of(entry, {{"hard", -14}});
+    change(line);
+    write_file(board.path / entry.place() / "verifications.jsonl", canonical(line) + "\n");
+    return message_of<InputError>([&] { read_entry(board.path, entry.place()); });
   };
-  verify(.11);  // p = .028
-  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
-  verify(.01);
-  EXPECT_EQ(entry.fresh(), 1) << "one of two is chance";
-  EXPECT_EQ(why_not_ranked(entry), "");
-  for (int i = 0; i < 18; ++i) verify(.02);
-  verify(-.25);  // p = 6e-7
-  EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+  write_entry(board.path, entry);
+  add_verification(board.path, entry, fresh_of(entry, {}));
+  EXPECT_EQ(read_entry(board.path, entry.place()).verifications.size(), 1u);
+  EXPECT_EQ(complaints("verifications", fresh_of(entry, {})), std::vector<std::string>());
+  EXPECT_SAYS(complaint([](Json& line) { line["passed"] = true; }), "/passed: expected false, by its successes");
+  EXPECT_SAYS(complaint([](Json& line) { line["difference"] = 0; }), "/difference: expected -0.0875");
+  EXPECT_SAYS(complaint([](Json& line) { line["successes"][0]["test"] = 41; }), "/test: expected a whole number");
+  EXPECT_SAYS(complaint([](Json& line) { line["successes"][0].erase("test"); }), "test");
+  EXPECT_SAYS(complaint([](Json& line) { line["cells"][0] = line["cells"][1]; }), "the cells that the nonce chooses");
+  EXPECT_SAYS(complaint([](Json& line) { line["low"] = -1e300; }), "/low: expected a difference of two rates");
+  Json old = fresh_of(entry, {});
+  old.erase("successes");
+  write_file(board.path / entry.place() / "verifications.jsonl", canonical(old) + "\n");
+  EXPECT_SAYS(message_of<InputError>([&] { vouch(board.path, entry.id(), "1"); }), "looked at one arm alone");
 }
 
 TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {

@@ -17,6 +17,7 @@
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -55,6 +56,25 @@ void expect_board(const fs::path& board) {
         board.string()));
 }
 
+std::string replay_words(const Json& line) {
+  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
+                     line.at("bit_identical").get<int>(), line.at("cells").size(), line.at("flips").get<int>(),
+                     line.at("episodes").get<int>());
+}
+
+// The mean over arms, then the arms that differ.
+std::string fresh_words(const leaderboard::Entry& entry, const Json& line) {
+  const std::vector<leaderboard::FreshEstimate> estimates = leaderboard::fresh_estimates(entry, {&line});
+  const auto words = [](const leaderboard::FreshEstimate& one) {
+    return fmt::format("{:+.3f} [{:+.3f}, {:+.3f}]", one.difference, one.low, one.high);
+  };
+  std::string text = words(estimates.back()) + " on fresh scenes";
+  for (const leaderboard::FreshEstimate& one : estimates)
+    if (!one.arm.empty() && estimates.size() > 1 && one.differs())
+      text += fmt::format("; arm {} differs: {}", one.arm, words(one));
+  return text;
+}
+
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
 int verify(LeaderboardArguments a) {
   if (a.verify.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
@@ -83,14 +103,10 @@ int verify(LeaderboardArguments a) {
     if (!line) return interrupted;
     leaderboard::add_verification(a.board, entry, *line);
     const bool passed = line->at("passed");
-    const std::string found =
-        a.verify.fresh ? fmt::format("{:+.3f} [{:+.3f}, {:+.3f}] on fresh scenes", line->at("difference").get<double>(),
-                                     line->at("low").get<double>(), line->at("high").get<double>())
-                       : fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
-                                     line->at("bit_identical").get<int>(), line->at("cells").size(),
-                                     line->at("flips").get<int>(), line->at("episodes").get<int>());
+    const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
+    to_stderr("To let it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());

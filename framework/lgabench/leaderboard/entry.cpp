@@ -3,23 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
-namespace {
-
-// Two-sided p of a difference of which the 95 % interval is recorded.
-double p_of_fresh(const Json& line) {
-  const double width = line.at("high").get<double>() - line.at("low").get<double>();
-  return std::erfc(std::sqrt(2.) * 1.959964 * std::abs(line.at("difference").get<double>()) / width);
-}
-
-}  // namespace
-
 Json to_json(const Identity& identity) {
   Json json{{"method", identity.row.id},
             {"kind", identity.row.kind},
@@ -115,11 +104,12 @@ Tier Entry::tier() const {
 }
 
 int Entry::fresh() const {
-  std::vector<double> p;
+  std::vector<const Json*> lines;
   for (const Json& line : verifications)
-    if (line.at("kind") == "fresh" && counts(line)) p.push_back(p_of_fresh(line));
-  const std::vector<double> adjusted = report::holm(p);
-  return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= .05 ? -1 : 1;
+    if (line.at("kind") == "fresh" && counts(line)) lines.push_back(&line);
+  if (lines.empty()) return 0;
+  const std::vector<FreshEstimate> estimates = fresh_estimates(*this, lines);
+  return std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); }) ? -1 : 1;
 }
 
 std::string Entry::spec() const {

@@ -81,8 +81,8 @@ struct Entry {
   /// What replays that count make it; one that differs is not outvoted.
   Tier tier() const;
   bool replay_differed() const;
-  /// What verifications on fresh scenes that count found: -1 where success differs, by Holm's correction over all of
-  /// them, so that an honest entry is not lost by repetition; else 1; 0 where none was made.
+  /// What verifications on fresh scenes that count found, all together (fresh_estimates()): -1 where success differs in
+  /// an arm or over all; else 1; 0 where none was made.
   int fresh() const;
   /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
   std::string spec() const;

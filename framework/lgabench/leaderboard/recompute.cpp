@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <random>
 
@@ -12,7 +11,7 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/recompute.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
-#include <lgabench/report/agreement.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -116,53 +115,26 @@ Json replayed(const Entry& entry, const std::vector<std::size_t>& chosen, const 
           {"passed", report::verdict_of(cells) != report::Reproduction::differs}};
 }
 
-// Successes of the first arm, over the cells of one scenario and layout: the same policy on the board's scenes and on
-// others. A success and a failure are added to each cell's (Agresti and Caffo 2000).
-Json compared_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now) {
-  double difference = 0, variance = 0;
+// A line of fresh scenes, without who made it.
+Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now) {
+  Json keys = Json::array(), successes = Json::array();
   int episodes = 0;
-  Json keys = Json::array();
-  const auto cells = static_cast<double>(chosen.size());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    const PlayedCell& before = entry.cells[chosen[i]];
-    const std::string& arm = entry.setting.scenario(before.place.scenario).arms.front();
-    keys.push_back(before.key);
-    for (const auto& [cell, sign] : {std::pair(&before, -1.), {&now[i], 1.}}) {
-      const std::string& letters = cell->outcomes.at(arm);
-      const auto n = static_cast<double>(letters.size());
-      const double rate =
-          (static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)) + 1) / (n + 2);
-      difference += sign * rate / cells;
-      variance += rate * (1 - rate) / (n + 2) / cells / cells;
-      episodes += static_cast<int>(letters.size());
-    }
+    keys.push_back(entry.cells[chosen[i]].key);
+    Json& cell = successes.emplace_back(Json::object());
+    for (const auto& [arm, letters] : now[i].outcomes)
+      cell[arm] = std::count(letters.begin(), letters.end(), success_letter);
+    episodes += now[i].episodes();
   }
-  const double margin = 1.959964 * std::sqrt(variance), low = difference - margin, high = difference + margin;
-  return {{"kind", "fresh"},
-          {"cells", keys},
-          {"bit_identical", 0},
-          {"flips", 0},
-          {"episodes", episodes},
-          {"passed", low <= 0 && high >= 0},
-          {"difference", difference},
-          {"low", low},
-          {"high", high}};
-}
-
-// One number of demonstrations and one training seed of a row, in every scenario and layout.
-std::vector<std::size_t> one_of_each(const Entry& entry, const std::string& nonce) {
-  const Setting& setting = entry.setting;
-  const bool learning = learns(entry.identity.row);
-  const auto pick = [&](const char* what, std::size_t count) {
-    return static_cast<std::size_t>(std::stoull(sha256(nonce + what).substr(0, 8), nullptr, 16)) % count;
-  };
-  const int n = learning ? setting.demonstrations[pick("demonstrations", setting.demonstrations.size())] : 0;
-  const bool seeds = learning || setting.test_scenes == "per_seed";
-  const std::uint64_t seed = seeds ? setting.seeds[pick("seed", setting.seeds.size())] : 0;
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < entry.cells.size(); ++i)
-    if (entry.cells[i].place.demonstrations == n && entry.cells[i].place.seed == seed) chosen.push_back(i);
-  return chosen;
+  Json line{{"kind", "fresh"}, {"cells", keys},        {"bit_identical", 0},
+            {"flips", 0},      {"episodes", episodes}, {"successes", successes}};
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  const FreshEstimate& mean = estimates.back();
+  line.update({{"passed", std::none_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.differs(); })},
+               {"difference", mean.difference},
+               {"low", mean.low},
+               {"high", mean.high}});
+  return line;
 }
 
 }  // namespace
@@ -189,7 +161,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   Installed installed = installed_as(entry, catalogue);
   expect_method(entry.identity.row, catalogue);
   const std::vector<std::size_t> chosen =
-      options.fresh ? one_of_each(entry, nonce) : chosen_cells(entry, nonce, options.cells);
+      options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
   if (options.fresh) installed.grid.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
   const std::vector<Cell> all =
       cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
@@ -201,7 +173,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   const RunRecord& run = recomputed->record;
   Entry scratch = entry;  // whose Selections grow
   const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
-  Json line = options.fresh ? compared_fresh(entry, chosen, now) : replayed(entry, chosen, now, run.processor());
+  Json line = options.fresh ? played_fresh(entry, chosen, now) : replayed(entry, chosen, now, run.processor());
   line.update({{"nonce", nonce},
                {"by", options.by},
                {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},

@@ -24,9 +24,8 @@ std::string new_nonce();
 
 /// A line of verifications.jsonl. Plays the cells that `nonce` chooses, confined and on a cache of their own; by
 /// report::verdict_of() it passes unless it differs, and the same bits are owed on the processor that the entry was
-/// computed on. With `fresh`: one number of demonstrations and one training seed, which the nonce chooses as well as
-/// the scene seed; it passes where the 95 % interval of the difference to the board's scenes (Agresti and Caffo 2000)
-/// holds 0. None where it was interrupted.
+/// computed on. With `fresh`: fresh_cells(), on a scene seed that the nonce chooses as well; it passes where none of
+/// its fresh_estimates() differs. None where it was interrupted.
 /// @throws InputError where this installation cannot play the entry: another preset, another version of method or
 /// engine, a method that asks somebody else or has other options, a cell that the host failed. PluginError for a plugin
 /// that is not there.

@@ -3,8 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <limits>
+#include <map>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -43,17 +48,42 @@ void expect_replay(const JsonReader& line, const Entry& entry) {
     line.at("passed").fail("true: all of its cells are identical");
 }
 
-void expect_fresh(const JsonReader& line) {
-  double at[3];
-  std::size_t i = 0;
-  for (const char* number : {"low", "difference", "high"}) {
-    at[i] = line.at(number).number();
-    if (!(at[i] >= -2 && at[i] <= 2)) line.at(number).fail("a difference of two rates");
-    ++i;
+// Lines of 0.2.0 lack /successes: they say nothing of other arms than the first, and cannot be vouched for.
+void expect_fresh(const JsonReader& line, const Entry& entry) {
+  for (const char* number : {"low", "difference", "high"})
+    if (const double value = line.at(number).number(); !(value >= -2 && value <= 2))
+      line.at(number).fail("a difference of two rates");
+  const bool passed = line.at("passed").boolean();
+  if (!line.has("successes")) return;
+  std::vector<std::string> chosen;
+  for (const std::size_t i : fresh_cells(entry, line.at("nonce").string())) chosen.push_back(entry.cells[i].key);
+  if (line.at("cells").strings() != chosen) line.at("cells").fail("the cells that the nonce chooses");
+  const std::vector<JsonReader> cells = line.at("successes").elements();
+  if (cells.size() != chosen.size()) line.at("successes").fail("an object for each cell");
+  int episodes = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PlayedCell& cell = entry.cells[fresh_cells(entry, line.at("nonce").string())[i]];
+    const std::vector<std::string>& arms = entry.setting.scenario(cell.place.scenario).arms;
+    cells[i].only(arms);
+    for (const std::string& arm : arms) cells[i].at(arm).integer(0, entry.setting.episodes);
+    episodes += cell.episodes();
   }
-  if (at[0] >= at[2] || at[1] < at[0] || at[1] > at[2]) line.at("difference").fail("between /low and /high");
-  if (line.at("passed").boolean() != (at[0] <= 0 && at[2] >= 0)) line.at("passed").fail("whether the interval holds 0");
+  line.at("episodes").integer(episodes, episodes);
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line.json()});
+  const bool differs = std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+  if (passed == differs) line.at("passed").fail(differs ? "false, by its successes" : "true, by its successes");
+  const FreshEstimate& mean = estimates.back();
+  for (const auto& [number, value] : {std::pair("difference", mean.difference), {"low", mean.low}, {"high", mean.high}})
+    if (std::abs(line.at(number).number() - value) > 1e-9) line.at(number).fail(fmt::format("{:.6f}", value));
 }
+
+struct Sum {
+  double difference = 0, variance = 0;
+  void add(double weight, double a_difference, double a_variance) {
+    difference += weight * a_difference;
+    variance += weight * weight * a_variance;
+  }
+};
 
 // What a line would give its entry, were it vouched for; "" where the entry has that already.
 std::string said(const Entry& entry, const Json& line) {
@@ -86,7 +116,7 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
   line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
              "episodes", "passed",      "by",         "when",           "program",       "build",
              "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
-             "low",      "high"});
+             "low",      "high",        "successes"});
   const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
   if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
@@ -100,7 +130,67 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
   if (kind == "replay")
     expect_replay(line, entry);
   else
-    expect_fresh(line);
+    expect_fresh(line, entry);
+}
+
+std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonce) {
+  const Setting& setting = entry.setting;
+  const bool learning = learns(entry.identity.row);
+  const auto pick = [&](const char* what, std::size_t count) {
+    return static_cast<std::size_t>(std::stoull(sha256(nonce + what).substr(0, 8), nullptr, 16)) % count;
+  };
+  const int n = learning ? setting.demonstrations[pick("demonstrations", setting.demonstrations.size())] : 0;
+  const bool seeds = learning || setting.test_scenes == "per_seed";
+  const std::uint64_t seed = seeds ? setting.seeds[pick("seed", setting.seeds.size())] : 0;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < entry.cells.size(); ++i)
+    if (entry.cells[i].place.demonstrations == n && entry.cells[i].place.seed == seed) chosen.push_back(i);
+  return chosen;
+}
+
+std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector<const Json*>& lines) {
+  std::map<std::string, std::map<std::string, std::pair<int, int>>> played;  // cell -> arm -> successes, episodes
+  for (const Json* line : lines)
+    for (std::size_t i = 0; i < line->at("cells").size(); ++i)
+      for (const auto& [arm, successes] : line->at("successes").at(i).items()) {
+        auto& [won, episodes] = played[line->at("cells").at(i)][arm];
+        won += successes.get<int>();
+        episodes += entry.setting.episodes;
+      }
+  std::map<std::string, int> cells_of_arm;
+  for (const auto& cell : played)
+    for (const auto& arm : cell.second) ++cells_of_arm[arm.first];
+  std::map<std::string, Sum> sums;
+  Sum mean;
+  for (const PlayedCell& cell : entry.cells) {
+    const auto fresh = played.find(cell.key);
+    if (fresh == played.end()) continue;
+    for (const auto& [arm, counts] : fresh->second) {
+      const std::string& letters = cell.outcomes.at(arm);
+      const auto share = [](double won, double of) { return std::pair(won / of, (won + 1) / (of + 2)); };
+      const auto before = share(static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)),
+                                static_cast<double>(letters.size()));
+      const auto now = share(counts.first, counts.second);
+      const double variance = before.second * (1 - before.second) / (static_cast<double>(letters.size()) + 2) +
+                              now.second * (1 - now.second) / (counts.second + 2.);
+      sums[arm].add(1. / cells_of_arm.at(arm), now.first - before.first, variance);
+      mean.add(1. / static_cast<double>(played.size() * fresh->second.size()), now.first - before.first, variance);
+    }
+  }
+  if (sums.size() > 1) sums[""] = mean;
+  std::vector<FreshEstimate> estimates;
+  std::vector<double> p;
+  const auto add = [&](const std::string& arm, const Sum& sum) {
+    const double margin = 1.959964 * std::sqrt(sum.variance);
+    estimates.push_back({arm, sum.difference, sum.difference - margin, sum.difference + margin, 1});
+    p.push_back(std::erfc(std::abs(sum.difference) / std::sqrt(2 * sum.variance)));
+  };
+  for (const auto& [arm, sum] : sums)
+    if (!arm.empty()) add(arm, sum);
+  if (sums.size() > 1) add("", mean);
+  const std::vector<double> adjusted = report::holm(p);
+  for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i].p_holm = adjusted[i];
+  return estimates;
 }
 
 std::vector<std::string> claims(const Entry& entry) {

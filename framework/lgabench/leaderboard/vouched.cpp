@@ -47,6 +47,9 @@ std::string vouch(const fs::path& board, const std::string& name, const std::str
   if (line.value("kind", "") == "replay" && line.at("cells").size() < enough)
     throw InputError(fmt::format("{}: line {} is a replay of {} cells; expected {} or more: verify it with --cells {}",
                                  entry.place().string(), which, line.at("cells").size(), enough, enough));
+  if (line.value("kind", "") == "fresh" && !line.contains("successes"))
+    throw InputError(fmt::format("{}: line {} is of lgabench 0.2.0, which looked at one arm alone: verify it again",
+                                 entry.place().string(), which));
   Vouched vouched = read_vouched(board);
   const std::string hash = line_hash(line);
   if (!vouched[entry.hash()].insert(hash).second)

@@ -21,7 +21,8 @@ std::string line_hash(const Json& line);
 Vouched read_vouched(const fs::path& board);
 
 /// Adds a line of the entry, by its number in verifications.jsonl, or "withdrawn". Returns its hash.
-/// @throws InputError for a line that is not there or was vouched for, and for a replay of fewer cells than 30 or all.
+/// @throws InputError for a line that is not there or was vouched for, for a replay of fewer cells than 30 or all,
+/// and for one on fresh scenes that does not tell its arms apart.
 std::string vouch(const fs::path& board, const std::string& entry, const std::string& line);
 
 }  // namespace lgabench::leaderboard
