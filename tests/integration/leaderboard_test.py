@@ -59,6 +59,13 @@ class Board(Case):
     def leaderboard(self, *words, expect=0):
         return self.call("leaderboard", *words, "--board", "board", expect=expect)
 
+    def replay(self):
+        """Every entry is played again, and somebody vouches for it."""
+        self.leaderboard("verify", "--by", "B. Reader", *PLUGIN)
+        for file in (self.dir / "board").glob("entries/*/*/*/verifications.jsonl"):
+            self.leaderboard("vouch", file.parent.relative_to(self.dir / "board"), len(file.read_text().splitlines()))
+        self.leaderboard("build")
+
     def add(self, run="run", expect=0, *words):
         return self.leaderboard("add", run, "--entry", "me.json", *words, expect=expect)
 
@@ -99,8 +106,11 @@ class Submissions(Board):
         self.leaderboard("build")
         self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
         board = self.dir / "board"
+        self.assertRegex((board / "README.md").read_text(), r"\| not yet replayed \|(.*\n)*\| fixture_constant demonstration=[01] \|")
+        self.replay()
+        self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
         self.assertEqual(sorted(file.name for file in board.glob("*.*")),
-                         ["README.md", "index.html", "leaderboard.csv", "tiny.html"])
+                         ["README.md", "index.html", "leaderboard.csv", "tiny.html", "vouched.json"])
         self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant demonstration=[01] \|")
         entry = json.loads(next(board.glob("entries/fixture_constant/*/tiny-board/entry.json")).read_text())
         self.assertEqual(entry["about"], META)
@@ -124,7 +134,7 @@ class Submissions(Board):
     def test_the_page_names_the_command_that_plays_a_cell_again(self):
         self.take_run()
         self.add()
-        self.leaderboard("build")
+        self.replay()
         page = (self.dir / "board/tiny.html").read_text()
         data = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
         entry = next(entry for entry in data["entries"] if "demonstration=1" in entry["command"])
@@ -209,7 +219,10 @@ class Submissions(Board):
         self.take_run()
         self.add("run", 0, "--rows", "fixture_constant")
         ids = [path.name for path in (self.dir / "board/entries/fixture_constant").iterdir()]
+        self.replay()
+        self.assertIn("| 1 |", (self.dir / "board/README.md").read_text())
         self.leaderboard("withdraw", ids[0], "--reason", "a mistake in its training")
+        self.leaderboard("vouch", ids[0], "withdrawn")
         self.leaderboard("build")
         self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
         self.assertNotIn("| 1 |", (self.dir / "board/README.md").read_text())
@@ -331,17 +344,23 @@ class Replays(Board):
     def test_an_honest_entry_is_bit_identical(self):
         said = self.verify("--cells", "3")
         self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended otherwise \(nonce [0-9a-f]{32}\)")
+        self.assertEqual(self.tier(), "recomputed; not yet replayed; claimed by B. Reader: replayed")
+        self.assertIn("a replay of 3 cells; expected 8 or more", self.leaderboard("vouch", self.entry.parent.name, "1", expect=2).stderr)
+        self.verify(self.entry.parent.name)
+        self.leaderboard("vouch", self.entry.parent.name, "2")
+        self.leaderboard("build")
         self.assertEqual(self.tier(), "replayed")
-        self.verify(self.entry.parent.name, "--cells", "2")
         lines = [json.loads(line) for line in (self.entry / "verifications.jsonl").read_text().splitlines()]
-        self.assertEqual([len(line["cells"]) for line in lines], [3, 2])
+        self.assertEqual([len(line["cells"]) for line in lines], [3, 8])
         self.assertNotEqual(lines[0]["nonce"], lines[1]["nonce"])
 
     def test_a_made_up_cell_is_found_and_not_outvoted(self):
         honest = (self.entry / "cells.jsonl").read_bytes()
         self.forge_success()
-        # Of the honest cells the nonce chooses others; the same five in their order once in 6,720 times.
-        self.assertIn("DIFFERS", self.verify("--cells", "5", expect=1))
+        self.assertIn("DIFFERS", self.verify(expect=1))
+        self.assertEqual(self.tier(), "recomputed; not yet replayed; claimed by B. Reader: a replay differed")
+        self.leaderboard("vouch", self.entry.parent.name, "1")
+        self.leaderboard("build")
         self.assertEqual(self.tier(), "recomputed; a replay differed")
         self.assertIn("a replay differed", (self.dir / "board/leaderboard.csv").read_text())
         (self.entry / "cells.jsonl").write_bytes(honest)
@@ -371,6 +390,9 @@ class Replays(Board):
             if said.returncode:
                 break
         self.assertEqual((said.returncode, "DIFFERS" in said.stdout), (1, True), said.stderr)
+        self.verify(expect=1)
+        for line in "1", "2":
+            self.leaderboard("vouch", self.entry.parent.name, line)
         self.leaderboard("build")
         self.assertIn("differs on fresh scenes", (self.dir / "board/leaderboard.csv").read_text())
 

@@ -2,6 +2,7 @@
 
 By hand: LGABENCH_FULL=1 python3 published_test.py Published
 """
+import csv
 import json
 import os
 import pathlib
@@ -72,6 +73,18 @@ class Published(Case):
     def test_it_is_what_its_entries_make(self):
         done = self.call("leaderboard", "check", "--board", BOARD, "--documents", SOURCE / "docs/results.md")
         self.assertRegex(done.stdout, r"^\d+ entr(y|ies), 0 problems\n$")
+
+    def test_ranks_change_on_purpose_alone(self):
+        """Rank and success of each published entry; each was replayed, and somebody vouches for that."""
+        golden = pathlib.Path(__file__).parent / "golden/ranks.json"
+        self.call("leaderboard", "build", "--board", shutil.copytree(BOARD, self.dir / "board"))
+        with open(self.dir / "board/leaderboard.csv", newline="") as file:
+            rows = {row["id"]: row for row in csv.DictReader(file) if row["demonstrations"] == "all"}
+        found = {name: f'{row["rank"] or "-"} {row["success"]}' for name, row in rows.items()}
+        if os.environ.get("LGABENCH_WRITE_GOLDEN"):
+            golden.write_text(json.dumps(found, sort_keys=True, indent=0) + "\n")
+        self.assertEqual(found, json.loads(golden.read_text()))
+        self.assertEqual({row["tier"] for row in rows.values()} - {"replayed", "reproduced"}, set())
 
     @unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
     def test_a_cell_of_each_method_is_what_this_build_plays(self):

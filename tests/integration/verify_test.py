@@ -89,12 +89,13 @@ class Verify(BesideOneRun):
         said = self.verify("--all", expect=5).stdout
         self.assertRegex(said, r"not as recorded:\n  build: liblgabench_learning.so \(00000000 there, [0-9a-f]{8} here\)\n")
         self.assertRegex(self.line_of_the_cell(said), r"^same outcomes .*: from training.jsonl line 1$")
-        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells\n"
-                      "Of 1 the record names another build, processor or data: its own word", said)
+        self.assertIn("\n3 bit-identical, 1 same outcomes\nNOT bit-identical: 1 of 4 cells; 0 of 16 episodes that can be "
+                      "compared ended otherwise\nOf 1 the record names another build, processor or data: its own word", said)
+        self.assertEqual(said.splitlines()[-1], "verdict: agrees")
         self.assertIn("NOT bit-identical: 1 of 4 cells", self.verify("--all", "--strict", expect=1).stdout)
 
     def test_a_forger_cannot_choose_the_milder_rule(self):
-        """One episode that is won in the record alone is within chance; whatever else the record says, it is no success."""
+        """One episode of 16 that is won in the record alone is more than 1 %, whatever build or processor the record names."""
         episodes = [json.loads(line) for line in (self.cell / "episodes.jsonl").read_text().splitlines()]
         lost = next(i for i, episode in enumerate(episodes) if not episode["success"])
         self.change("episodes.jsonl", lost, success=True, failure="none", attribution=None)
@@ -109,10 +110,12 @@ class Verify(BesideOneRun):
             with self.subTest(excuse):
                 (self.cell / "status.json").write_bytes(status)
                 forge()
-                said = self.verify("--all", expect=5).stdout
-                self.assertRegex(self.line_of_the_cell(said), r"^within interval .*succeeded there, ")
-                self.assertIn("NOT bit-identical: 1 of 4 cells\n", said)
+                said = self.verify("--all", expect=1).stdout
+                self.assertRegex(self.line_of_the_cell(said), r"^other outcomes .*succeeded there, ")
+                self.assertIn("NOT bit-identical: 1 of 4 cells; 1 of 16 episodes", said)
                 self.assertIn("its own word, which proves nothing", said)
+                self.assertEqual(said.splitlines()[-1], "verdict: differs")
+                self.assertEqual(json.loads(self.verify("--all", "--json", expect=1).stdout)["verdict"], "differs")
 
     def test_other_data_are_named(self):
         shutil.copytree(BUILD / "share" / "lgabench", self.run_directory / "data")

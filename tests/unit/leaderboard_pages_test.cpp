@@ -23,7 +23,7 @@ std::string all(const std::vector<std::string>& lines) { return fmt::format("{}"
 
 TEST(Board, WhatIsBuiltIsCurrentAndAnEditIsNot) {
   const TemporaryDirectory board;
-  for (const char* name : {"a", "b"}) write_entry(board.path, made_entry(small_setting(), name, .5));
+  for (const char* name : {"a", "b"}) write_replayed(board.path, made_entry(small_setting(), name, .5));
   EXPECT_SAYS(all(check(board.path).problems), "not what lgabench leaderboard build makes");
   build(board.path);
   EXPECT_EQ(all(check(board.path).problems), "");
@@ -39,12 +39,12 @@ TEST(Board, ARowSaysWhatTheKernelCouldNotConfine) {
                                           {"c", "no Landlock (files), seccomp"}}) {
     Entry entry = made_entry(small_setting(), name, .5);
     entry.evidence[0]["confinement"] = confinement;
-    write_entry(board.path, entry);
+    write_replayed(board.path, entry);
   }
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
-  EXPECT_SAYS(page, "recomputed; partly confined");
-  EXPECT_SAYS(page, "recomputed; unconfined");
+  EXPECT_SAYS(page, "replayed; partly confined");
+  EXPECT_SAYS(page, "replayed; unconfined");
 }
 
 TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
@@ -53,7 +53,7 @@ TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
     Entry entry = made_entry(small_setting(), name, .5);
     entry.identity.row.options["loss"] = loss;
     if (!*loss) entry.identity.row.options.erase("loss");
-    write_entry(board.path, entry);
+    write_replayed(board.path, entry);
   }
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
@@ -67,7 +67,7 @@ TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
   for (const char* suite : {"z_ranked", "a_diagnosis", "mobile", "q1"}) {
     Setting setting = small_setting();
     setting.suite = suite;
-    write_entry(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
+    write_replayed(board.path, made_entry(setting, "a", .5, *suite == 'a' ? "reference" : "method"));
   }
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
@@ -79,8 +79,8 @@ TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
 TEST(Board, ARowBelowTheRandomObjectSaysSoAndTheIndexSaysWhatItLeavesOut) {
   const TemporaryDirectory board;
   const Setting setting = small_setting();
-  write_entry(board.path, made_entry(setting, "random_object", .5, "reference"));
-  for (int i = 0; i < 12; ++i) write_entry(board.path, made_entry(setting, fmt::format("m{}", i), i == 0 ? .2 : .8));
+  write_replayed(board.path, made_entry(setting, "random_object", .5, "reference"));
+  for (int i = 0; i < 12; ++i) write_replayed(board.path, made_entry(setting, fmt::format("m{}", i), i == 0 ? .2 : .8));
   build(board.path);
   EXPECT_SAYS(read_file(board.path / "index.html"), "10 of 12 entries; <a href=\"q1.html\">all of them</a>");
   EXPECT_SAYS(read_file(board.path / "index.html"), "random visible object") << "reference rows stay";
@@ -101,7 +101,7 @@ void replace_in(const fs::path& file, const std::string& old, const std::string&
 
 TEST(Board, APageIsCurrentIfWhatComesFromTheEntriesIs) {
   const TemporaryDirectory board;
-  write_entry(board.path, made_entry(small_setting(), "a", .5));
+  write_replayed(board.path, made_entry(small_setting(), "a", .5));
   build(board.path);
   const fs::path page = board.path / "q1.html";
   // Another version's style, dialog, scripts.
@@ -120,13 +120,13 @@ TEST(Board, DocumentsHaveTheTablesOfReadme) {
   const TemporaryDirectory scratch;
   const fs::path board = scratch.path / "results/board", document = scratch.path / "docs/results.md";
   const std::string before = "# Results\n\nBy hand.\n\n<!-- board:q1-board -->\n", after = "<!-- /board -->\n\nMore.\n";
-  const auto problems = [&] { return all(check(board, "", {document}).problems); };
+  const auto problems = [&] { return all(check(board, {"", false, {document}}).problems); };
   fs::create_directories(board / "entries");
   write_file(document, before + after);
   build(board, {document});
   EXPECT_EQ(read_file(document), before + "\nNo entry of q1-board yet.\n\n" + after);
   const Entry entry = made_entry(small_setting(), "a", .5);
-  write_entry(board, entry);
+  write_replayed(board, entry);
   build(board);
   EXPECT_SAYS(problems(), "results.md: not what lgabench leaderboard build makes");
   build(board, {document});
@@ -159,31 +159,35 @@ TEST(Board, EntriesOfOneTablePlayedTheSameScenes) {
   const TemporaryDirectory board;
   Entry other = made_entry(small_setting(), "b", .5);
   other.cells[1].scenes = std::string(64, '0');
-  write_entry(board.path, made_entry(small_setting(), "a", .5));
-  write_entry(board.path, other);
+  write_replayed(board.path, made_entry(small_setting(), "a", .5));
+  write_replayed(board.path, other);
   EXPECT_SAYS(all(check(board.path).problems), "other test scenes than entries/method_of_a");
 }
 
 TEST(Board, AnOldOutcomeDoesNotChangeAndARecordStays) {
   const TemporaryDirectory board;
   Entry entry = made_entry(small_setting(), "a", .5), gone = made_entry(small_setting(), "b", .5);
-  for (const Entry& one : {entry, gone}) write_entry(board.path, one);
+  for (const Entry& one : {entry, gone}) write_replayed(board.path, one);
   build(board.path);
-  EXPECT_SAYS(all(check(board.path, "HEAD").notes), "not compared with HEAD");
+  const auto problems_since = [&](const std::string& revision, bool maintainer) {
+    return all(check(board.path, {revision, maintainer, {}}).problems);
+  };
+  EXPECT_SAYS(message_of<InputError>([&] { problems_since("HEAD", true); }), "--against HEAD: expected a revision");
   git(board.path, "init -q");
   git(board.path, "add .");
   git(board.path, "commit -qm before");
-  write_entry(board.path, made_entry(small_setting(), "c", .5));  // a new one may come
-  withdraw(board.path, gone.id(), "a mistake", "2026-01-01");     // and an old one be withdrawn
+  write_replayed(board.path, made_entry(small_setting(), "c", .5));  // a new one may come
+  withdraw(board.path, gone.id(), "a mistake", "2026-01-01");        // and an old one be withdrawn
   build(board.path);
-  EXPECT_EQ(all(check(board.path, "HEAD").problems), "");
-  EXPECT_EQ(all(check(board.path, "HEAD").notes), "");
+  EXPECT_SAYS(message_of<InputError>([&] { problems_since("HAED", true); }), "--against HAED: expected a revision");
+  EXPECT_EQ(problems_since("HEAD", true), "");
+  EXPECT_EQ(problems_since("HEAD", false), "vouched.json: changed since HEAD: it is the maintainers' (--maintainer)");
   char& letter = entry.cells[3].outcomes["test"][0];
   letter = letter == '.' ? 'a' : '.';
   entry.about["by"] = "somebody else";
   write_entry(board.path, entry);
   fs::remove_all(board.path / gone.place());
-  const std::string problems = all(check(board.path, "HEAD").problems);
+  const std::string problems = problems_since("HEAD", true);
   EXPECT_SAYS(problems, "cells.jsonl: an outcome or a cell changed since HEAD");
   EXPECT_SAYS(problems, "/about changed since HEAD");
   EXPECT_SAYS(problems, "is gone (leaderboard withdraw keeps the record) since HEAD");
@@ -195,9 +199,9 @@ TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
   const char* keep = std::getenv("LGABENCH_KEEP_BOARD");  // to look at its pages
   const fs::path board = keep ? fs::path(keep) : scratch.path;
   for (int i = 0; i < 197; ++i)
-    write_entry(board, made_entry(large_setting(), fmt::format("author_{}", i), .2 + .003 * i));
+    write_replayed(board, made_entry(large_setting(), fmt::format("author_{}", i), .2 + .003 * i));
   for (const auto& [name, rate] : {std::pair("oracle", .99), {"random_object", .4}, {"constant_action", .2}})
-    write_entry(board, made_entry(large_setting(), name, rate, "reference"));
+    write_replayed(board, made_entry(large_setting(), name, rate, "reference"));
   build(board);
   const std::clock_t begin = std::clock();  // processor time: the machine may be busy
   const Checked checked = check(board);

@@ -8,6 +8,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
 #include "../schemas.hpp"
@@ -15,25 +16,6 @@
 
 namespace lgabench::leaderboard {
 namespace {
-
-Json replay_of(const Entry& entry, const std::string& by, const std::string& processor, bool passed = true) {
-  const std::string nonce(32, '7');
-  Json cells = Json::array();
-  for (const std::size_t i : chosen_cells(entry, nonce, 3)) cells.push_back(entry.cells[i].key);
-  return {{"kind", "replay"},
-          {"nonce", nonce},
-          {"cells", cells},
-          {"bit_identical", 3},
-          {"flips", 0},
-          {"episodes", 120},
-          {"passed", passed},
-          {"by", by},
-          {"when", "2026-01-02"},
-          {"program", "lgabench 0.2.0"},
-          {"build", Json::object()},
-          {"machine", {{"processor", processor}}},
-          {"confinement", "Landlock 6, seccomp"}};
-}
 
 TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
   const TemporaryDirectory board;
@@ -43,7 +25,9 @@ TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
   for (auto& arm : entry.cells[2].outcomes) arm.second = std::string(40, failed_cell_letter);
   write_entry(board.path, entry);
   add_verification(board.path, entry, replay_of(entry, "somebody", "another"));
-  const Entry read = read_entry(board.path, entry.place());
+  EXPECT_EQ(read_entries(board.path).front().tier(), Tier::recomputed) << "a claim";
+  vouch(board.path, entry.id(), "1");
+  const Entry read = read_entries(board.path).front();
   EXPECT_EQ(entry_text(read), entry_text(entry));
   EXPECT_EQ(cells_text(read), cells_text(entry));
   EXPECT_EQ(read.tier(), Tier::reproduced);
@@ -106,6 +90,23 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
               "the hash of /identity");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["preset"]["episodes"] = 20; }); }),
               "the hash of /preset");
+  const auto preset = [&](const char* member, const Json& value) {
+    return after([&](auto& path) { json(path, [&](Json& e) { e["preset"][member] = value; }); });
+  };
+  EXPECT_SAYS(preset("episodes", 1000000), "/preset/episodes: expected a whole number from 1 to 10000");
+  EXPECT_SAYS(preset("seeds", std::vector<int>(9000)), "/preset: expected at most 10000 cells");
+  EXPECT_SAYS(preset("layouts", {"$(x)"}), "/preset/layouts/0: expected letters, digits and _");
+  EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["identity"]["engine"]["id"] = "a; touch b"; }); }),
+              "/identity/engine/id: expected an id");
+  EXPECT_SAYS(after([&](auto& path) {
+                json(path,
+                     [](Json& e) { e["phi"]["heart"][0][0]["quality"]["target"]["textures"]["precision"] = 1e300; });
+              }),
+              "/precision: expected a number from 0 to 1");
+  EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"lm_queries\":112.0", "\"lm_queries\":1e+300"); }),
+              "/lm_queries: expected a number from 0 to 1e+15");
+  EXPECT_SAYS(after([&](auto& path) { write_file(path / "cells.jsonl", std::string((16 << 20) + 1, ' ')); }),
+              "cells.jsonl: expected at most 16777216 bytes");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),
@@ -137,14 +138,21 @@ TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
               "/cells: expected a cell or more");
 }
 
-TEST(LeaderboardEntry, TiersFollowFromVerifications) {
+TEST(LeaderboardEntry, TiersFollowFromLinesThatSomebodyVouchesFor) {
   Entry entry = made_entry(small_setting(), "a", .5);
+  EXPECT_EQ(why_not_ranked(entry), "not yet replayed");
+  entry.verifications.push_back(replay_of(entry, "a", "another"));
   EXPECT_EQ(entry.tier(), Tier::recomputed);
-  entry.verifications.push_back(replay_of(entry, "a", "another"));  // by the same person
+  EXPECT_EQ(why_not_ranked(entry), "not yet replayed");
+  add_vouched(entry, replay_of(entry, "a", "another"));  // by the same person
   EXPECT_EQ(entry.tier(), Tier::replayed);
-  entry.verifications.push_back(replay_of(entry, "b", "another"));
+  EXPECT_EQ(why_not_ranked(entry), "");
+  add_vouched(entry, replay_of(entry, "b", "another"));
   EXPECT_EQ(entry.tier(), Tier::reproduced);
   entry.verifications.push_back(replay_of(entry, "c", "third", false));
+  EXPECT_EQ(why_not_ranked(entry), "") << "a claim";
+  EXPECT_EQ(claims(entry), std::vector<std::string>{"claimed by c: a replay differed"});
+  entry.vouched.insert(line_hash(entry.verifications.back()));
   EXPECT_EQ(entry.tier(), Tier::recomputed);
   EXPECT_EQ(why_not_ranked(entry), "a replay differed");
 }
@@ -159,25 +167,99 @@ TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten)
   EXPECT_SAYS(message_of<InputError>([&] { played_cell(result, "", "", entry); }), "27 words for failures");
 }
 
-TEST(LeaderboardEntry, RepeatedFreshVerificationsAreTestedTogether) {
-  Entry entry = made_entry(small_setting(), "a", .5);
-  EXPECT_EQ(entry.fresh(), 0);
-  const auto verify = [&entry](double difference) {  // with a standard error of .05
-    Json line = replay_of(entry, "b", "another", std::abs(difference) <= .098);
-    line.update({{"kind", "fresh"},
-                 {"difference", difference},
-                 {"low", difference - .05 * 1.959964},
-                 {"high", difference + .05 * 1.959964}});
-    entry.verifications.push_back(line);
+// A line of fresh scenes: in each arm so many successes more than on the board's.
+Json fresh_of(const Entry& entry, const std::map<std::string, int>& more, char nonce = '7') {
+  Json line = replay_of(entry, "b", "another");
+  line.update({{"kind", "fresh"},
+               {"nonce", std::string(32, nonce)},
+               {"bit_identical", 0},
+               {"cells", Json::array()},
+               {"successes", Json::array()}});
+  line.erase("only_recorded");
+  int episodes = 0;
+  for (const std::size_t i : fresh_cells(entry, line.at("nonce"))) {
+    const PlayedCell& cell = entry.cells[i];
+    line["cells"].push_back(cell.key);
+    Json& successes = line["successes"].emplace_back();
+    for (const auto& [arm, letters] : cell.outcomes) {
+      const auto before = static_cast<int>(std::count(letters.begin(), letters.end(), success_letter));
+      successes[arm] = std::clamp(before + (more.count(arm) ? more.at(arm) : 0), 0, entry.setting.episodes);
+    }
+    episodes += cell.episodes();
+  }
+  line["episodes"] = episodes;
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  line["passed"] = std::none_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+  line["difference"] = estimates.back().difference;
+  line["low"] = estimates.back().low;
+  line["high"] = estimates.back().high;
+  return line;
+}
+
+TEST(LeaderboardEntry, EveryArmIsLookedAtOnFreshScenes) {
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  const auto estimates = [&](const std::map<std::string, int>& more) {
+    const Json line = fresh_of(entry, more);
+    return fresh_estimates(entry, {&line});
   };
-  verify(.11);  // p = .028
+  const std::vector<FreshEstimate> memorised = estimates({{"hard", -14}});
+  ASSERT_EQ(memorised.size(), 3u);
+  EXPECT_EQ(memorised[0].arm, "hard");
+  EXPECT_NEAR(memorised[0].difference, -14 / 40., 1e-12);
+  EXPECT_TRUE(memorised[0].differs());
+  EXPECT_FALSE(memorised[1].differs()) << memorised[1].arm;
+  EXPECT_EQ(memorised[2].arm, "") << "the mean over arms";
+  EXPECT_NEAR(memorised[2].difference, -14 / 40. / 4, 1e-12) << "one of two arms in one of two scenarios";
+  for (const FreshEstimate& one : estimates({})) EXPECT_FALSE(one.differs());
+}
+
+TEST(LeaderboardEntry, FreshScenesArePooled) {
+  Entry entry = replayed_entry(small_setting(), "a", .5);
+  EXPECT_EQ(entry.fresh(), 0);
+  const Json failed = fresh_of(entry, {{"test", -18}});
+  add_vouched(entry, failed);
   EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
-  verify(.01);
-  EXPECT_EQ(entry.fresh(), 1) << "one of two is chance";
-  EXPECT_EQ(why_not_ranked(entry), "");
-  for (int i = 0; i < 18; ++i) verify(.02);
-  verify(-.25);  // p = 6e-7
+  for (int i = 0; i < 3; ++i) add_vouched(entry, failed);
+  EXPECT_EQ(entry.fresh(), -1) << "what is found again is no chance";
+  // Thirty lines of somebody who does not count bury nothing.
+  Json harmless = fresh_of(entry, {});
+  for (int i = 0; i < 30; ++i) {
+    harmless["by"] = fmt::format("a friend {}", i);
+    entry.verifications.push_back(harmless);
+  }
   EXPECT_EQ(why_not_ranked(entry), "differs on fresh scenes");
+
+  Entry lucky = replayed_entry(small_setting(), "a", .5);
+  add_vouched(lucky, fresh_of(lucky, {{"test", 10}}));
+  EXPECT_EQ(lucky.fresh(), -1);
+  for (int i = 0; i < 9; ++i) add_vouched(lucky, fresh_of(lucky, {}));
+  EXPECT_EQ(why_not_ranked(lucky), "") << "one line in ten, by chance";
+}
+
+TEST(LeaderboardEntry, AFreshLineIsWhatItsSuccessesSay) {
+  const TemporaryDirectory board;
+  const Entry entry = made_entry(small_setting(), "a", .5);
+  const auto complaint = [&](const std::function<void(Json&)>& change) {
+    write_entry(board.path, entry);
+    Json line = fresh_of(entry, {{"hard", -14}});
+    change(line);
+    write_file(board.path / entry.place() / "verifications.jsonl", canonical(line) + "\n");
+    return message_of<InputError>([&] { read_entry(board.path, entry.place()); });
+  };
+  write_entry(board.path, entry);
+  add_verification(board.path, entry, fresh_of(entry, {}));
+  EXPECT_EQ(read_entry(board.path, entry.place()).verifications.size(), 1u);
+  EXPECT_EQ(complaints("verifications", fresh_of(entry, {})), std::vector<std::string>());
+  EXPECT_SAYS(complaint([](Json& line) { line["passed"] = true; }), "/passed: expected false, by its successes");
+  EXPECT_SAYS(complaint([](Json& line) { line["difference"] = 0; }), "/difference: expected -0.0875");
+  EXPECT_SAYS(complaint([](Json& line) { line["successes"][0]["test"] = 41; }), "/test: expected a whole number");
+  EXPECT_SAYS(complaint([](Json& line) { line["successes"][0].erase("test"); }), "test");
+  EXPECT_SAYS(complaint([](Json& line) { line["cells"][0] = line["cells"][1]; }), "the cells that the nonce chooses");
+  EXPECT_SAYS(complaint([](Json& line) { line["low"] = -1e300; }), "/low: expected a difference of two rates");
+  Json old = fresh_of(entry, {});
+  old.erase("successes");
+  write_file(board.path / entry.place() / "verifications.jsonl", canonical(old) + "\n");
+  EXPECT_SAYS(message_of<InputError>([&] { vouch(board.path, entry.id(), "1"); }), "looked at one arm alone");
 }
 
 TEST(Standings, SharedResamplesSayWhatOnePairsOwnResamplesSay) {
@@ -232,9 +314,9 @@ TEST(Standings, AHugeDifferenceBearsTheCorrectionForManyEntries) {
 
 TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   const Setting setting = small_setting();
-  const std::vector<Entry> entries{made_entry(setting, "a", .8), made_entry(setting, "b", .8),
-                                   made_entry(setting, "c", .3), made_entry(setting, "oracle", 1, "reference"),
-                                   made_entry(setting, "random_object", .5, "reference")};
+  const std::vector<Entry> entries{replayed_entry(setting, "a", .8), replayed_entry(setting, "b", .8),
+                                   replayed_entry(setting, "c", .3), replayed_entry(setting, "oracle", 1, "reference"),
+                                   replayed_entry(setting, "random_object", .5, "reference")};
   std::vector<const Entry*> table;
   for (const Entry& entry : entries) table.push_back(&entry);
   const std::vector<Standing> all = standings(table);
@@ -256,7 +338,7 @@ TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.cells[0].failed = "signal 11";
   entry.cells[0].outcomes["test"] = std::string(40, failed_cell_letter);
   const Standing standing = standings({&entry}).front();
@@ -266,7 +348,7 @@ TEST(Standings, EpisodesOfAFailedCellAreLost) {
 }
 
 TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   PlayedCell& cell = entry.cells[0];
   cell.failed = "signal 11";
   cell.outcomes["test"] = std::string(40, failed_cell_letter);
@@ -278,8 +360,21 @@ TEST(Standings, AFailedCellMakesAnEntryNoCheaper) {
   EXPECT_EQ(standings({&entry}).front().lm_queries, 0);
 }
 
+TEST(Standings, AnEntryThatNobodyReplayedHasNoInfluence) {
+  std::vector<Entry> entries{replayed_entry(small_setting(), "a", .8), replayed_entry(small_setting(), "b", .3)};
+  const auto rank = [&entries] {
+    std::vector<const Entry*> table;
+    for (const Entry& entry : entries) table.push_back(&entry);
+    EXPECT_EQ(not_yet_replayed(table).size(), entries.size() - 2);
+    return standings(table).back().rank;
+  };
+  EXPECT_EQ(rank(), 2);
+  entries.push_back(made_entry(small_setting(), "c", 1));
+  EXPECT_EQ(rank(), 2);
+}
+
 TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {
-  Entry entry = made_entry(small_setting(), "a", 1);
+  Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.identity.row.asks = "truth";
   EXPECT_EQ(why_not_ranked(entry), "asks for the truth");
   entry.identity.row.asks = "";

@@ -263,16 +263,15 @@ TEST(CompareCells, OtherBytesNeedAnExcuse) {
   EXPECT_SAYS(owed.detail, "from episodes.jsonl line 1, though");
 }
 
-TEST(CompareCells, OutcomesWithinChanceOrNot) {
-  const report::CellAgreement chance = agreement({"lga", 15}, {"lga", 11}, true);
-  EXPECT_EQ(chance.agreement, Agreement::within_interval);
-  EXPECT_SAYS(chance.detail, "arm test: 15 of 20 succeeded there, 11 here (McNemar p = 0.125)");
-  EXPECT_SAYS(chance.detail, "from episodes.jsonl line 12");
-  EXPECT_EQ(agreement({"lga", 15}, {"lga", 5}, true).agreement, Agreement::differs);
+TEST(CompareCells, OtherOutcomesAreCounted) {
+  const report::CellAgreement other = agreement({"lga", 15}, {"lga", 11}, true);
+  EXPECT_EQ(other.agreement, Agreement::other_outcomes);
+  EXPECT_SAYS(other.detail, "arm test: 15 of 20 succeeded there, 11 here, 4 episodes ended otherwise");
+  EXPECT_SAYS(other.detail, "from episodes.jsonl line 12");
+  EXPECT_EQ(other.episodes, 20);
 
   // Three that turned in each of two cells may be chance in each; six are none.
   const report::CellAgreement three = agreement({"lga", 15}, {"lga", 12}, true);
-  EXPECT_EQ(three.agreement, Agreement::within_interval);
   EXPECT_EQ(three.only_recorded, 3);
   EXPECT_EQ(three.only_recomputed, 0);
   const std::vector<report::PooledAgreement> one = report::pooled({{"lga", three}, {"oracle", {}}});
@@ -293,7 +292,23 @@ TEST(CompareCells, OutcomesWithinChanceOrNot) {
   EXPECT_TRUE(rows[3].differs());
   Spec otherwise{"lga", 15};
   otherwise.failure = "wrong_object";
-  EXPECT_EQ(agreement({"lga", 15}, otherwise, true).agreement, Agreement::within_interval);
+  EXPECT_EQ(agreement({"lga", 15}, otherwise, true).agreement, Agreement::other_outcomes);
+}
+
+TEST(CompareCells, OneVerdictOverAllCells) {
+  using report::Reproduction;
+  const auto cell = [](Agreement agreement, int there, int here, int episodes) {
+    report::CellAgreement one{agreement, "", there, here, episodes};
+    return std::pair(std::string("lga"), one);
+  };
+  const auto same = cell(Agreement::identical, 0, 0, 100);
+  EXPECT_EQ(report::verdict_of({same, same}), Reproduction::identical);
+  EXPECT_EQ(report::verdict_of({same, cell(Agreement::same_outcomes, 0, 0, 100)}), Reproduction::agrees);
+  EXPECT_EQ(report::verdict_of({same, cell(Agreement::other_outcomes, 1, 1, 100)}), Reproduction::agrees) << "1 %";
+  EXPECT_EQ(report::verdict_of({same, cell(Agreement::other_outcomes, 2, 1, 100)}), Reproduction::differs) << "1.5 %";
+  EXPECT_EQ(report::verdict_of({cell(Agreement::other_outcomes, 4, 4, 1000)}), Reproduction::agrees);
+  EXPECT_EQ(report::verdict_of({cell(Agreement::other_outcomes, 6, 0, 1000)}), Reproduction::differs) << "all one way";
+  EXPECT_EQ(report::verdict_of({same, cell(Agreement::differs, 0, 0, 100)}), Reproduction::differs);
 }
 
 TEST(CompareCells, NothingExcusesOtherScenesOrSelections) {
@@ -304,14 +319,6 @@ TEST(CompareCells, NothingExcusesOtherScenesOrSelections) {
   EXPECT_SAYS(agreement({"lga", 15}, scenes, true).detail, "scenes 0000000000000000 and");
   EXPECT_EQ(agreement({"lga", 15}, selection, true).agreement, Agreement::differs);
   EXPECT_SAYS(agreement({"lga", 15}, selection, true).detail, "selection.json line 1");
-}
-
-// Each arm has its say: worse in one and better in the other is not the same.
-TEST(CompareCells, ArmsDoNotCancelOut) {
-  Spec there{"lga", 15}, here{"lga", 15};
-  there.arms = {{"control", 18}, {"texture", 4}};
-  here.arms = {{"control", 4}, {"texture", 18}};
-  EXPECT_EQ(agreement(there, here, true).agreement, Agreement::differs);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include <lgabench/abstraction/quality.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -57,12 +59,19 @@ Json to_json(const NameQuality& quality) {
           {"true_size", number(quality.true_size)}};
 }
 
+constexpr double most_names = 1e6;
+
 NameQuality read_names(const JsonReader& reader) {
-  const auto share = [&reader](const char* member) {
+  const auto within = [&reader](const char* member, double most) {
     const JsonReader value = reader.at(member);
-    return value.json().is_null() ? std::nullopt : std::optional(value.number());
+    const double number = value.number();
+    if (!(number >= 0 && number <= most)) value.fail(fmt::format("a number from 0 to {:g}", most));
+    return number;
   };
-  return {share("precision"), share("recall"), reader.at("size").number(), reader.at("true_size").number()};
+  const auto share = [&](const char* member) {
+    return reader.at(member).json().is_null() ? std::nullopt : std::optional(within(member, 1));
+  };
+  return {share("precision"), share("recall"), within("size", most_names), within("true_size", most_names)};
 }
 
 }  // namespace

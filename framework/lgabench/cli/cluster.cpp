@@ -8,6 +8,7 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/run_directory.hpp>
 #include <lgabench/record/layout.hpp>
@@ -102,12 +103,12 @@ while kill -0 $run 2>/dev/null; do wait $run; status=$?; done
 rm -rf "$scratch"
 exit $status
 )",
-             a.elements, a.cpus, memory_gib * 1024 * a.cpus + 512, joined({fs::current_path().string()}), program,
-             joined({out.string()}), memory_gib);
+             a.elements, a.cpus, memory_gib * 1024 * a.cpus + 512, shell_line({fs::current_path().string()}), program,
+             shell_line({out.string()}), memory_gib);
 }
 
 std::string merge_script(const ClusterArguments& a, const std::string& program, const fs::path& out) {
-  const std::string where = joined({out.string()});
+  const std::string where = shell_line({out.string()});
   return header(a, "lgabench-merge", "01:00:00", out, "merge_%j.txt") +
          fmt::format("{0} status {1}\nexec {0} merge {1}/whole {1}/part-*/\n", program, where);
 }
@@ -117,7 +118,7 @@ std::string submit_script(const fs::path& out) {
       "#!/bin/bash\n# Options go to the array: submit --array=3,7\nset -eu\nmkdir -p {0}/logs\n"
       "array=$(sbatch --parsable \"$@\" {0}/array.sbatch)\n"
       "sbatch --dependency=\"afterany:${{array%%;*}}\" {0}/merge.sbatch\n",
-      joined({out.string()}));
+      shell_line({out.string()}));
 }
 
 // Options of one call, which an element would obey each time it is submitted or requeued.
@@ -136,8 +137,8 @@ int write_scripts(ClusterArguments a) {
   if (static_cast<std::size_t>(a.elements) > plan.cells.size())
     throw InputError(fmt::format("--elements {}: the run has {} cells", a.elements, plan.cells.size()));
   const double memory_gib = a.run.memory_gib > 0 ? a.run.memory_gib : 4;
-  const std::string program = joined({(program_directory() / "lgabench").string()});
-  write_file(out / "array.sbatch", array_script(a, program + " " + joined(run_words()), out, memory_gib));
+  const std::string program = shell_line({(program_directory() / "lgabench").string()});
+  write_file(out / "array.sbatch", array_script(a, program + " " + shell_line(run_words()), out, memory_gib));
   write_file(out / "merge.sbatch", merge_script(a, program, out));
   write_file(out / "submit", submit_script(out));
   fs::permissions(out / "submit", fs::perms::owner_exec, fs::perm_options::add);
@@ -150,7 +151,7 @@ int write_scripts(ClusterArguments a) {
   if (expected_s > .8 * limit_s)
     to_stdout("--time {} is short for that: {} elements would fit, or submit the array again\n", a.time,
               static_cast<int>(a.elements * expected_s / (.6 * limit_s)) + 1);
-  to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", joined({out.string()}), joined({out.string()}));
+  to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", shell_line({out.string()}), shell_line({out.string()}));
   return ok;
 }
 

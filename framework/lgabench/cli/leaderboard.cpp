@@ -16,17 +16,19 @@
 #include <lgabench/leaderboard/archive.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
-#include <lgabench/leaderboard/replay.hpp>
+#include <lgabench/leaderboard/recompute.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct LeaderboardArguments {
-  std::string action, what, about, against, reason, python = "python3";
+  std::string action, what, line, about, against, reason, python = "python3";
   fs::path board = "results/leaderboard", archive;
   Words rows, methods;
   std::vector<fs::path> plugin_path, documents;
-  leaderboard::ReplayOptions replay;
+  leaderboard::VerifyOptions verify;
+  bool maintainer = false;
   int jobs = 0;  // as many as there are cores
 };
 
@@ -54,12 +56,31 @@ void expect_board(const fs::path& board) {
         board.string()));
 }
 
+std::string replay_words(const Json& line) {
+  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
+                     line.at("bit_identical").get<int>(), line.at("cells").size(), line.at("flips").get<int>(),
+                     line.at("episodes").get<int>());
+}
+
+// The mean over arms, then the arms that differ.
+std::string fresh_words(const leaderboard::Entry& entry, const Json& line) {
+  const std::vector<leaderboard::FreshEstimate> estimates = leaderboard::fresh_estimates(entry, {&line});
+  const auto words = [](const leaderboard::FreshEstimate& one) {
+    return fmt::format("{:+.3f} [{:+.3f}, {:+.3f}]", one.difference, one.low, one.high);
+  };
+  std::string text = words(estimates.back()) + " on fresh scenes";
+  for (const leaderboard::FreshEstimate& one : estimates)
+    if (!one.arm.empty() && estimates.size() > 1 && one.differs())
+      text += fmt::format("; arm {} differs: {}", one.arm, words(one));
+  return text;
+}
+
 // One line for each entry; a verification is recorded, whatever it says. Entries that cannot be verified stop no other.
 int verify(LeaderboardArguments a) {
-  if (a.replay.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
+  if (a.verify.by.empty()) throw InputError("leaderboard verify: expected --by NAME, who verifies");
   Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-  a.replay.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  a.verify.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<fs::path> entries;
   if (!a.what.empty())
     entries.push_back(leaderboard::find_entry(a.board, a.what));
@@ -73,7 +94,7 @@ int verify(LeaderboardArguments a) {
     try {
       entry = leaderboard::read_entry(a.board, directory);
       if (!entry.withdrawn.is_null()) continue;
-      line = leaderboard::replay(a.board, entry, leaderboard::new_nonce(), catalogue, a.replay);
+      line = leaderboard::verification(a.board, entry, leaderboard::new_nonce(), catalogue, a.verify);
     } catch (const Error& e) {  // a plugin that is not here, another version, a cell that the host failed
       to_stderr("not verified: {}: {}\n", directory.string(), one_line(e.what()));
       ++unverified;
@@ -82,14 +103,10 @@ int verify(LeaderboardArguments a) {
     if (!line) return interrupted;
     leaderboard::add_verification(a.board, entry, *line);
     const bool passed = line->at("passed");
-    const std::string found =
-        a.replay.fresh ? fmt::format("{:+.3f} [{:+.3f}, {:+.3f}] on fresh scenes", line->at("difference").get<double>(),
-                                     line->at("low").get<double>(), line->at("high").get<double>())
-                       : fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
-                                     line->at("bit_identical").get<int>(), line->at("cells").size(),
-                                     line->at("flips").get<int>(), line->at("episodes").get<int>());
+    const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
+    to_stderr("To let it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());
@@ -103,9 +120,17 @@ int withdraw(const LeaderboardArguments& a) {
   return ok;
 }
 
+int vouch(const LeaderboardArguments& a) {
+  if (a.what.empty() || a.line.empty())
+    throw InputError("leaderboard vouch: expected ENTRY, and LINE: its number in verifications.jsonl, or withdrawn");
+  to_stdout("vouched for {}\n", leaderboard::vouch(a.board, a.what, a.line));
+  return ok;
+}
+
 int check(const LeaderboardArguments& a) {
-  const leaderboard::Checked checked = leaderboard::check(a.board, a.against, a.documents);
-  for (const std::string& note : checked.notes) to_stderr("{}\n", one_line(note));
+  leaderboard::CheckOptions options{a.against, a.maintainer, a.documents};
+  options.installed = scan_plugins(plugin_directories(a.plugin_path));
+  const leaderboard::Checked checked = leaderboard::check(a.board, options);
   to_stdout("{} entr{}, {} problem{}\n", checked.entries, checked.entries == 1 ? "y" : "ies", checked.problems.size(),
             checked.problems.size() == 1 ? "" : "s");
   return print_all(checked.problems, "");
@@ -125,35 +150,38 @@ int build(const LeaderboardArguments& a) {
 void add_leaderboard(CLI::App& app, int& exit) {
   auto a = std::make_shared<LeaderboardArguments>();
   CLI::App* verb = app.add_subcommand("leaderboard", "Add results to a leaderboard, check it, and make its pages");
-  const Words actions{"add", "verify", "build", "check", "withdraw"};
-  verb->add_option("ACTION", a->action, "add, verify, build, check or withdraw")
+  const Words actions{"add", "verify", "vouch", "build", "check", "withdraw"};
+  verb->add_option("ACTION", a->action, "add, verify, vouch, build, check or withdraw")
       ->required()
       ->check(one_of("action", actions));
-  verb->add_option("WHAT", a->what, "add: a run's directory; verify (else all), withdraw: an entry's, or its id");
+  verb->add_option("WHAT", a->what,
+                   "add: a run's directory; verify (else all), vouch, withdraw: an entry's, or its id");
+  verb->add_option("LINE", a->line, "vouch: a line's number in verifications.jsonl, or withdrawn");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
                    "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
   verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
   CLI::Option* const cells =
-      verb->add_option("--cells", a->replay.cells, "verify: how many cells, chosen by a nonce drawn now")
+      verb->add_option("--cells", a->verify.cells, "verify: how many cells, chosen by a nonce drawn now")
           ->check(CLI::Range(1, 1000000))
           ->capture_default_str();
-  verb->add_flag("--fresh", a->replay.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
-  verb->add_option("--by", a->replay.by, "verify: who verifies");
+  verb->add_flag("--fresh", a->verify.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
+  verb->add_option("--by", a->verify.by, "verify: who verifies");
   verb->add_option("--jobs", a->jobs, "verify: cells computed at once (default: one a core)")
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->replay.pool.timeout_s, "verify: seconds after which a cell is stopped")
+  verb->add_option("--timeout", a->verify.pool.timeout_s, "verify: seconds after which a cell is stopped")
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "verify: FILE.py:Class of methods in Python")->delimiter(',');
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
+  verb->add_flag("--maintainer", a->maintainer, "build, check: with --against, vouched.json may differ");
   verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
-  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"--board", "DIR"}});
+  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
   arrange(*verb, "verify",
           {{"--by", "NAME"},
@@ -165,20 +193,24 @@ void add_leaderboard(CLI::App& app, int& exit) {
            {"--methods", "FILE.py:CLASS,..."},
            {"--python", "PROGRAM"}});
   arrange(*verb, "build and check",
-          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}});
+          {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
   verb->footer(
       "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
       "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"
-      "verify plays cells again, confined and without a cache, and records what it finds. check reads files alone.\n"
+      "verify plays cells again, confined and without a cache, and records what it finds; vouch lets a line that was\n"
+      "found count: without it a line is a claim, and an entry has no rank. check reads files alone.\n"
       "Exit 1: refused, different, or a problem. Exit 2: none of these, and verify could not verify some entry.");
   verb->callback([a, actions, verb, &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))
       throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->what));
-    a->replay.program = app.version();
+    if (!a->line.empty() && a->action != "vouch")
+      throw InputError(fmt::format("leaderboard {}: \"{}\" is a word too many", a->action, a->line));
+    a->verify.program = app.version();
     if (a->action != "add") expect_board(a->board);
     exit = a->action == "verify"  ? verify(*a)
            : a->action == "add"   ? add(*a)
+           : a->action == "vouch" ? vouch(*a)
            : a->action == "build" ? build(*a)
            : a->action == "check" ? check(*a)
                                   : withdraw(*a);

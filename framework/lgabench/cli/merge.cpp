@@ -6,6 +6,7 @@
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/merge.hpp>
 
@@ -32,7 +33,7 @@ void add_merge(CLI::App& app, int& exit) {
       "Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2\n"
       "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method");
   verb->callback([options, &exit] {
-    const MergeOutcome outcome = merge_runs(options->out, options->runs, joined(command_line()));
+    const MergeOutcome outcome = merge_runs(options->out, options->runs, shell_line(command_line()));
     to_stderr("{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
               outcome.missing);
     if (outcome.failed + outcome.missing > 0)

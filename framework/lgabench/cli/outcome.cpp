@@ -3,26 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
-namespace {
-
-std::string shell_quoted(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789_-+=./:,@%") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-}  // namespace
 
 Words command_line() {
   const std::string bytes = read_file("/proc/self/cmdline");
@@ -33,12 +19,6 @@ Words command_line() {
     at = end + 1;
   }
   return words;
-}
-
-std::string joined(const Words& words) {
-  Words quoted;
-  std::transform(words.begin(), words.end(), std::back_inserter(quoted), shell_quoted);
-  return fmt::format("{}", fmt::join(quoted, " "));
 }
 
 void expect_run(const fs::path& directory) {

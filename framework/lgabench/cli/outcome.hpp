@@ -13,9 +13,6 @@ using Words = std::vector<std::string>;
 /// The words of this program's command line, as typed.
 Words command_line();
 
-/// One line that a shell splits into these words again.
-std::string joined(const Words& words);
-
 /// @throws InputError for what is no run's directory; it names runs that are near.
 void expect_run(const fs::path& directory);
 

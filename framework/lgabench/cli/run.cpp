@@ -7,6 +7,7 @@
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/debug_cell.hpp>
 #include <lgabench/harness/missing_encoder.hpp>
@@ -22,7 +23,7 @@ std::string resuming_command(const RunArguments& a, const fs::path& out) {
       words.end());
   if (a.out.empty()) words.insert(words.end(), {"--out", out.string()});
   words.push_back("--resume");
-  return joined(words);
+  return shell_line(words);
 }
 
 // What --dry-run says.

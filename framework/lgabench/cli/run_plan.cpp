@@ -12,6 +12,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
 
@@ -169,7 +170,7 @@ PlannedRun plan_run(RunArguments a) {
                        {"set", variation.options},
                        {"references", variation.references},
                        {"limit", a.limit}});
-  plan.command = joined(command_line());
+  plan.command = shell_line(command_line());
   plan.program = a.program;
   plan.out = a.out;
   if (a.out.empty()) {

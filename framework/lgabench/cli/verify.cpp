@@ -15,11 +15,10 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
-#include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/harness/recompute.hpp>
 #include <lgabench/harness/run_directory.hpp>
-#include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/agreement.hpp>
@@ -106,62 +105,70 @@ Cell with_present_data(const Recorded& recorded, std::set<std::string>& why) {
   return cell;
 }
 
-struct Recomputed {
+struct Compared {
   std::string key, title, row;
-  report::CellAgreement agreement;
+  report::CellAgreement agreement;  // "differs" unless it says otherwise
 };
 
-Recomputed judge(const Recorded& recorded, const fs::path& recomputed, bool excused) {
-  Recomputed verdict{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
-  const CellStatus status = read_cell_status(recomputed);
-  verdict.agreement = status.failed
-                          ? report::CellAgreement{report::Agreement::differs, "fails now: " + status.reason, 0, 0}
-                          : report::compare_cells(recorded.directory, recomputed, excused);
-  return verdict;
+Compared compared(const Recorded& recorded, const fs::path& recomputed, bool excused) {
+  Compared cell{recorded.directory.filename().string(), recorded.cell.title(), recorded.cell.method.name, {}};
+  if (const CellStatus status = read_cell_status(recomputed); status.failed)
+    cell.agreement.detail = "fails now: " + status.reason;
+  else
+    cell.agreement = report::compare_cells(recorded.directory, recomputed, excused);
+  return cell;
 }
 
 // "14 bit-identical, 2 same outcomes"
-std::string counts(const std::vector<Recomputed>& verdicts) {
+std::string counts(const std::vector<Compared>& cells) {
   using report::Agreement;
   std::vector<std::string> parts;
   for (const Agreement one :
-       {Agreement::identical, Agreement::same_outcomes, Agreement::within_interval, Agreement::differs})
-    if (const auto n = std::count_if(verdicts.begin(), verdicts.end(),
-                                     [one](const Recomputed& v) { return v.agreement.agreement == one; }))
+       {Agreement::identical, Agreement::same_outcomes, Agreement::other_outcomes, Agreement::differs})
+    if (const auto n = std::count_if(cells.begin(), cells.end(),
+                                     [one](const Compared& c) { return c.agreement.agreement == one; }))
       parts.push_back(fmt::format("{} {}", n, to_string(one)));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::vector<report::PooledAgreement> pooled(const std::vector<Recomputed>& verdicts) {
-  std::vector<std::pair<std::string, report::CellAgreement>> cells;
-  for (const Recomputed& verdict : verdicts) cells.emplace_back(verdict.row, verdict.agreement);
-  return report::pooled(cells);
+using Agreements = std::vector<std::pair<std::string, report::CellAgreement>>;
+Agreements agreements(const std::vector<Compared>& cells) {
+  Agreements all;
+  for (const Compared& cell : cells) all.emplace_back(cell.row, cell.agreement);
+  return all;
 }
 
-std::ptrdiff_t other_bytes(const std::vector<Recomputed>& verdicts) {
-  return std::count_if(verdicts.begin(), verdicts.end(),
-                       [](const Recomputed& v) { return v.agreement.agreement != report::Agreement::identical; });
+std::ptrdiff_t other_bytes(const std::vector<Compared>& cells) {
+  return std::count_if(cells.begin(), cells.end(),
+                       [](const Compared& c) { return c.agreement.agreement != report::Agreement::identical; });
 }
 
-std::ptrdiff_t differing(const std::vector<Recomputed>& verdicts) {
-  return std::count_if(verdicts.begin(), verdicts.end(),
-                       [](const Recomputed& v) { return v.agreement.agreement == report::Agreement::differs; });
+std::ptrdiff_t differing(const std::vector<Compared>& cells) {
+  return std::count_if(cells.begin(), cells.end(),
+                       [](const Compared& c) { return c.agreement.agreement == report::Agreement::differs; });
 }
 
 // What the words of the cells' lines come to, where not all of them are "bit-identical".
-void print_other_bytes(const std::vector<Recomputed>& verdicts) {
-  const std::ptrdiff_t others = other_bytes(verdicts);
+void print_other_bytes(const std::vector<Compared>& cells) {
+  const std::ptrdiff_t others = other_bytes(cells);
   if (others == 0) return;
-  for (const report::PooledAgreement& pool : pooled(verdicts))
+  int flips = 0, episodes = 0;
+  for (const Compared& cell : cells) {
+    flips += cell.agreement.only_recorded + cell.agreement.only_recomputed;
+    episodes += cell.agreement.episodes;
+  }
+  for (const report::PooledAgreement& pool : report::pooled(agreements(cells)))
     to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar {}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
               report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
-  to_stdout("NOT bit-identical: {} of {} cells\n", others, verdicts.size());
-  if (const auto excused = others - differing(verdicts))
+  to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended otherwise\n", others,
+            cells.size(), flips, episodes);
+  if (const auto excused = others - differing(cells))
     to_stdout(
         "Of {} the record names another build, processor or data: its own word, which proves nothing.\n"
         "The recorded build, on such a processor, gives the same bytes.\n",
         excused);
+  to_stdout("verdict: {}\n", to_string(report::verdict_of(agreements(cells))));
 }
 
 // A cell's builds, its plugins by their ids: "engine mujoco" for "engine".
@@ -174,17 +181,17 @@ Json by_plugin(const Json& build, const Cell& cell) {
   return named;
 }
 
-void print_verdicts(const VerifyArguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
-                    const std::set<std::string>& why, const std::vector<Recomputed>& verdicts) {
+void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint32_t seed, std::size_t of,
+                 const std::set<std::string>& why, const std::vector<Compared>& compared_cells) {
   if (a.json) {
     Json cells = Json::array();
-    for (const Recomputed& v : verdicts)
-      cells.push_back({{"cell", v.key},
-                       {"title", v.title},
-                       {"agreement", to_string(v.agreement.agreement)},
-                       {"detail", v.agreement.detail}});
+    for (const Compared& cell : compared_cells)
+      cells.push_back({{"cell", cell.key},
+                       {"title", cell.title},
+                       {"agreement", to_string(cell.agreement.agreement)},
+                       {"detail", cell.agreement.detail}});
     Json pools = Json::array();
-    for (const report::PooledAgreement& pool : pooled(verdicts))
+    for (const report::PooledAgreement& pool : report::pooled(agreements(compared_cells)))
       pools.push_back({{"row", pool.row},
                        {"cells", pool.cells},
                        {"only_recorded", pool.only_recorded},
@@ -192,7 +199,10 @@ void print_verdicts(const VerifyArguments& a, const Inventory& inventory, std::u
                        {"p_holm", pool.p_holm}});
     to_stdout("{}\n", canonical({{"cells", cells},
                                  {"pooled", pools},
-                                 {"not_identical", other_bytes(verdicts)},
+                                 {"not_identical", other_bytes(compared_cells)},
+                                 {"verdict", compared_cells.empty()
+                                                 ? Json()
+                                                 : Json(to_string(report::verdict_of(agreements(compared_cells))))},
                                  {"edited", inventory.edited},
                                  {"other", why},
                                  {"seed", seed},
@@ -201,15 +211,15 @@ void print_verdicts(const VerifyArguments& a, const Inventory& inventory, std::u
                                  {"not_played", inventory.not_played}}));
     return;
   }
-  to_stdout("{} of {} finished cells computed again{}\n", verdicts.size(), of,
-            verdicts.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
+  to_stdout("{} of {} finished cells computed again{}\n", compared_cells.size(), of,
+            compared_cells.size() < of ? fmt::format(" (--sample {} --seed {})", a.sample, seed) : "");
   to_stdout("{}\n", why.empty() ? "build, processor and data are those of the record" : "not as recorded:");
   for (const std::string& line : why) to_stdout("  {}\n", line);
-  for (const Recomputed& v : verdicts)
-    to_stdout("{:<16} {} {}{}\n", to_string(v.agreement.agreement), v.key, v.title,
-              v.agreement.detail.empty() ? "" : ": " + v.agreement.detail);
-  if (verdicts.size() > 1) to_stdout("{}\n", counts(verdicts));
-  print_other_bytes(verdicts);
+  for (const Compared& cell : compared_cells)
+    to_stdout("{:<16} {} {}{}\n", to_string(cell.agreement.agreement), cell.key, cell.title,
+              cell.agreement.detail.empty() ? "" : ": " + cell.agreement.detail);
+  if (compared_cells.size() > 1) to_stdout("{}\n", counts(compared_cells));
+  print_other_bytes(compared_cells);
   if (inventory.failed) to_stdout("{} cells failed when they were recorded: nothing to verify\n", inventory.failed);
   if (inventory.not_played) to_stdout("{} cells have not been played\n", inventory.not_played);
   if (!inventory.edited.empty()) to_stdout("{} cells were edited: not verified\n", inventory.edited.size());
@@ -231,16 +241,13 @@ int verify(const VerifyArguments& a) {
   const std::size_t of = inventory.cells.size();
   const std::vector<Recorded> cells = sampled(inventory.cells, a.all ? of : static_cast<std::size_t>(a.sample), seed);
   std::set<std::string> why;  // of all cells
-  std::vector<Recomputed> verdicts;
+  std::vector<Compared> now;
   if (!cells.empty()) {
-    const Scratch scratch("verify");
     RunPlan plan;
     std::vector<std::set<std::string>> excuses(cells.size());  // of each cell: why the same bytes are not owed
     for (std::size_t i = 0; i < cells.size(); ++i) plan.cells.push_back(with_present_data(cells[i], excuses[i]));
     plan.request = {{"suite", cells.front().cell.suite}, {"preset", ""}};
     plan.command = "lgabench verify";
-    plan.out = scratch.path / "run";
-    plan.cache = scratch.path / "cache";
     plan.answers = kept_answers(a.run);
     if (is_live(cells.front().cell.answers)) {
       const std::optional<AnswerFile> replies = kept_replies(a.run);
@@ -255,25 +262,24 @@ int verify(const VerifyArguments& a) {
     plan.pool.timeout_s = a.timeout_s;
     Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
     for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-    if (run_suite(plan, catalogue).interrupted) return interrupted;
+    const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
+    if (!recomputed) return interrupted;
 
-    const std::string there = record.processor(), here = read_run_record(plan.out).processor();
+    const std::string there = record.processor(), here = recomputed->record.processor();
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const Cell& cell = cells[i].cell;
-      const fs::path recomputed = plan.out / "cells" / key(plan.cells[i]);
+      const fs::path& directory = recomputed->cells[i];
       if (there != here) excuses[i].insert(fmt::format("processor ({} there, {} here)", there, here));
-      add_differences(excuses[i], by_plugin(cells[i].build, cell), by_plugin(read_cell_status(recomputed).build, cell),
-                      "build: ");
-      verdicts.push_back(judge(cells[i], recomputed, !excuses[i].empty()));
+      add_differences(excuses[i], by_plugin(cells[i].build, cells[i].cell),
+                      by_plugin(read_cell_status(directory).build, cells[i].cell), "build: ");
+      now.push_back(compared(cells[i], directory, !excuses[i].empty()));
       why.insert(excuses[i].begin(), excuses[i].end());
     }
   }
-  print_verdicts(a, inventory, seed, of, why, verdicts);
-  const std::vector<report::PooledAgreement> pools = pooled(verdicts);
-  const bool beyond_chance = std::any_of(pools.begin(), pools.end(), [](const auto& pool) { return pool.differs(); });
-  if (differing(verdicts) > 0 || beyond_chance || !inventory.edited.empty()) return regression;
-  if (other_bytes(verdicts) == 0) return ok;
-  return a.strict ? regression : not_identical;
+  print_cells(a, inventory, seed, of, why, now);
+  if (now.empty() || !inventory.edited.empty()) return regression;
+  const report::Reproduction verdict = report::verdict_of(agreements(now));
+  if (verdict == report::Reproduction::identical) return ok;
+  return verdict == report::Reproduction::differs || a.strict ? regression : not_identical;
 }
 
 }  // namespace
@@ -302,11 +308,12 @@ void add_verify(CLI::App& app, int& exit) {
   arrange(*verb, "How they are computed and judged", {{"--strict", ""}, {"--jobs", "N"}, {"--timeout", "SECONDS"}});
   verb->footer(
       "Example: lgabench verify runs/q1 --sample 5\n"
-      "Says of each cell: bit-identical; same outcomes; within interval (other outcomes, no more than chance allows);\n"
-      "differs. With the recorded build, processor and data the bytes must be the same. Where the record names\n"
-      "others, the changed episodes of all cells of a row are tested together.\n"
-      "Exit 0: every cell is bit-identical. Exit 1: a cell or a row differs, or was edited. Exit 5: bytes\n"
-      "differ, outcomes no more than chance allows, and the record names another build, processor or data.\n"
+      "Says of each cell: bit-identical; same outcomes; other outcomes; differs. With the recorded build, processor\n"
+      "and data the bytes must be the same. Where the record names others, the verdict over all cells is \"agrees\" "
+      "if\n"
+      "at most 1 % of the episodes ended otherwise, in no row more of them one way than chance allows.\n"
+      "Exit 0: every cell is bit-identical. Exit 1: the verdict is \"differs\", or a cell was edited. Exit 5: it\n"
+      "is \"agrees\": bytes differ, and the record names another build, processor or data.\n"
       "A run of another version (0.1 for 0.2) is refused, with the version to verify it with.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include <lgabench/abstraction/recorded.hpp>
@@ -15,6 +16,7 @@
 #include <lgabench/core/process.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/recompute.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
@@ -48,14 +50,19 @@ std::string changed_entry(const std::string& before, const std::string& now) {
   return "";
 }
 
-void compare_with(const fs::path& board, const std::string& revision, Checked& checked) {
+void compare_with(const fs::path& board, const CheckOptions& options, Checked& checked) {
+  const std::string& revision = options.against;
   const auto changes = git(
       board, {"diff", "--name-status", "--no-renames", "--relative", "--end-of-options", revision, "--", "entries"});
-  if (!changes) {
-    checked.notes.push_back(fmt::format(
-        "not compared with {}: git, its history or that revision is not there, so an old outcome could have changed",
-        revision));
-    return;
+  if (!changes)
+    throw InputError(
+        fmt::format("--against {}: expected a revision of git that {} has, and its history", revision, board.string()));
+  for (const char* file : maintainers_files) {
+    const std::string before = git(board, {"show", fmt::format("{}:./{}", revision, file)}).value_or("");
+    const bool there = fs::exists(fs::symlink_status(board / file));
+    if (!options.maintainer && (there ? read_file(board / file, Links::refused) : "") != before)
+      checked.problems.push_back(
+          fmt::format("{}: changed since {}: it is the maintainers' (--maintainer)", file, revision));
   }
   std::istringstream lines(*changes);
   for (std::string line; std::getline(lines, line);) {
@@ -129,27 +136,55 @@ void expect_current(const fs::path& board, const std::vector<Entry>& entries, co
   }
 }
 
+// What is not yet replayed was played here and now: in a preset and on an engine that are installed. Older entries were
+// replayed while theirs were.
+void expect_installed(const Entry& entry, const Catalogue& installed, Checked& checked) {
+  if (entry.was_replayed()) return;
+  try {
+    installed_as(entry, installed);
+  } catch (const Error& e) {
+    checked.problems.push_back(fmt::format("{}: {}", entry.place().string(), e.what()));
+  }
+}
+
+// Every line that is vouched for is there: an entry that changed would lose what it was vouched for.
+void expect_vouched(const std::vector<Entry>& entries, const Vouched& vouched, Checked& checked) {
+  std::set<std::string> there;
+  for (const Entry& entry : entries) {
+    for (const Json& line : entry.verifications) there.insert(entry.hash() + line_hash(line));
+    if (!entry.withdrawn.is_null()) there.insert(entry.hash() + line_hash(entry.withdrawn));
+  }
+  for (const auto& [entry, lines] : vouched)
+    for (const std::string& line : lines)
+      if (there.count(entry + line) == 0)
+        checked.problems.push_back(
+            fmt::format("{}: /{}: no entry of this hash has the line {}", vouched_file, entry, line));
+}
+
 }  // namespace
 
-Checked check(const fs::path& board, const std::string& against, const std::vector<fs::path>& documents) {
+Checked check(const fs::path& board, const CheckOptions& options) {
   Checked checked;
   std::vector<Entry> entries;
   try {
+    const Vouched vouched = read_vouched(board);
     for (const fs::path& directory : entry_directories(board)) {
       ++checked.entries;
       try {
-        entries.push_back(read_entry(board, directory));
+        entries.push_back(read_entry(board, directory, vouched));
         expect_cassette(board, entries.back(), checked);
+        if (options.installed) expect_installed(entries.back(), *options.installed, checked);
       } catch (const InputError& e) {
         checked.problems.emplace_back(e.what());
       }
     }
-  } catch (const InputError& e) {  // something else than directories
+    expect_vouched(entries, vouched, checked);
+  } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }
   expect_same_scenes(entries, checked);
-  if (checked.problems.empty()) expect_current(board, entries, documents, checked);
-  if (!against.empty()) compare_with(board, against, checked);
+  if (checked.problems.empty()) expect_current(board, entries, options.documents, checked);
+  if (!options.against.empty()) compare_with(board, options, checked);
   return checked;
 }
 

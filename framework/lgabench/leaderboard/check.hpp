@@ -1,21 +1,37 @@
 // What continuous integration runs over the board: files alone, nothing is played.
 #pragma once
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/leaderboard/vouched.hpp>
+#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::leaderboard {
 
 struct Checked {
   std::size_t entries = 0;
   std::vector<std::string> problems;  // a line each
-  std::vector<std::string> notes;     // what could not be checked, and why
+};
+
+/// Files of the board that nobody else's request may change.
+inline constexpr std::array maintainers_files{vouched_file};
+
+struct CheckOptions {
+  std::string against;      // a revision of git, whose outcomes must not have changed; "": none
+  bool maintainer = false;  // who asks may change maintainers_files
+  std::vector<fs::path> documents;
+  std::optional<Catalogue> installed{};  // what entries that are not yet replayed must fit; none: it is not asked
 };
 
 /// Schema, identity and completeness of every entry; that entries of one table played the same scenes; that cassettes
-/// are there; that the pages and the tables in `documents` are those of the entries; and, with a revision of git, that
-/// no outcome of it changed and no entry of it is gone. Keeps on after a problem.
-Checked check(const fs::path& board, const std::string& against = "", const std::vector<fs::path>& documents = {});
+/// are there; that what vouched.json lists is there; that a preset and engine that an entry names are the installed
+/// ones, unless it was replayed; that the pages and the tables in documents are those of the entries; and, with a
+/// revision, that the directories of its entries differ by appended verifications, evidence and a withdrawal at most,
+/// and the maintainers' files not at all. Keeps on after a problem. @throws InputError for a revision that git does not
+/// know.
+Checked check(const fs::path& board, const CheckOptions& options = {});
 
 }  // namespace lgabench::leaderboard

@@ -3,23 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <lgabench/core/hash.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
-#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
-namespace {
-
-// Two-sided p of a difference of which the 95 % interval is recorded.
-double p_of_fresh(const Json& line) {
-  const double width = line.at("high").get<double>() - line.at("low").get<double>();
-  return std::erfc(std::sqrt(2.) * 1.959964 * std::abs(line.at("difference").get<double>()) / width);
-}
-
-}  // namespace
-
 Json to_json(const Identity& identity) {
   Json json{{"method", identity.row.id},
             {"kind", identity.row.kind},
@@ -31,6 +20,12 @@ Json to_json(const Identity& identity) {
             {"scene_seed", identity.scene_seed}};
   if (!identity.row.asks.empty()) json["asks"] = identity.row.asks;
   return json;
+}
+
+bool is_id(const std::string& text) {
+  return !text.empty() && text.find_first_not_of(
+                              "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                              "0123456789_-") == std::string::npos;
 }
 
 std::string id_of(const Identity& identity) { return sha256(canonical(to_json(identity))).substr(0, 16); }
@@ -73,38 +68,48 @@ std::string to_string(Tier tier) {
   return words[static_cast<int>(tier)];
 }
 
+// Only the run that the entry was made from: whoever adds evidence changes nobody's tier.
+Tier tier_of(const Entry& entry, const Json& line) {
+  const Json& first = entry.evidence.front();
+  const bool elsewhere = first.at("by") != line.at("by") && first.at("machine") != line.at("machine");
+  return elsewhere ? Tier::reproduced : Tier::replayed;
+}
+
 fs::path Entry::place() const {
   const std::string& method = identity.row.id;
-  const bool plain = !method.empty() && method.find_first_not_of(
-                                            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                            "0123456789_-") == std::string::npos;
-  if (!plain) throw InputError(fmt::format("method \"{}\": expected an id of letters, digits, _ and -", method));
+  if (!is_id(method))
+    throw InputError(fmt::format("method \"{}\": expected an id of letters, digits, _ and -", method));
   return fs::path("entries") / method / id() / setting.name();
 }
 
 std::string Entry::hash() const { return sha256(id() + "\n" + cells_text(*this)); }
 
+bool Entry::was_replayed() const {
+  return std::any_of(verifications.begin(), verifications.end(),
+                     [this](const Json& line) { return line.at("kind") == "replay" && counts(line); });
+}
+
+bool Entry::replay_differed() const {
+  return std::any_of(verifications.begin(), verifications.end(), [this](const Json& line) {
+    return line.at("kind") == "replay" && counts(line) && !line.at("passed").get<bool>();
+  });
+}
+
 Tier Entry::tier() const {
   Tier tier = Tier::recomputed;
-  const auto elsewhere = [this](const Json& line) {
-    return std::none_of(evidence.begin(), evidence.end(), [&](const Json& one) {
-      return one.at("by") == line.at("by") || one.at("machine") == line.at("machine");
-    });
-  };
+  if (replay_differed()) return tier;
   for (const Json& line : verifications)
-    if (line.at("kind") == "replay") {
-      if (!line.at("passed").get<bool>()) return Tier::recomputed;  // one that failed is not outvoted
-      tier = std::max(tier, elsewhere(line) ? Tier::reproduced : Tier::replayed);
-    }
+    if (line.at("kind") == "replay" && counts(line)) tier = std::max(tier, tier_of(*this, line));
   return tier;
 }
 
 int Entry::fresh() const {
-  std::vector<double> p;
+  std::vector<const Json*> lines;
   for (const Json& line : verifications)
-    if (line.at("kind") == "fresh") p.push_back(p_of_fresh(line));
-  const std::vector<double> adjusted = report::holm(p);
-  return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= .05 ? -1 : 1;
+    if (line.at("kind") == "fresh" && counts(line)) lines.push_back(&line);
+  if (lines.empty()) return 0;
+  const std::vector<FreshEstimate> estimates = fresh_estimates(*this, lines);
+  return std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); }) ? -1 : 1;
 }
 
 std::string Entry::spec() const {
@@ -137,7 +142,8 @@ std::vector<fs::path> entry_directories(const fs::path& board) {
 
 std::vector<Entry> read_entries(const fs::path& board) {
   std::vector<Entry> all;
-  for (const fs::path& directory : entry_directories(board)) all.push_back(read_entry(board, directory));
+  const Vouched vouched = read_vouched(board);
+  for (const fs::path& directory : entry_directories(board)) all.push_back(read_entry(board, directory, vouched));
   return all;
 }
 

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/leaderboard/setting.hpp>
+#include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/record/episode.hpp>
 
 namespace lgabench::leaderboard {
@@ -20,6 +21,8 @@ struct Identity {
   std::uint64_t scene_seed = 0;
 };
 Json to_json(const Identity& identity);
+/// Letters, digits, _ and -: an id that may stand in a path.
+bool is_id(const std::string& text);
 /// The first 16 digits of the SHA-256 of its canonical JSON.
 std::string id_of(const Identity& identity);
 
@@ -43,6 +46,9 @@ constexpr char failed_cell_letter = '!';
 constexpr std::size_t most_failure_words = 26;  // a letter for each
 Json to_json(const PlayedCell& cell);
 
+/// How many cells a replay plays, unless the entry has fewer: 30 find 10 % falsified ones in 96 of 100 cases.
+constexpr std::size_t enough_cells = 30;
+
 /// How far an entry was checked.
 enum class Tier { recomputed, replayed, reproduced };
 std::string to_string(Tier tier);
@@ -57,6 +63,7 @@ struct Entry {
   Json evidence = Json::array();       // who computed it with what
   Json withdrawn;                      // {"when", "reason"}, or null
   Json verifications = Json::array();  // lines of verifications.jsonl
+  std::set<std::string> vouched;       // hashes of those of its lines that count; see vouched.hpp
 
   std::string id() const { return id_of(identity); }
   /// entries/METHOD/ID/SUITE-PRESET, relative to the board. @throws InputError for a method's id that could lead
@@ -64,21 +71,33 @@ struct Entry {
   fs::path place() const;
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
+  /// Of the machine that computed it first.
+  std::string processor() const { return evidence.front().at("machine").at("processor"); }
+  /// Whether the maintainers vouch for the line.
+  bool counts(const Json& line) const { return vouched.count(line_hash(line)) > 0; }
+  bool is_withdrawn() const { return !withdrawn.is_null() && counts(withdrawn); }
+  /// Whether a replay counts, whatever it found.
+  bool was_replayed() const;
+  /// What replays that count make it; one that differs is not outvoted.
   Tier tier() const;
-  /// What verifications on fresh scenes found: -1 where success differs, by Holm's correction over all of them, so that
-  /// an honest entry is not lost by repetition; else 1; 0 where none was made.
+  bool replay_differed() const;
+  /// What verifications on fresh scenes that count found, all together (fresh_estimates()): -1 where success differs in
+  /// an arm or over all; else 1; 0 where none was made.
   int fresh() const;
   /// The row's id, and the options in which the preset would set it otherwise: what --methods takes.
   std::string spec() const;
 };
 
-/// Reads and checks an entry's directory: schema, identity, completeness, letters. @throws InputError with the file and
-/// the first place that is not as docs/formats says.
-Entry read_entry(const fs::path& board, const fs::path& directory);
+/// The tier that a replay gives its entry if it passed.
+Tier tier_of(const Entry& entry, const Json& line);
+
+/// Reads and checks an entry's directory: schema, identity, completeness, letters. `vouched` says which of its lines
+/// count. @throws InputError with the file and the first place that is not as docs/formats says.
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched& vouched = {});
 /// Directories of all entries, sorted, relative to the board. @throws InputError for what is neither file nor
 /// directory.
 std::vector<fs::path> entry_directories(const fs::path& board);
-/// All entries. @throws InputError as read_entry().
+/// All entries, with what the board's vouched.json says. @throws InputError as read_entry().
 std::vector<Entry> read_entries(const fs::path& board);
 
 /// What authors say of their rows, from a file. @throws InputError for what is not as docs/formats says.

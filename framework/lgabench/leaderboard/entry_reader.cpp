@@ -5,11 +5,20 @@
 #include <ctime>
 
 #include <lgabench/abstraction/quality.hpp>
-#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
+
+constexpr std::uintmax_t most_bytes = 16 << 20;
+
+// Reads a file of an entry; the largest published one has 100 kB.
+std::string read_bounded(const fs::path& file) {
+  if (const std::uintmax_t bytes = fs::file_size(file); bytes > most_bytes)
+    throw InputError(fmt::format("{}: expected at most {} bytes, got {}", file.string(), most_bytes, bytes));
+  return read_file(file, Links::refused);
+}
 
 void expect_sha256(const JsonReader& reader) {
   const std::string text = reader.string();
@@ -41,12 +50,15 @@ Identity read_identity(const JsonReader& reader) {
   expect_sha256(answers.at("sha256"));
   identity.answers_sha256 = answers.at("sha256").string();
   identity.engine = engine.at("id").string();
+  if (!is_id(identity.engine)) engine.at("id").fail("an id of letters, digits, _ and -");
   identity.engine_version = engine.at("version").string();
   expect_sha256(reader.at("preset"));
   identity.preset_sha256 = reader.at("preset").string();
   identity.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, INT64_MAX));
   return identity;
 }
+
+constexpr double most_amount = 1e15;  // of questions, tokens, seconds
 
 PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
   reader.only({"key", "scenario", "layout", "demonstrations", "training_seed", "scenes", "digest", "failed", "outcomes",
@@ -86,7 +98,8 @@ PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
         reader.at("phi").integer(0, phis == entry.phi.end() ? 0 : static_cast<long long>(phis->size()) - 1));
   const auto amount = [&](const char* member) {
     const double value = reader.at(member).number();
-    if (value < 0) reader.at(member).fail("0 or more");
+    if (!(value >= 0 && value <= most_amount))
+      reader.at(member).fail(fmt::format("a number from 0 to {:g}", most_amount));
     return value;
   };
   cell.lm_queries = amount("lm_queries");
@@ -156,36 +169,9 @@ std::vector<std::string> read_failures(const JsonReader& reader) {
   return words;
 }
 
-void expect_verification(const JsonReader& line) {
-  line.only({"kind", "nonce", "cells", "bit_identical", "flips", "episodes", "passed", "by", "when", "program", "build",
-             "machine", "confinement", "scene_seed", "demonstrations", "training_seed", "difference", "low", "high"});
-  const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
-  if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
-  if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
-    line.at("nonce").fail("32 hexadecimal digits");
-  line.at("passed").boolean();
-  for (const char* text : {"by", "when", "program", "confinement"}) line.at(text).string();
-  line.at("machine").at("processor").string();
-  if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
-  for (const char* count : {"bit_identical", "flips", "episodes"}) line.at(count).integer(0, INT64_MAX);
-  if (kind != "fresh") return;
-  for (const char* number : {"difference", "low", "high"}) line.at(number).number();
-  if (line.at("low").number() >= line.at("high").number()) line.at("high").fail("more than /low");
-}
-
-// The cells that a verification says it played are those that its nonce chooses.
-void expect_chosen(const JsonReader& line, const Entry& entry) {
-  if (line.at("kind").string() != "replay") return;
-  const std::vector<std::string> said = line.at("cells").strings();
-  std::vector<std::string> chosen;
-  for (const std::size_t i : chosen_cells(entry, line.at("nonce").string(), said.size()))
-    chosen.push_back(entry.cells[i].key);
-  if (said != chosen) line.at("cells").fail("the cells that the nonce chooses");
-}
-
 }  // namespace
 
-Entry read_entry(const fs::path& board, const fs::path& directory) {
+Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched& vouched) {
   const fs::path path = board / directory;
   expect_plain_entries(path);
   for (const auto& file : fs::directory_iterator(path))
@@ -194,7 +180,8 @@ Entry read_entry(const fs::path& board, const fs::path& directory) {
       throw InputError(
           fmt::format("{}: expected entry.json, cells.jsonl and verifications.jsonl alone here", file.path().string()));
   const fs::path file = path / "entry.json";
-  const Json json = read_json(file, Links::refused);
+  const std::string bytes = read_bounded(file);
+  const Json json = parse_json(bytes, file.string());
   const JsonReader reader(json, file.string());
   reader.only({"id", "identity", "preset", "about", "failures", "phi", "evidence", "withdrawn"});
   Entry entry;
@@ -218,12 +205,12 @@ Entry read_entry(const fs::path& board, const fs::path& directory) {
     for (const char* text : {"when", "reason"}) reader.at("withdrawn").at(text).string();
     entry.withdrawn = reader.at("withdrawn").json();
   }
-  if (entry_text(entry) != read_file(file)) throw InputError(fmt::format("{}: not as it is written", file.string()));
+  if (entry_text(entry) != bytes) throw InputError(fmt::format("{}: not as it is written", file.string()));
 
   const fs::path lines = path / "cells.jsonl";
   int number = 0;
   const std::vector<Place> places = entry.setting.places(learns(entry.identity.row));
-  const std::string text = read_file(lines, Links::refused);
+  const std::string text = read_bounded(lines);
   for (const Json& line : parse_json_lines(text, lines.string())) {
     const JsonReader at(line, fmt::format("{}: line {}", lines.string(), ++number));
     entry.cells.push_back(read_cell_line(at, entry));
@@ -238,12 +225,12 @@ Entry read_entry(const fs::path& board, const fs::path& directory) {
   const fs::path checks = path / "verifications.jsonl";
   number = 0;
   if (fs::exists(checks))
-    for (const Json& line : parse_json_lines(read_file(checks, Links::refused), checks.string())) {
+    for (const Json& line : parse_json_lines(read_bounded(checks), checks.string())) {
       const JsonReader at(line, fmt::format("{}: line {}", checks.string(), ++number));
-      expect_verification(at);
-      expect_chosen(at, entry);
+      expect_verification(at, entry);
       entry.verifications.push_back(line);
     }
+  if (const auto own = vouched.find(entry.hash()); own != vouched.end()) entry.vouched = own->second;
   return entry;
 }
 

@@ -53,8 +53,9 @@ Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board
 
 void add_table(Section& section, const NamedTable& table, std::size_t most, const fs::path& board = "") {
   section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
-  section.add<Grid>(reading, short_grid(table, most, board));
+  if (!table.standings.empty()) section.add<Grid>(reading, short_grid(table, most, board));
   if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
+  if (auto waiting = waiting_grid(table, board)) section.add<Grid>(reading, std::move(*waiting));
 }
 
 Document index(const Suites& suites, std::size_t most) {

@@ -11,6 +11,7 @@ namespace lgabench::leaderboard {
 namespace {
 
 constexpr long long most = std::numeric_limits<int>::max();
+constexpr long long most_cells = 10'000, most_episodes = 10'000, most_of_all = 5'000'000;  // of a cell's arm; of a row
 constexpr long long largest_seed = std::numeric_limits<std::int64_t>::max();
 
 // A name that may stand in a path.
@@ -63,22 +64,31 @@ Setting read_setting(const JsonReader& reader) {
   setting.preset = name_at(reader.at("preset"));
   for (const JsonReader& scenario : reader.at("scenarios").elements()) {
     scenario.only({"id", "sha256", "arms"});
-    setting.scenarios.push_back(
-        {name_at(scenario.at("id")), scenario.at("sha256").string(), scenario.at("arms").strings()});
+    setting.scenarios.push_back({name_at(scenario.at("id")), scenario.at("sha256").string(), {}});
+    for (const JsonReader& arm : scenario.at("arms").elements()) setting.scenarios.back().arms.push_back(name_at(arm));
     if (setting.scenarios.back().arms.empty()) scenario.at("arms").fail("at least one arm");
   }
-  setting.layouts = reader.at("layouts").strings();
+  for (const JsonReader& layout : reader.at("layouts").elements()) setting.layouts.push_back(name_at(layout));
   for (const JsonReader& n : reader.at("demonstrations").elements())
     setting.demonstrations.push_back(static_cast<int>(n.integer(1, most)));
   for (const JsonReader& seed : reader.at("seeds").elements())
     setting.seeds.push_back(static_cast<std::uint64_t>(seed.integer(0, largest_seed)));
-  setting.episodes = static_cast<int>(reader.at("episodes").integer(1, 1'000'000));
+  setting.episodes = static_cast<int>(reader.at("episodes").integer(1, most_episodes));
   setting.test_scenes = reader.at("test_scenes").string();
   if (setting.test_scenes != "shared" && setting.test_scenes != "per_seed")
     reader.at("test_scenes").fail("shared or per_seed");
   setting.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, largest_seed));
   for (const char* list : {"scenarios", "layouts", "demonstrations", "seeds"})
     if (reader.at(list).json().empty()) reader.at(list).fail("at least one value");
+  const auto size = [](const auto& list) {
+    return static_cast<long long>(std::min<std::size_t>(list.size(), most_cells));
+  };
+  const long long learners = size(setting.layouts) * size(setting.demonstrations) * size(setting.seeds);
+  long long arms = 0;
+  for (const Setting::Scenario& scenario : setting.scenarios) arms += size(scenario.arms);
+  if (learners > most_cells || size(setting.scenarios) * learners > most_cells)
+    reader.fail(fmt::format("at most {} cells", most_cells));
+  if (arms * learners * setting.episodes > most_of_all) reader.fail(fmt::format("at most {} episodes", most_of_all));
   return setting;
 }
 

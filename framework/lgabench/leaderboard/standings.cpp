@@ -125,9 +125,8 @@ std::string why_not_ranked(const Entry& entry) {
   if (entry.identity.row.asks == "truth" || entry.identity.row.asks == "network")
     return "asks for the " + entry.identity.row.asks;
   if (entry.fresh() < 0) return "differs on fresh scenes";
-  if (std::any_of(entry.verifications.begin(), entry.verifications.end(),
-                  [](const Json& line) { return line.at("kind") == "replay" && !line.at("passed").get<bool>(); }))
-    return "a replay differed";
+  if (!entry.was_replayed()) return "not yet replayed";
+  if (entry.replay_differed()) return "a replay differed";
   for (const auto& scenario : entry.phi.items())
     for (const Json& list : scenario.value())
       for (const Json& command : list) {
@@ -141,7 +140,7 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table) {
   std::vector<Standing> all;
   std::vector<std::vector<std::vector<std::vector<double>>>> rates;
   for (const Entry* entry : table) {
-    if (!entry->withdrawn.is_null()) continue;
+    if (entry->is_withdrawn() || !entry->was_replayed()) continue;
     Standing& standing = all.emplace_back();
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry);
@@ -165,6 +164,18 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table) {
                                    [](const Standing& s) { return s.entry->identity.row.id == "random_object"; });
   if (random != all.end())
     for (Standing& standing : all) standing.below_random = !is_reference(standing) && standing.score < random->score;
+  return all;
+}
+
+std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table) {
+  std::vector<Standing> all;
+  for (const Entry* entry : table) {
+    if (entry->is_withdrawn() || entry->was_replayed()) continue;
+    Standing& standing = all.emplace_back();
+    standing.entry = entry;
+    standing.not_ranked = why_not_ranked(*entry);
+    add_rates(standing);
+  }
   return all;
 }
 

@@ -30,11 +30,14 @@ struct Standing {
 std::string why_not_ranked(const Entry& entry);
 
 /// The entries of one table by score, reference rows among them; where entries are ranked, methods that are not come
-/// last. Entries that were withdrawn are left out.
+/// last. Entries that were withdrawn, or not yet replayed, are left out.
 /// All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which makes the paired test of
 /// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Deterministic.
 /// @pre the entries have one setting
 std::vector<Standing> standings(const std::vector<const Entry*>& table);
+
+/// The entries of one table whose files are all that is known of them: what they claim, without interval and costs.
+std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table);
 
 /// Entries that share a table, by suite, preset, its hash and scene seed.
 std::vector<std::vector<const Entry*>> tables(const std::vector<Entry>& entries);

@@ -7,6 +7,8 @@
 #include <set>
 
 #include <lgabench/core/rounding.hpp>
+#include <lgabench/core/shell.hpp>
+#include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/tables.hpp>
@@ -205,20 +207,22 @@ std::string success_bits(const Entry& entry) {
 
 std::string command_of(const Entry& entry) {
   const Identity& identity = entry.identity;
-  std::string text = fmt::format("lgabench run {} --preset {} --engines {}", entry.setting.suite, entry.setting.preset,
-                                 identity.engine);
-  if (!identity.row.is_reference()) text += fmt::format(" --methods '{}' --no-reference", entry.spec());
-  if (identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers))
-    return text + fmt::format(" --answers cassette:answers/{}.jsonl", identity.answers_sha256);
-  return text + " --answers " + identity.answers;
+  std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
+                                 entry.setting.preset, "--engines", identity.engine};
+  if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
+  const bool cassette = identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers);
+  words.insert(words.end(), {"--answers", cassette ? fmt::format("cassette:answers/{}.jsonl", identity.answers_sha256)
+                                                   : identity.answers});
+  return shell_line(words);
 }
 
 }  // namespace
 
 NamedTable named_table(const std::vector<const Entry*>& table) {
-  NamedTable named{table.front()->setting, standings(table), {}, 0};
+  NamedTable named{table.front()->setting, standings(table), {}, not_yet_replayed(table), {}, 0};
   named.names = names_of(named.standings);
-  named.withdrawn = static_cast<int>(table.size() - named.standings.size());
+  named.waiting_names = names_of(named.waiting);
+  named.withdrawn = static_cast<int>(table.size() - named.standings.size() - named.waiting.size());
   return named;
 }
 
@@ -238,12 +242,13 @@ std::string tier_and_marks(const Standing& s) {
   std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
   const std::string confined = s.entry->evidence.front().at("confinement");
-  if (confined.find("no ") != std::string::npos || confined == "unknown")
+  if (confined.rfind("Landlock ", 0) != 0 || confined.find("no ") != std::string::npos)
     words.emplace_back("unconfined");
   else if (confined.find("without") != std::string::npos)
     words.emplace_back("partly confined");
   if (s.failed_cells > 0) words.push_back(fmt::format("{} cells failed", s.failed_cells));
   if (s.entry->fresh() > 0) words.emplace_back("fresh");
+  for (std::string& claim : claims(*s.entry)) words.push_back(std::move(claim));
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
@@ -266,6 +271,24 @@ std::optional<Paragraph> below_random_note(const std::vector<Standing>& standing
   return Paragraph{{mark, " " + mark.title + "."}};
 }
 
+std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board) {
+  if (table.waiting.empty()) return {};
+  Grid grid;
+  grid.name = table.setting.name() + "_waiting";
+  grid.caption = title_of(table.setting) + ", not yet replayed";
+  grid.heads = {"not yet replayed", "claimed success", "known", "by", "id"};
+  grid.align = "lrlll";
+  for (std::size_t i = 0; i < table.waiting.size(); ++i) {
+    const Standing& s = table.waiting[i];
+    grid.rows.push_back({{},
+                         {Cell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
+                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
+                          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
+                         false});
+  }
+  return grid;
+}
+
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
   Document document;
   document.suite = suite;
@@ -280,12 +303,14 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     const std::string id = fmt::format("table{}", ++number);
     Section section{id, title_of(table.setting)};
     section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
-    section.add<Grid>(reading, standings_grid(table, first_row));
+    if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
     if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
+    if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));
     if (table.withdrawn > 0)
       section.add<Paragraph>(reading,
                              {{fmt::format("{} entries were withdrawn; their files remain.", table.withdrawn)}});
     document.sections.push_back(std::move(section));
+    if (table.standings.empty()) continue;
     if (table.setting.demonstrations.size() > 1) {
       Section curve{id + "-curves", "Demonstrations"};
       curve.add<Charts>(on_page, {{curve_chart(table)}});

@@ -14,6 +14,8 @@ struct NamedTable {
   Setting setting;
   std::vector<Standing> standings;
   std::vector<std::string> names;  // of each standing, as report/names.hpp takes them; no two alike
+  std::vector<Standing> waiting;   // not yet replayed
+  std::vector<std::string> waiting_names;
   int withdrawn = 0;
 };
 NamedTable named_table(const std::vector<const Entry*>& table);
@@ -29,8 +31,13 @@ std::string score_text(const Standing& standing);
 /// § of an entry below the random visible object, and what it means; the line below a table that has it.
 report::Span below_random_mark();
 std::optional<report::Paragraph> below_random_note(const std::vector<Standing>& standings);
-/// "replayed; fresh", "recomputed; partly confined; 2 cells failed"
+/// What else is known of an entry: "replayed; fresh", "recomputed; partly confined; 2 cells failed; claimed by B.
+/// Reader: replayed"
 std::string tier_and_marks(const Standing& standing);
+
+/// Entries whose files are all that is known of them, and what they claim; none where there is none. `board` is where
+/// links find the board.
+std::optional<report::Grid> waiting_grid(const NamedTable& table, const fs::path& board = "");
 
 /// A page for the tables of one suite.
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables);

@@ -21,6 +21,17 @@ std::string first_difference(const fs::path& a, const fs::path& b) {
   return fmt::format("{} line {}", a.filename().string(), 1 + std::count(x.begin(), at, '\n'));
 }
 
+CellAgreement differing(std::string why) {
+  CellAgreement one;
+  one.detail = std::move(why);
+  return one;
+}
+
+int episodes_of(const fs::path& cell) {
+  const std::string lines = read_file(cell / cell_file::episodes);
+  return static_cast<int>(std::count(lines.begin(), lines.end(), '\n'));
+}
+
 bool same_endings(const CellResult& a, const CellResult& b, const std::string& arm) {
   const auto &x = a.episodes.at(arm), &y = b.episodes.at(arm);
   return std::equal(x.begin(), x.end(), y.begin(), y.end(),
@@ -29,39 +40,42 @@ bool same_endings(const CellResult& a, const CellResult& b, const std::string& a
 
 // Compares two cells whose bytes differ for a reason.
 CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& recomputed) {
-  if (recorded.arms != recomputed.arms) return {Agreement::differs, "other arms", 0, 0};
-  CellAgreement both{Agreement::same_outcomes, "", 0, 0};
+  if (recorded.arms != recomputed.arms) return differing("other arms");
+  CellAgreement both{Agreement::same_outcomes, "", 0, 0, 0};
   bool same = true;
-  std::vector<double> p;
   std::string changed;
   for (const std::string& arm : recorded.arms) {
     PolicyPair pair;
     try {
       pair = pair_policies(recorded, recomputed, arm);
     } catch (const InputError& e) {  // other scenes or commands
-      return {Agreement::differs, e.what(), 0, 0};
+      return differing(e.what());
     }
     same = same && same_endings(recorded, recomputed, arm);
     both.only_recorded += pair.only_first;
     both.only_recomputed += pair.only_second;
-    p.push_back(mcnemar(pair.only_first, pair.only_second));
+    both.episodes += pair.episodes;
     if (pair.only_first + pair.only_second > 0)
-      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here (McNemar {})", changed.empty() ? "" : "; ",
-                             arm, pair.won_first, pair.episodes, pair.won_second, p_text(p.back()));
+      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here, {} episodes ended otherwise",
+                             changed.empty() ? "" : "; ", arm, pair.won_first, pair.episodes, pair.won_second,
+                             pair.only_first + pair.only_second);
   }
   if (same) return both;
   both.detail = changed.empty() ? "episodes failed otherwise" : changed;
-  const std::vector<double> adjusted = holm(p);
-  const bool chance = std::all_of(adjusted.begin(), adjusted.end(), [](double value) { return value > 0.05; });
-  both.agreement = chance ? Agreement::within_interval : Agreement::differs;
+  both.agreement = Agreement::other_outcomes;
   return both;
 }
 
 }  // namespace
 
 std::string to_string(Agreement agreement) {
-  constexpr const char* words[] = {"bit-identical", "same outcomes", "within interval", "differs"};
+  constexpr const char* words[] = {"bit-identical", "same outcomes", "other outcomes", "differs"};
   return words[static_cast<int>(agreement)];
+}
+
+std::string to_string(Reproduction verdict) {
+  constexpr const char* words[] = {"identical", "agrees", "differs"};
+  return words[static_cast<int>(verdict)];
 }
 
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused) {
@@ -69,10 +83,10 @@ CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed
   for (const char* name : result_files)
     if (std::string where = first_difference(recorded / name, recomputed / name); !where.empty())
       differences.push_back(std::move(where));
-  if (differences.empty()) return {Agreement::identical, "", 0, 0};
+  if (differences.empty()) return {Agreement::identical, "", 0, 0, episodes_of(recorded)};
   const std::string where = fmt::format("from {}", fmt::join(differences, ", "));
-  if (!excused) return {Agreement::differs, where + ", though build, processor and data are those of the record", 0, 0};
-  if (differences.front().rfind(cell_file::selections, 0) == 0) return {Agreement::differs, where, 0, 0};
+  if (!excused) return differing(where + ", though build, processor and data are those of the record");
+  if (differences.front().rfind(cell_file::selections, 0) == 0) return differing(where);
   CellAgreement outcomes = compare_outcomes(read_cell(recorded), read_cell(recomputed));
   outcomes.detail = outcomes.detail.empty() ? where : fmt::format("{}; {}", outcomes.detail, where);
   return outcomes;
@@ -101,6 +115,22 @@ std::vector<PooledAgreement> pooled(const std::vector<std::pair<std::string, Cel
   const std::vector<double> adjusted = holm(p);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].p_holm = adjusted[i];
   return all;
+}
+
+Reproduction verdict_of(const std::vector<std::pair<std::string, CellAgreement>>& cells) {
+  bool identical = true;
+  int flips = 0, episodes = 0;
+  for (const auto& [row, cell] : cells) {
+    if (cell.agreement == Agreement::differs) return Reproduction::differs;
+    identical = identical && cell.agreement == Agreement::identical;
+    flips += cell.only_recorded + cell.only_recomputed;
+    episodes += cell.episodes;
+  }
+  if (identical) return Reproduction::identical;
+  if (flips > most_flips * episodes) return Reproduction::differs;
+  const std::vector<PooledAgreement> rows = pooled(cells);
+  const bool chance = std::none_of(rows.begin(), rows.end(), [](const PooledAgreement& row) { return row.differs(); });
+  return chance ? Reproduction::agrees : Reproduction::differs;
 }
 
 }  // namespace lgabench::report

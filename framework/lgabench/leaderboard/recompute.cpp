@@ -1,0 +1,191 @@
+#include <lgabench/leaderboard/recompute.hpp>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <random>
+
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/harness/recompute.hpp>
+#include <lgabench/leaderboard/played_cell.hpp>
+#include <lgabench/leaderboard/verification.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+void expect_same(const std::string& what, const std::string& here, const std::string& there) {
+  if (here != there) throw InputError(fmt::format("{}: {} here, {} in the entry", what, here, there));
+}
+
+// What an entry says of its method is what the installed one says of itself: whom it asks, and all of its options.
+void expect_method(const Competitor& row, const Catalogue& catalogue) {
+  if (row.is_reference()) {
+    expect_same("options of " + row.id, "{}", canonical(row.options));
+    return;
+  }
+  const PluginInfo& installed = catalogue.find("method", row.id);
+  const auto named = [](const std::string& asks) { return asks.empty() ? "nobody" : asks; };
+  expect_same("version of " + row.id, installed.version, row.version);
+  expect_same("whom " + row.id + " asks", named(installed.asks), named(row.asks));
+  expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
+}
+
+RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cells, const VerifyOptions& options) {
+  RunPlan plan;
+  plan.cells = std::move(cells);
+  plan.request = {{"suite", entry.setting.suite}, {"preset", entry.setting.preset}};
+  plan.command = "lgabench leaderboard verify";
+  plan.program = options.program;
+  plan.pool = options.pool;
+  const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
+  if (is_live(entry.identity.answers))
+    plan.live.emplace(LiveModel{cassette, false, -1});
+  else if (!cassette_of(entry.identity.answers).empty())
+    plan.answers.push_back({cassette.filename(), cassette, Json::object()});
+  return plan;
+}
+
+// The recomputed cells, in order, as lines of `now`, whose Selections grow. @throws InputError for one that the host
+// failed.
+std::vector<PlayedCell> lines_of(const RunPlan& plan, const Recomputed& recomputed, Entry& now) {
+  std::vector<PlayedCell> lines;
+  for (std::size_t i = 0; i < plan.cells.size(); ++i) {
+    const report::CellResult result = report::read_cell(recomputed.cells[i]);
+    if (result.failed && result.fault != "plugin")
+      throw InputError(
+          fmt::format("{}: failed by the {}: {}: not recorded", plan.cells[i].title(), result.fault, result.reason));
+    lines.push_back(played_cell(result, recomputed.cells[i], key(plan.cells[i]), now));
+  }
+  return lines;
+}
+
+// What a cell's line says of its results: a digest of the files alone would vouch for outcomes that are not theirs.
+Json results_of(const PlayedCell& cell) {
+  Json json = to_json(cell);
+  for (const char* other : {"key", "learn_s", "total_s"}) json.erase(other);
+  if (!cell.failed.empty()) json["failed"] = true;  // its words may name a process
+  return json;
+}
+
+// A recorded line beside that of the same cell now. `excused`: on another processor.
+report::CellAgreement compared(const PlayedCell& before, const PlayedCell& now, bool excused) {
+  report::CellAgreement cell;
+  cell.episodes = before.episodes();
+  for (const auto& [arm, letters] : before.outcomes)
+    for (std::size_t i = 0; i < letters.size(); ++i) {
+      const bool there = letters[i] == success_letter, here = now.outcomes.at(arm).at(i) == success_letter;
+      cell.only_recorded += there && !here;
+      cell.only_recomputed += here && !there;
+    }
+  const bool comparable =
+      before.phi == now.phi && before.scenes == now.scenes && before.failed.empty() == now.failed.empty();
+  if (results_of(before) == results_of(now))
+    cell.agreement = report::Agreement::identical;
+  else if (excused && comparable)
+    cell.agreement =
+        before.outcomes == now.outcomes ? report::Agreement::same_outcomes : report::Agreement::other_outcomes;
+  return cell;
+}
+
+// A replay's line, without who made it.
+Json replayed(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now,
+              const std::string& processor) {
+  std::vector<std::pair<std::string, report::CellAgreement>> cells;
+  int identical = 0, only_recorded = 0, only_recomputed = 0, episodes = 0;
+  Json keys = Json::array();
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const PlayedCell& before = entry.cells[chosen[i]];
+    keys.push_back(before.key);
+    const report::CellAgreement& cell =
+        cells.emplace_back("", compared(before, now[i], processor != entry.processor())).second;
+    identical += cell.agreement == report::Agreement::identical;
+    only_recorded += cell.only_recorded;
+    only_recomputed += cell.only_recomputed;
+    episodes += cell.episodes;
+  }
+  return {{"kind", "replay"},
+          {"cells", keys},
+          {"bit_identical", identical},
+          {"flips", only_recorded + only_recomputed},
+          {"only_recorded", only_recorded},
+          {"episodes", episodes},
+          {"passed", report::verdict_of(cells) != report::Reproduction::differs}};
+}
+
+// A line of fresh scenes, without who made it.
+Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, const std::vector<PlayedCell>& now) {
+  Json keys = Json::array(), successes = Json::array();
+  int episodes = 0;
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    keys.push_back(entry.cells[chosen[i]].key);
+    Json& cell = successes.emplace_back(Json::object());
+    for (const auto& [arm, letters] : now[i].outcomes)
+      cell[arm] = std::count(letters.begin(), letters.end(), success_letter);
+    episodes += now[i].episodes();
+  }
+  Json line{{"kind", "fresh"}, {"cells", keys},        {"bit_identical", 0},
+            {"flips", 0},      {"episodes", episodes}, {"successes", successes}};
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  const FreshEstimate& mean = estimates.back();
+  line.update({{"passed", std::none_of(estimates.begin(), estimates.end(), [](const auto& e) { return e.differs(); })},
+               {"difference", mean.difference},
+               {"low", mean.low},
+               {"high", mean.high}});
+  return line;
+}
+
+}  // namespace
+
+Installed installed_as(const Entry& entry, const Catalogue& catalogue) {
+  Installed installed = installed_setting(entry.setting.suite, entry.setting.preset);
+  expect_same("preset " + entry.setting.name(), hash(installed.setting).substr(0, 8),
+              entry.identity.preset_sha256.substr(0, 8));
+  expect_same("scene seed", std::to_string(installed.setting.scene_seed), std::to_string(entry.setting.scene_seed));
+  expect_same("version of " + entry.identity.engine, catalogue.find("engine", entry.identity.engine).version,
+              entry.identity.engine_version);
+  return installed;
+}
+
+std::string new_nonce() {
+  std::random_device random;
+  std::string nonce;
+  for (int i = 0; i < 4; ++i) nonce += fmt::format("{:08x}", static_cast<std::uint32_t>(random()));
+  return nonce;
+}
+
+std::optional<Json> verification(const fs::path& board, const Entry& entry, const std::string& nonce,
+                                 const Catalogue& catalogue, const VerifyOptions& options) {
+  Installed installed = installed_as(entry, catalogue);
+  expect_method(entry.identity.row, catalogue);
+  const std::vector<std::size_t> chosen =
+      options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
+  if (options.fresh) installed.grid.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
+  const std::vector<Cell> all =
+      cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
+  std::vector<Cell> cells;
+  for (const std::size_t i : chosen) cells.push_back(all[i]);
+  const RunPlan plan = plan_of(board, entry, std::move(cells), options);
+  const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
+  if (!recomputed) return std::nullopt;
+  const RunRecord& run = recomputed->record;
+  Entry scratch = entry;  // whose Selections grow
+  const std::vector<PlayedCell> now = lines_of(plan, *recomputed, scratch);
+  Json line = options.fresh ? played_fresh(entry, chosen, now) : replayed(entry, chosen, now, run.processor());
+  line.update({{"nonce", nonce},
+               {"by", options.by},
+               {"when", fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))},
+               {"program", options.program},
+               {"build", run.build},
+               {"machine", run.machine},
+               {"confinement", run.confinement}});
+  if (options.fresh)
+    line.update({{"scene_seed", installed.grid.scene_seed},
+                 {"demonstrations", entry.cells[chosen.front()].place.demonstrations},
+                 {"training_seed", entry.cells[chosen.front()].place.seed}});
+  return line;
+}
+
+}  // namespace lgabench::leaderboard

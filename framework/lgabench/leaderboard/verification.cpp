@@ -1,0 +1,213 @@
+#include <lgabench/leaderboard/verification.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <map>
+
+#include <lgabench/core/hash.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+void expect_date(const JsonReader& reader) {
+  const std::string text = reader.string();
+  std::tm time{};
+  const char* end = ::strptime(text.c_str(), "%Y-%m-%d", &time);
+  if (end == nullptr || *end != '\0' || text.size() != 10) reader.fail("a date, as 2026-01-31");
+}
+
+// Cells and episodes of a replay are those that its nonce chooses.
+void expect_chosen(const JsonReader& line, const Entry& entry) {
+  const std::vector<std::string> said = line.at("cells").strings();
+  std::vector<std::string> chosen;
+  int episodes = 0;
+  for (const std::size_t i : chosen_cells(entry, line.at("nonce").string(), said.size())) {
+    chosen.push_back(entry.cells[i].key);
+    episodes += entry.cells[i].episodes();
+  }
+  if (said != chosen) line.at("cells").fail("the cells that the nonce chooses");
+  line.at("episodes").integer(episodes, episodes);
+}
+
+void expect_replay(const JsonReader& line, const Entry& entry) {
+  expect_chosen(line, entry);
+  const auto cells = static_cast<long long>(line.at("cells").json().size());
+  const long long identical = line.at("bit_identical").integer(0, cells);
+  const long long flips =
+      line.at("flips").integer(0, identical == cells ? 0 : line.at("episodes").json().get<long long>());
+  if (line.has("only_recorded")) line.at("only_recorded").integer(0, flips);
+  const bool passed = line.at("passed").boolean();
+  const report::Reproduction verdict = replay_verdict(entry, line.json());
+  if (passed && verdict == report::Reproduction::differs) line.at("passed").fail("false, by its counts");
+  if (!passed && verdict == report::Reproduction::identical)
+    line.at("passed").fail("true: all of its cells are identical");
+}
+
+// Lines of 0.2.0 lack /successes: they say nothing of other arms than the first, and cannot be vouched for.
+void expect_fresh(const JsonReader& line, const Entry& entry) {
+  for (const char* number : {"low", "difference", "high"})
+    if (const double value = line.at(number).number(); !(value >= -2 && value <= 2))
+      line.at(number).fail("a difference of two rates");
+  const bool passed = line.at("passed").boolean();
+  if (!line.has("successes")) return;
+  std::vector<std::string> chosen;
+  for (const std::size_t i : fresh_cells(entry, line.at("nonce").string())) chosen.push_back(entry.cells[i].key);
+  if (line.at("cells").strings() != chosen) line.at("cells").fail("the cells that the nonce chooses");
+  const std::vector<JsonReader> cells = line.at("successes").elements();
+  if (cells.size() != chosen.size()) line.at("successes").fail("an object for each cell");
+  int episodes = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const PlayedCell& cell = entry.cells[fresh_cells(entry, line.at("nonce").string())[i]];
+    const std::vector<std::string>& arms = entry.setting.scenario(cell.place.scenario).arms;
+    cells[i].only(arms);
+    for (const std::string& arm : arms) cells[i].at(arm).integer(0, entry.setting.episodes);
+    episodes += cell.episodes();
+  }
+  line.at("episodes").integer(episodes, episodes);
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line.json()});
+  const bool differs = std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+  if (passed == differs) line.at("passed").fail(differs ? "false, by its successes" : "true, by its successes");
+  const FreshEstimate& mean = estimates.back();
+  for (const auto& [number, value] : {std::pair("difference", mean.difference), {"low", mean.low}, {"high", mean.high}})
+    if (std::abs(line.at(number).number() - value) > 1e-9) line.at(number).fail(fmt::format("{:.6f}", value));
+}
+
+struct Sum {
+  double difference = 0, variance = 0;
+  void add(double weight, double a_difference, double a_variance) {
+    difference += weight * a_difference;
+    variance += weight * weight * a_variance;
+  }
+};
+
+// What a line would give its entry, were it vouched for; "" where the entry has that already.
+std::string said(const Entry& entry, const Json& line) {
+  const bool passed = line.at("passed");
+  if (line.at("kind") == "fresh")
+    return !passed ? "differs on fresh scenes" : entry.fresh() > 0 ? "" : "agrees on fresh scenes";
+  if (!passed) return "a replay differed";
+  const Tier tier = tier_of(entry, line);
+  return tier <= entry.tier() ? "" : to_string(tier);
+}
+
+}  // namespace
+
+report::Reproduction replay_verdict(const Entry& entry, const Json& line) {
+  const std::size_t identical = line.at("bit_identical");
+  report::CellAgreement all;
+  all.episodes = line.at("episodes");
+  if (identical == line.at("cells").size())
+    all.agreement = report::Agreement::identical;
+  else if (line.at("machine").at("processor") != entry.processor())
+    all.agreement = report::Agreement::other_outcomes;
+  const int flips = line.at("flips");
+  // A line of 0.2.0 does not say which way episodes went: it keeps the rule of its time.
+  all.only_recorded = line.value("only_recorded", flips / 2);
+  all.only_recomputed = flips - all.only_recorded;
+  return report::verdict_of({{"", all}});
+}
+
+void expect_verification(const JsonReader& line, const Entry& entry) {
+  line.only({"kind",     "nonce",       "cells",      "bit_identical",  "flips",         "only_recorded",
+             "episodes", "passed",      "by",         "when",           "program",       "build",
+             "machine",  "confinement", "scene_seed", "demonstrations", "training_seed", "difference",
+             "low",      "high",        "successes"});
+  const std::string kind = line.at("kind").string(), nonce = line.at("nonce").string();
+  if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
+  if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
+    line.at("nonce").fail("32 hexadecimal digits");
+  for (const char* text : {"by", "program", "confinement"}) line.at(text).string();
+  expect_date(line.at("when"));
+  line.at("machine").at("processor").string();
+  if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
+  for (const char* count : {"bit_identical", "flips", "episodes"})
+    line.at(count).integer(0, std::numeric_limits<int>::max());
+  if (kind == "replay")
+    expect_replay(line, entry);
+  else
+    expect_fresh(line, entry);
+}
+
+std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonce) {
+  const Setting& setting = entry.setting;
+  const bool learning = learns(entry.identity.row);
+  const auto pick = [&](const char* what, std::size_t count) {
+    return static_cast<std::size_t>(std::stoull(sha256(nonce + what).substr(0, 8), nullptr, 16)) % count;
+  };
+  const int n = learning ? setting.demonstrations[pick("demonstrations", setting.demonstrations.size())] : 0;
+  const bool seeds = learning || setting.test_scenes == "per_seed";
+  const std::uint64_t seed = seeds ? setting.seeds[pick("seed", setting.seeds.size())] : 0;
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < entry.cells.size(); ++i)
+    if (entry.cells[i].place.demonstrations == n && entry.cells[i].place.seed == seed) chosen.push_back(i);
+  return chosen;
+}
+
+std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector<const Json*>& lines) {
+  std::map<std::string, std::map<std::string, std::pair<int, int>>> played;  // cell -> arm -> successes, episodes
+  for (const Json* line : lines)
+    for (std::size_t i = 0; i < line->at("cells").size(); ++i)
+      for (const auto& [arm, successes] : line->at("successes").at(i).items()) {
+        auto& [won, episodes] = played[line->at("cells").at(i)][arm];
+        won += successes.get<int>();
+        episodes += entry.setting.episodes;
+      }
+  std::map<std::string, int> cells_of_arm;
+  for (const auto& cell : played)
+    for (const auto& arm : cell.second) ++cells_of_arm[arm.first];
+  std::map<std::string, Sum> sums;
+  Sum mean;
+  for (const PlayedCell& cell : entry.cells) {
+    const auto fresh = played.find(cell.key);
+    if (fresh == played.end()) continue;
+    for (const auto& [arm, counts] : fresh->second) {
+      const std::string& letters = cell.outcomes.at(arm);
+      const auto share = [](double won, double of) { return std::pair(won / of, (won + 1) / (of + 2)); };
+      const auto before = share(static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)),
+                                static_cast<double>(letters.size()));
+      const auto now = share(counts.first, counts.second);
+      const double variance = before.second * (1 - before.second) / (static_cast<double>(letters.size()) + 2) +
+                              now.second * (1 - now.second) / (counts.second + 2.);
+      sums[arm].add(1. / cells_of_arm.at(arm), now.first - before.first, variance);
+      mean.add(1. / static_cast<double>(played.size() * fresh->second.size()), now.first - before.first, variance);
+    }
+  }
+  if (sums.size() > 1) sums[""] = mean;
+  std::vector<FreshEstimate> estimates;
+  std::vector<double> p;
+  const auto add = [&](const std::string& arm, const Sum& sum) {
+    const double margin = 1.959964 * std::sqrt(sum.variance);
+    estimates.push_back({arm, sum.difference, sum.difference - margin, sum.difference + margin, 1});
+    p.push_back(std::erfc(std::abs(sum.difference) / std::sqrt(2 * sum.variance)));
+  };
+  for (const auto& [arm, sum] : sums)
+    if (!arm.empty()) add(arm, sum);
+  if (sums.size() > 1) add("", mean);
+  const std::vector<double> adjusted = report::holm(p);
+  for (std::size_t i = 0; i < estimates.size(); ++i) estimates[i].p_holm = adjusted[i];
+  return estimates;
+}
+
+std::vector<std::string> claims(const Entry& entry) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> all;
+  for (const Json& line : entry.verifications) {
+    const std::string what = entry.counts(line) ? "" : said(entry, line);
+    std::string claim = fmt::format("claimed by {}: {}", line.at("by").get<std::string>(), what);
+    if (!what.empty() && std::find(all.begin(), all.end(), claim) == all.end()) all.push_back(std::move(claim));
+  }
+  if (!entry.withdrawn.is_null() && !entry.is_withdrawn()) all.emplace_back("claimed: withdrawn");
+  if (all.size() > most) {
+    const std::size_t more = all.size() - most;
+    all.resize(most);
+    all.push_back(fmt::format("{} more claims", more));
+  }
+  return all;
+}
+
+}  // namespace lgabench::leaderboard

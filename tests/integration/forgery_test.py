@@ -1,0 +1,257 @@
+"""What a pull request to the board could contain, and what comes of it: the steps of docs/leaderboard.md on forged entries.
+
+The board is this repository's entries of q2. By hand: python3 forgery_test.py Forgeries
+"""
+import hashlib
+import json
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import time
+import unittest
+
+from case import Case, command_line
+from verify_test import canonical
+
+BOARD = pathlib.Path(__file__).parents[2] / "results/leaderboard"
+
+
+def sha256(text):
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def entry_hash(entry):
+    return sha256(json.loads((entry / "entry.json").read_text())["id"] + "\n" + (entry / "cells.jsonl").read_text())
+
+
+class Forgeries(Case):
+    def setUp(self):
+        super().setUp()
+        self.board = self.dir / "board"
+        for entry in BOARD.glob("entries/*/*/q2-leaderboard"):
+            shutil.copytree(entry, self.board / entry.relative_to(BOARD))
+        hashes = {entry_hash(entry) for entry in self.board.glob("entries/*/*/*")}
+        if (BOARD / "vouched.json").exists():
+            vouched = json.loads((BOARD / "vouched.json").read_text())
+            (self.board / "vouched.json").write_text(json.dumps({key: vouched[key] for key in hashes}, indent=1, sort_keys=True) + "\n")
+        self.leaderboard("build")
+        for words in (["init", "-q"], ["add", "board"], ["commit", "-qm", "before"]):
+            subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b.c", *words], cwd=self.dir, check=True)
+        self.lga = self.entry("lga", network="text", policy="regression", picture="none")
+        self.rival = self.entry("lga_s", network="plain")
+        self.before = self.rows()
+
+    def leaderboard(self, *words, expect=0):
+        return self.call("leaderboard", *words, "--board", "board", expect=expect)
+
+    def entry(self, method, **options):
+        return next(file.parent for file in sorted(self.board.glob(f"entries/{method}/*/*/entry.json"))
+                    if options.items() <= json.loads(file.read_text())["identity"]["options"].items())
+
+    def rows(self):
+        """id -> (rank, rest of the row) in README.md; and what waits for a replay."""
+        self.leaderboard("build")
+        text = (self.board / "README.md").read_text()
+        return {re.search(r"entries/\w+/(\w+)/", line)[1]: [word.strip() for word in line.split("|")[1:5]]
+                for line in text.splitlines() if line.startswith("|") and "entries/" in line}
+
+    def check(self, *words, expect):
+        """What `check` of the request says, its pages built by whoever forged it."""
+        subprocess.run(command_line("leaderboard", "build", "--board", "board"), cwd=self.dir, env=self.environment, capture_output=True)
+        done = self.leaderboard("check", "--against", "HEAD", *words, expect=expect)
+        return done.stdout + done.stderr
+
+    def forge(self, change=lambda entry: None, line=lambda line: line, like=None):
+        """A new entry, a copy that is changed, with its id, place and the hash of its preset made right."""
+        like = like or self.lga
+        entry = json.loads((like / "entry.json").read_text())
+        change(entry)
+        preset = {name: value for name, value in entry["preset"].items() if name != "scene_seed"}
+        entry["identity"]["preset"] = sha256(canonical(preset).strip())
+        entry["id"] = sha256(canonical(entry["identity"]).strip())[:16]
+        place = self.board / "entries" / entry["identity"]["method"] / entry["id"] / f"{entry['preset']['suite']}-{entry['preset']['preset']}"
+        place.mkdir(parents=True)
+        (place / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+        lines = [line(json.loads(text)) for text in (like / "cells.jsonl").read_text().splitlines()]
+        (place / "cells.jsonl").write_text("".join(canonical(one) for one in lines if one))
+        return place
+
+    def invent(self, change=lambda entry: None):
+        def newer(entry):
+            entry["identity"]["version"] = "0.2"
+            change(entry)
+        return self.forge(newer, lambda line: {**line, "digest": "0" * 64, "outcomes": {
+            arm: "." * len(letters) for arm, letters in line["outcomes"].items()}})
+
+    def add_line(self, entry, by="Prof. B. Independent", cells=30, nonce="7" * 32, **members):
+        """A verification that nobody made, of the cells that its nonce chooses."""
+        lines = [json.loads(text) for text in (entry / "cells.jsonl").read_text().splitlines()]
+        chosen = sorted(lines, key=lambda line: sha256(entry_hash(entry) + nonce + line["key"]))[:cells]
+        line = {"kind": "replay", "nonce": nonce, "cells": [one["key"] for one in chosen], "bit_identical": 0, "flips": 0,
+                "episodes": sum(len(letters) for one in chosen for letters in one["outcomes"].values()), "passed": True, "by": by,
+                "when": "2026-12-01", "program": "lgabench 0.2.0", "build": {}, "machine": {"processor": "another"},
+                "confinement": "Landlock 7, seccomp", **members}
+        with open(entry / "verifications.jsonl", "a") as file:
+            file.write(canonical(line))
+
+    def test_an_invented_entry_has_no_rank_before_a_replay(self):
+        forged = self.invent()
+        self.assertIn("0 problems", self.check(expect=0))
+        rows = self.rows()
+        self.assertEqual(rows.pop(forged.parent.name)[:3], ["LGA", "1.000", "recomputed; not yet replayed"])
+        self.assertEqual(rows, self.before)
+        self.assertIn("| not yet replayed | claimed success |", (self.board / "README.md").read_text())
+        self.assertNotIn(forged.parent.name, (self.board / "leaderboard.csv").read_text())
+
+    def test_lines_of_its_own_make_it_no_better(self):
+        forged = self.invent()
+        self.add_line(forged)
+        self.add_line(forged, nonce="8" * 32, kind="fresh", difference=0, low=-.1, high=.1, scene_seed=1, demonstrations=50, training_seed=0)
+        self.assertIn("0 problems", self.check(expect=0))
+        row = self.rows()[forged.parent.name]
+        self.assertEqual(row[2], "recomputed; not yet replayed; claimed by Prof. B. Independent: reproduced; "
+                                 "claimed by Prof. B. Independent: agrees on fresh scenes")
+
+    def test_arms_that_were_learned_by_heart(self):
+        """Perfect in all arms but the first, which alone was looked at before."""
+        (self.lga / "verifications.jsonl").unlink()
+        arms = json.loads((self.lga / "entry.json").read_text())["preset"]["scenarios"][0]["arms"]
+        lines = [json.loads(text) for text in (self.lga / "cells.jsonl").read_text().splitlines()]
+        for line in lines:
+            line["outcomes"] = {arm: letters if arm == arms[0] else "." * len(letters) for arm, letters in line["outcomes"].items()}
+        (self.lga / "cells.jsonl").write_text("".join(map(canonical, lines)))
+        said = self.leaderboard("verify", self.lga.parent.name, "--fresh", "--by", "B. Reader", expect=1).stdout
+        self.assertRegex(said, rf"^DIFFERS .*: -0.\d+ \[.*\] on fresh scenes; arm (?!{arms[0]} )\w+ differs: -0")
+
+    def test_people_who_are_the_truth(self):
+        def human(entry):
+            entry["identity"]["version"] = "0.2"
+            text = json.dumps(entry["phi"]).replace("simulated_edit", "human")
+            entry["phi"] = json.loads(text)
+        forged = self.forge(human, like=self.entry("lga_hill"))
+        self.check(expect=0)
+        rows = self.rows()
+        self.assertEqual(rows.pop(forged.parent.name)[2], "recomputed; not yet replayed")
+        self.assertEqual(rows, self.before)
+
+    def test_a_rival_keeps_its_rank(self):
+        self.add_line(self.rival, by="Anonymous", passed=False)
+        entry = json.loads((self.rival / "entry.json").read_text())
+        entry["withdrawn"] = {"when": "2026-12-01", "reason": "cheated"}
+        (self.rival / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+        self.assertIn("0 problems", self.check(expect=0))
+        row, before = self.rows()[self.rival.parent.name], self.before[self.rival.parent.name]
+        self.assertEqual([row[0], row[2]], [before[0], before[2]])
+        self.assertEqual(row[3], "replayed; claimed by Anonymous: a replay differed; claimed: withdrawn")
+
+    def test_evidence_that_somebody_adds_changes_no_tier(self):
+        entry = json.loads((self.rival / "entry.json").read_text())
+        entry["evidence"].append({**entry["evidence"][0], "machine": {"processor": "another"}, "by": "B. Reader"})
+        (self.rival / "entry.json").write_text(json.dumps(entry, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+        self.add_line(self.rival, by="B. Reader", cells=12)
+        self.leaderboard("vouch", self.rival.parent.name, "2")
+        self.assertEqual(self.rows()[self.rival.parent.name][3], "reproduced")
+
+    def test_a_replay_of_few_cells_is_not_vouched_for(self):
+        self.add_line(self.rival, cells=3)
+        said = self.leaderboard("vouch", self.rival.parent.name, "2", expect=2).stderr
+        self.assertIn("line 2 is a replay of 3 cells; expected 12 or more: verify it with --cells 12", said)
+        self.assertIn('no line "3"; expected one of its 2', self.leaderboard("vouch", self.rival.parent.name, "3", expect=2).stderr)
+        self.assertIn("was vouched for before", self.leaderboard("vouch", self.rival.parent.name, "1", expect=2).stderr)
+        self.assertEqual(self.rows()[self.rival.parent.name][3], "replayed; claimed by Prof. B. Independent: reproduced")
+
+    def test_what_is_vouched_for_counts(self):
+        self.add_line(self.rival, by="Anonymous", cells=12, passed=False)
+        self.leaderboard("vouch", self.rival.parent.name, "2")
+        self.assertEqual(self.rows()[self.rival.parent.name][3], "recomputed; a replay differed")
+        self.leaderboard("withdraw", self.rival.parent.name, "--reason", "its replay differed")
+        self.assertIn(self.rival.parent.name, self.rows())
+        self.leaderboard("vouch", self.rival.parent.name, "withdrawn")
+        self.assertNotIn(self.rival.parent.name, self.rows())
+        vouched = json.loads((self.board / "vouched.json").read_text())
+        vouched["0" * 64] = ["1" * 64]
+        (self.board / "vouched.json").write_text(json.dumps(vouched, indent=1) + "\n")
+        self.assertIn("vouched.json: /" + "0" * 64 + ": no entry of this hash has the line", self.leaderboard("check", expect=1).stderr)
+
+    def test_maintainers_files_and_old_lines_stay(self):
+        file = self.board / "vouched.json"
+        text = file.read_text()
+        file.write_text(text.replace("\n ", "\n  "))
+        said = "vouched.json: changed since HEAD: it is the maintainers' (--maintainer)"
+        self.assertIn(said, self.check(expect=1))
+        self.assertIn("0 problems", self.check("--maintainer", expect=0))
+        file.unlink()
+        self.assertIn(said, self.check(expect=1))
+        file.write_text(text)
+        (self.rival / "verifications.jsonl").write_text("")
+        self.assertIn("verifications.jsonl: a verification changed since HEAD", self.check(expect=1))
+
+    def test_a_revision_that_is_not_there(self):
+        said = self.leaderboard("check", "--against", "origin/mian", expect=2).stderr
+        self.assertIn("--against origin/mian: expected a revision of git that board has, and its history", said)
+
+    def test_a_preset_or_an_engine_that_nobody_has(self):
+        def few(entry):
+            entry["preset"].update(seeds=[0], episodes=10)
+        forged = self.forge(few, lambda line: None if line["training_seed"] else {**line, "outcomes": {
+            arm: "." * 10 for arm in line["outcomes"]}})
+        self.assertRegex(self.check(expect=1), rf"{forged.parent.name}/q2-leaderboard: preset q2-leaderboard: \w+ here, \w+ in the entry")
+        shutil.rmtree(forged)
+        self.invent(lambda entry: entry["identity"]["engine"].update(version="9.9"))
+        self.assertIn("version of mujoco: 0.1 here, 9.9 in the entry", self.check(expect=1))
+
+    def test_sizes_are_bounded_before_anything_is_computed(self):
+        self.forge(lambda entry: entry["preset"].update(episodes=1000000), like=self.entry("random_object"))
+        started = time.monotonic()
+        self.assertIn("/preset/episodes: expected a whole number from 1 to 10000", self.leaderboard("check", "--against", "HEAD", expect=1).stderr)
+        self.assertLess(time.monotonic() - started, 60)
+
+    def test_commands_on_pages_are_words(self):
+        evil = "text'; touch owned; '"
+        forged = self.invent(lambda entry: entry["identity"]["options"].update(network=evil))
+        self.add_line(forged, cells=12)
+        self.leaderboard("vouch", forged.parent.name, "1")
+        self.rows()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', (self.board / "q2.html").read_text(), re.S)[1])
+        command = next(entry["command"] for entry in data["entries"] if entry["id"] == forged.parent.name)
+        self.assertIn(f"network={evil}", next(word for word in shlex.split(command) if word.startswith("lga+")))
+        subprocess.run(["sh", "-c", f"lgabench() {{ :; }}; {command}"], cwd=self.dir, check=True)
+        self.assertFalse((self.dir / "owned").exists())
+
+    def test_a_replay_compares_what_a_method_asks_and_its_options(self):
+        """Before anything is played: a plugin that asks for more than its entry says would be given it."""
+        for like, change, says in (
+                ("human", lambda entry: entry["identity"].pop("asks"), "whom human asks: specify here, nobody in the entry"),
+                ("lga", lambda entry: entry["identity"]["options"].pop("loss"), 'options of lga: {"batch_size"'),
+                ("lga", lambda entry: entry["identity"]["options"].update(loss="none"), "loss")):
+            with self.subTest(says):
+                forged = self.forge(change, like=self.entry(like))
+                said = self.leaderboard("verify", forged.parent.name, "--by", "B. Reader", "--cells", "1", expect=2).stderr
+                self.assertIn(says, said)
+                self.assertFalse((forged / "verifications.jsonl").exists())
+
+    def test_counts_that_contradict_each_other(self):
+        for members, says in (({"flips": 99999}, "/flips: expected a whole number from 0"),
+                              ({"bit_identical": 31}, "/bit_identical: expected a whole number from 0"),
+                              ({"bit_identical": 12, "cells_": 1, "flips": 1}, "/flips: expected"),
+                              ({"flips": 99}, "/passed: expected false, by its counts"),
+                              ({"machine": {"processor": "AMD EPYC"}}, "/passed: expected false, by its counts"),
+                              ({"flips": 8, "only_recorded": 8}, "/passed: expected false, by its counts"),
+                              ({"episodes": 1}, "/episodes: expected"), ({"when": "now"}, "/when: expected a date")):
+            with self.subTest(says, **members):
+                file = self.rival / "verifications.jsonl"
+                text = file.read_text()
+                members.pop("cells_", None)
+                self.add_line(self.rival, cells=12, **members)
+                self.assertIn(says, self.leaderboard("check", expect=1).stderr)
+                file.write_text(text)
+
+    def test_an_unconfined_run_cannot_hide(self):
+        forged = self.invent(lambda entry: entry["evidence"][0].update(confinement="N/A"))
+        self.assertEqual(self.rows()[forged.parent.name][2], "recomputed; not yet replayed; unconfined")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
