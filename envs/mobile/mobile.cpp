@@ -209,7 +209,7 @@ class MobileType final : public EnvironmentType {
     static Renderer& renderer = *new Renderer(front_camera());
     return renderer.render(visible_objects(scene));
   }
-  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace&) const override {
+  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario&) const override {
     return make_environment(std::move(engine));
   }
 

@@ -16,8 +16,9 @@ void append(std::vector<std::string>& names, std::vector<std::string> more) {
 // `second`: the id of the task's second set, of which the choice then is; "" where the choice is of targets.
 void read_choice(const JsonReader& scenes, const std::string& second, const FeatureSpace& space, Content& content) {
   constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
-  for (const std::string& drawn : {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
-                                   std::string("later_letters"), second.empty() ? std::string("target") : second})
+  for (const std::string& drawn :
+       {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
+        std::string("later_letters"), std::string("near_miss"), second.empty() ? std::string("target") : second})
     if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
   const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
@@ -30,8 +31,38 @@ void read_choice(const JsonReader& scenes, const std::string& second, const Feat
   }
 }
 
+// A list of the space's names, none of which any of the scenario's commands means.
+std::vector<std::string> read_missing(const JsonReader& list, const std::vector<std::string>& space,
+                                      const Scenario& scenario, std::vector<std::string> FeatureSet::*meant) {
+  std::vector<std::string> names = list.strings();
+  if (names.empty()) list.fail("at least one name");
+  for (const JsonReader& name : list.elements()) {
+    const auto has = [&name](const std::vector<std::string>& all) {
+      return std::find(all.begin(), all.end(), name.string()) != all.end();
+    };
+    if (!has(space)) name.fail("a name of the feature space");
+    for (const ScenarioCommand& command : scenario.commands)
+      if (has(command.truth.target.*meant))
+        name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));
+  }
+  return names;
+}
+
+NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario) {
+  NearMiss sets;
+  if (reader.json() == Json(true)) return sets;
+  if (!reader.json().is_object()) reader.fail("true, or an object");
+  reader.only({"object_types", "textures"});
+  if (reader.has("object_types"))
+    sets.object_types =
+        read_missing(reader.at("object_types"), scenario.space.object_types, scenario, &FeatureSet::object_types);
+  if (reader.has("textures"))
+    sets.textures = read_missing(reader.at("textures"), scenario.space.textures, scenario, &FeatureSet::textures);
+  return sets;
+}
+
 void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& content) {
-  constexpr int most = 2;  // distractors: more do not fit beside the widest target
+  const int most = find_task(scenario.task).most_distractors();
   const FeatureSpace& space = scenario.space;
   if (reader.has("target")) content.target = read_feature_set(reader.at("target"), space);
   if (scenario.second && reader.has(scenario.second->id))
@@ -44,6 +75,12 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
   }
   if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
   if (reader.has("hard")) content.hard = reader.at("hard").boolean();
+  if (reader.has("near_miss") && reader.at("near_miss").json() != Json(false)) {
+    for (const char* other : {"hard", "later_letters"})
+      if (reader.has(other)) reader.at(other).fail("no such member beside \"near_miss\"");
+    if (content.distractors.second == 0) reader.at("near_miss").fail("\"distractors\" beside it");
+    content.near_miss = read_near_miss(reader.at("near_miss"), scenario);
+  }
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
   if (reader.has("choice")) read_choice(reader, scenario.second ? scenario.second->id : "", space, content);
 }
@@ -63,7 +100,8 @@ std::vector<std::string> scenario_members(const Task& task) {
 }
 
 std::vector<std::string> scene_members(const Task& task) {
-  std::vector<std::string> names{"target", "distractors", "outside_all_commands", "hard", "later_letters", "choice"};
+  std::vector<std::string> names{"target",        "distractors", "outside_all_commands", "hard", "near_miss",
+                                 "later_letters", "choice"};
   if (const auto second = task.second()) names.push_back(second->id);
   append(names, task.scene_members());
   return names;
@@ -79,6 +117,8 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
   if (training && scenes && scenario.as_method_asks && (content.target || content.second))
     scenes->fail("\"as_method_asks\": false beside \"target\"" +
                  (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
+  if (training && content.near_miss && scenario.as_method_asks)  // else an answer would decide what is near
+    scenes->at("near_miss").fail("\"as_method_asks\": false beside it");
   return content;
 }
 

@@ -1,5 +1,6 @@
 // What a tabletop scenario says of its scenes.
 #pragma once
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,19 +13,29 @@ namespace lgabench::tabletop {
 
 class Task;
 
+/// Of which features near misses are made, where not of all that the command does not mean.
+struct NearMiss {
+  std::vector<std::string> object_types, textures;  // empty: any
+};
+
 /// What scenes of one kind hold. Targets and the second set are drawn from the command's truth where nothing else is
 /// said.
 struct Content : SceneContent {
   std::optional<FeatureSet> target, second;
   std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
   bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
-  bool hard = false;           // a distractor shares the target's type or its texture, and still is no target
-  bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
+  bool hard = false;                  // a distractor shares the target's type or its texture, and still is no target
+  std::optional<NearMiss> near_miss;  // others share the target's type or texture, and each other's: see near_misses()
+  bool later_letters = false;         // "the one that comes earliest": a distractor may be a later letter
   /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets, or
   /// the second set where the task has one), the others are distractors.
   std::vector<std::string> choice;
   std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
+
+  /// More stand there than always fit: wide types are left out, and what finds no room is drawn again.
+  bool crowded() const { return distractors.second > 2; }
+  double widest_m() const { return crowded() ? .18 : std::numeric_limits<double>::infinity(); }
 };
 
 /// What scenes hold that lgabench read for this environment: an arm's, or those to train on.

@@ -47,8 +47,8 @@ bool try_place(const Room& room_of, SceneObject& object, Taken& taken, RandomStr
   return true;
 }
 
-bool place_others(const Room& room_of, std::vector<SceneObject>& objects, Taken taken, RandomStream& random) {
-  constexpr int tries = 5000;  // many, since the next target place would no longer be that of the other arms
+bool place_others(const Room& room_of, int tries, std::vector<SceneObject>& objects, Taken taken,
+                  RandomStream& random) {
   for (std::size_t i = 1; i < objects.size(); ++i) {
     int k = 0;
     while (k < tries && !try_place(room_of, objects[i], taken, random)) ++k;
@@ -71,16 +71,21 @@ void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, Ran
   for (std::size_t i = 1; i < objects.size(); ++i) objects[i].position_m = free[i - 1];
 }
 
-void place_freely(const Layout& layout, const Room& room, std::vector<SceneObject>& objects, const Streams& stream) {
+void place_freely(const Layout& layout, const Room& room, const Patience& patience, std::vector<SceneObject>& objects,
+                  const Streams& stream) {
   constexpr int tries = 10000;
   RandomStream random = stream("layout"), others = stream("layout of distractors");
   Taken nothing;
   if (layout.pallet) nothing.room.push_back(placed_outline(object_model(goal_type), *layout.pallet, 0));
-  for (int k = 0; k < tries; ++k) {
+  int placed = 0;
+  for (int k = 0; k < tries && placed < patience.targets; ++k) {
     Taken taken = nothing;
-    if (try_place(room, objects[0], taken, random) && place_others(room, objects, std::move(taken), others)) return;
+    if (!try_place(room, objects[0], taken, random)) continue;
+    ++placed;
+    for (int again = 0; again < patience.anew; ++again)
+      if (place_others(room, patience.places, objects, taken, others)) return;
   }
-  throw Error(fmt::format("layout {}: no room found for {} objects in {} tries", layout.id, objects.size(), tries));
+  throw NoRoom(fmt::format("layout {}: no room found for {} objects in {} tries", layout.id, objects.size(), tries));
 }
 
 }  // namespace lgabench::tabletop

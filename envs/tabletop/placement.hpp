@@ -8,6 +8,7 @@
 
 #include <common/outline.hpp>
 #include <common/sampling.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scene.hpp>
 #include <tabletop/workspace.hpp>
@@ -33,8 +34,22 @@ using Room = std::function<std::vector<Polygon>(const SceneObject& target)>;
 /// The target's place first, then the others' without repetition; one that finds no place is left out.
 void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random);
 
+/// Places were tried for as long as is worth it.
+class NoRoom : public Error {
+ public:
+  using Error::Error;
+};
+
+/// How long room is looked for: places that the target can have; with each, how often the others are placed anew;
+/// places of each of them.
+struct Patience {
+  int targets = 10000, anew = 1;
+  int places = 5000;  // many, since the next target place would no longer be that of the other arms
+};
+
 /// Uniform places and yaws that leave a margin between all outlines, and between them and the room that targets need.
-/// @throws Error where no room is found.
-void place_freely(const Layout& layout, const Room& room, std::vector<SceneObject>& objects, const Streams& stream);
+/// @throws NoRoom
+void place_freely(const Layout& layout, const Room& room, const Patience& patience, std::vector<SceneObject>& objects,
+                  const Streams& stream);
 
 }  // namespace lgabench::tabletop

@@ -6,6 +6,7 @@
 
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
+#include <tabletop/near_misses.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
@@ -20,13 +21,9 @@ bool can_show(const std::string& type, double widest_m) {
   return std::max(size.x, size.y) <= widest_m + 1e-9;
 }
 
-struct Features {
-  std::string type, texture;
-};
-
 // Uniform over what of the distribution can be shown. `whom` is named in errors.
 Features sample_features(const Scenario& scenario, const Layout& layout, const FeatureSet& distribution,
-                         double widest_m, const char* whom, RandomStream random) {
+                         double widest_m, const char* whom, RandomStream& random) {
   std::vector<std::string> types;
   std::copy_if(distribution.object_types.begin(), distribution.object_types.end(), std::back_inserter(types),
                [&](const std::string& type) { return can_show(type, widest_m); });
@@ -73,10 +70,12 @@ struct Request {
   const Content& content;
   bool training;
   Selection meant;  // distractors stay out of it
+
+  double widest_m() const { return std::min(layout.widest_m, content.widest_m()); }
 };
 
 // docs/protocol.md, section 3: objects that don't satisfy the command.
-std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream random) {
+std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream& random) {
   const FeatureSpace& space = request.scenario.space;
   const Content& content = request.content;
   std::vector<const FeatureSet*> excluded;
@@ -94,7 +93,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   std::vector<std::string> later_letters;
   std::vector<bool> allowed;
   for (const std::string& type : space.object_types) {
-    const bool later = is_letter(type) && type > target.type, shown = can_show(type, request.layout.widest_m);
+    const bool later = is_letter(type) && type > target.type, shown = can_show(type, request.widest_m());
     allowed.push_back(shown && (!earliest || !is_letter(type) || later));
     if (earliest && shown && later) later_letters.push_back(type);
   }
@@ -110,7 +109,17 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   const int count =
       fewest == most ? most : fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<Features> distractors;
-  for (int i = 0; i < count; ++i) {
+  if (content.near_miss) {
+    NearMissRequest near{request.meant.target, target, {}, space.textures, *content.near_miss, {}};
+    for (std::size_t type = 0; type < allowed.size(); ++type)
+      if (allowed[type]) near.types.push_back(space.object_types[type]);
+    near.may_be = [&excluded](const Features& one) {
+      return std::none_of(excluded.begin(), excluded.end(),
+                          [&one](const FeatureSet* set) { return set->contains(one.type, one.texture); });
+    };
+    distractors = near_misses(near, count, random);
+  }
+  for (int i = static_cast<int>(distractors.size()); i < count; ++i) {
     if (!later_letters.empty() && random.coin()) {
       const std::string& type = any_of(later_letters, random);
       distractors.push_back({type, content.hard ? target.texture : any_of(space.textures, random)});
@@ -152,7 +161,12 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
   return objects;
 }
 
-std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream) {
+// Streams that go on where the same scene is drawn again.
+struct Draws {
+  RandomStream targets, distractors;
+};
+
+std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream, Draws& draws) {
   const auto& [scenario, task, layout, content, training, meant] = request;
   const auto second = task.second();
   const bool by_choice = !content.choice.empty();
@@ -160,23 +174,47 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
 
   const Features target =
       sample_features(scenario, layout, content.target.value_or(meant.target),
-                      std::min(layout.widest_m, layout.widest_target_m), "a target", stream("target"));
+                      std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets);
   std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
   if (by_choice) {
     const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
     objects.insert(objects.end(), chosen.begin(), chosen.end());
     return objects;
   }
-  for (const Features& d : sample_distractors(request, target, stream("distractors")))
+  for (const Features& d : sample_distractors(request, target, draws.distractors))
     objects.push_back({d.type, d.texture, role::distractor, {}, 0, 0});
   if (second) {
     FeatureSet from;
     if (meant.second) from = *meant.second;
-    const Features features = sample_features(scenario, layout, content.second.value_or(from), layout.widest_m,
-                                              "the second set", stream(second->in_scenes));
+    RandomStream random = stream(second->in_scenes);
+    const Features features =
+        sample_features(scenario, layout, content.second.value_or(from), layout.widest_m, "the second set", random);
     objects.push_back({features.type, features.texture, second->in_scenes, {}, 0, 0});
   }
   return objects;
+}
+
+// Where a crowd finds no room, the next draw of its objects.
+std::vector<SceneObject> placed_objects(const Request& request, const Streams& stream) {
+  constexpr int draws = 20;
+  const auto& [scenario, task, layout, content, training, meant] = request;
+  Draws random{stream("target"), stream("distractors")};
+  for (int draw = 1;; ++draw) {
+    std::vector<SceneObject> objects = sample_objects(request, stream, random);
+    const std::size_t sampled = objects.size();
+    try {
+      task.place(layout, content, objects, stream);
+    } catch (const NoRoom&) {
+      if (!content.crowded() || draw == draws) throw;
+      continue;
+    }
+    const bool all = !content.choice.empty() || content.near_miss || content.crowded();
+    if (all && objects.size() < sampled)
+      throw InputError(fmt::format("scenario \"{}\", layout {}: expected places for all {} objects{}, got {}",
+                                   scenario.id, layout.id, sampled, content.choice.empty() ? "" : " of a choice",
+                                   objects.size()));
+    return objects;
+  }
 }
 
 }  // namespace
@@ -194,12 +232,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Streams stream = streams_of(scenario, request, index);
 
   set_asked_turn(scene, task.turn_rad(content));
-  scene.objects = sample_objects(what, stream);
-  const std::size_t sampled = scene.objects.size();
-  task.place(layout, content, scene.objects, stream);
-  if (!content.choice.empty() && scene.objects.size() < sampled)
-    throw InputError(fmt::format("scenario \"{}\", layout {}: expected places for all {} objects of a choice, got {}",
-                                 scenario.id, layout.id, sampled, scene.objects.size()));
+  scene.objects = placed_objects(what, stream);
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;

@@ -19,7 +19,7 @@ namespace {
 
 class Tabletop final : public Environment {
  public:
-  Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space) : world_(std::move(world)) {
+  Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space, int bodies) : world_(std::move(world)) {
     std::vector<BodyModel> models;
     const auto add = [&](const std::string& type, bool fixed) {
       models_[{type, fixed}] = static_cast<int>(models.size());
@@ -28,7 +28,7 @@ class Tabletop final : public Environment {
     };
     for (const std::string& type : space.object_types) add(type, false);
     add(goal_type, true);
-    world_->load(models, most_bodies);
+    world_->load(models, bodies);
   }
 
   const ActionSpace& action_space() const override { return two_poses(); }
@@ -102,6 +102,17 @@ class Tabletop final : public Environment {
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
 
+// More than usual only where a scene can hold more: their number shows in an engine's last digits.
+int bodies_of(const Scenario& scenario) {
+  int bodies = most_bodies;
+  const auto hold = [&bodies](const SceneContent& scenes) {
+    bodies = std::max(bodies, content_of(scenes).distractors.second + 2);  // with target and goal
+  };
+  hold(*scenario.train);
+  for (const Arm& arm : scenario.tests) hold(*arm.scenes);
+  return bodies;
+}
+
 class TabletopType final : public EnvironmentType {
  public:
   TabletopType() {
@@ -144,8 +155,12 @@ class TabletopType final : public EnvironmentType {
     static Renderer& renderer = *new Renderer();
     return renderer.render(visible_objects(scene), find_task(scene.task).ground());
   }
-  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace& space) const override {
-    return make_environment(std::move(engine), space);
+  std::string world_of(const Scenario& scenario) const override {
+    const int bodies = bodies_of(scenario);
+    return bodies == most_bodies ? "" : fmt::format("{} bodies", bodies);
+  }
+  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
+    return make_environment(std::move(engine), scenario.space, bodies_of(scenario));
   }
 
  private:
@@ -156,8 +171,9 @@ class TabletopType final : public EnvironmentType {
 
 }  // namespace
 
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space) {
-  return std::make_unique<Tabletop>(std::move(world), space);
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
+                                              int bodies) {
+  return std::make_unique<Tabletop>(std::move(world), space, bodies);
 }
 
 }  // namespace lgabench::tabletop

@@ -8,10 +8,11 @@
 
 namespace lgabench::tabletop {
 
-/// In one scene: the most that a scenario can ask for, and what the engine is told.
+/// In one scene, unless a scenario has more distractors than two; what the engine is told.
 constexpr int most_bodies = 6;
 
-/// Takes the engine, loads every object type of `space` into it once, and plays scenes on it.
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space);
+/// Takes the engine, loads every object type of `space` into it once, and plays scenes on it, of as many bodies.
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
+                                              int bodies = most_bodies);
 
 }  // namespace lgabench::tabletop

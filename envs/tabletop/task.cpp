@@ -20,10 +20,12 @@ auto named(const char* what, const List& list, const std::string& id, Id id_of) 
 
 }  // namespace
 
-void Task::place(const Layout& layout, const Content&, std::vector<SceneObject>& objects, const Streams& stream) const {
+void Task::place(const Layout& layout, const Content& content, std::vector<SceneObject>& objects,
+                 const Streams& stream) const {
+  const Patience patience = content.crowded() ? Patience{4, 10, 200} : Patience{};  // then a crowd is drawn again
   if (layout.target_places.empty())
     place_freely(
-        layout, [&](const SceneObject& target) { return room(layout, target); }, objects, stream);
+        layout, [&](const SceneObject& target) { return room(layout, target); }, patience, objects, stream);
   else
     place_on_cells(layout, objects, stream("layout"));
 }

@@ -49,11 +49,13 @@ class Task {
 
   /// Sets position and yaw of every object but the goal. objects[0] is a target and takes its place first, from a
   /// stream of its own, so that scenes with other distractors share it. A distractor that finds no place is left out
-  /// (fixed places). @throws Error where free places run out.
+  /// (fixed places). @throws NoRoom where free places run out.
   virtual void place(const Layout& layout, const Content& content, std::vector<SceneObject>& objects,
                      const Streams& stream) const;
   /// What must stay free beside the target itself for its motion: seen from above.
   virtual std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const;
+  /// How many distractors its scenes may have.
+  virtual int most_distractors() const { return 2; }  // more do not fit beside the widest target
   /// What is painted on the table.
   virtual Ground ground() const { return Ground::plain; }
 

@@ -36,6 +36,19 @@ class OwnScenario(Case):
         self.call("report", "out")
         self.call("verify", "out", "--sample", "2")
 
+    def test_near_misses_and_crowds_are_checked_for_what_they_test(self):
+        self.new(*NAME, "--near-miss", "--distractors", "2:2")
+        checked = self.call("check-scenario", "round.json", "--scenes", "4", "--layout", "continuous").stdout
+        self.assertRegex(checked, r"ok +near_miss, continuous .* what shares most in \d; near misses in 4")
+        self.new("anything", "--command", "Bring me anything.", "--types", "ALL", "--near-miss")
+        checked = self.call("check-scenario", "anything.json", "--scenes", "4", "--layout", "continuous", expect=1).stdout
+        self.assertIn("near_miss: expected a command that leaves out types or textures", checked)
+        self.new("crowd", *NAME[1:], "--distractors", "4:6")
+        checked = self.call("check-scenario", "crowd.json", "--scenes", "4", "--layout", "cells", expect=1).stdout
+        self.assertIn("expected places for all", checked)
+        checked = self.call("check-scenario", "heart", "--suite", "clutter", "--scenes", "2", "--layout", "continuous").stdout
+        self.assertRegex(checked, r"ok +near_6, continuous")
+
     def test_a_method_that_asks_fails_where_nobody_answers(self):
         self.new(*NAME)
         words = ("--scenario-path", ".", *SMALL, "--answers", "none", "--methods", "lga", "--out", "out")

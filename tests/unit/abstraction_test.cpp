@@ -223,6 +223,12 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
       {"q3_food", {"claude", "claude"}},
       {"q3_fruit", {"claude", "claude"}},
       {"q3_utensil", {"claude", "claude"}},
+      {"block_that_is_not_l_shaped", {"claude_clutter", "claude_clutter"}},
+      {"plain_colored_vessel", {"claude_clutter", "claude_clutter"}},
+      {"polka_dotted_letter", {"claude_clutter", "claude_clutter"}},
+      {"something_striped_that_has_no_red_on_it", {"claude_clutter", "claude_clutter"}},
+      {"something_that_looks_like_stone", {"claude_clutter", "claude_clutter"}},
+      {"something_with_a_hole_in_the_middle", {"claude_clutter", "claude_clutter"}},
       {"bring_fruit", {"claude", "claude"}},
       {"throw_away_drink", {"claude", "claude"}}};
   int of_study = 0;
@@ -261,7 +267,7 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
               "vowel_with_multiple_colors");
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
-              "expected recorded or one of claude, gpt4_released, gpt4_study, got \"gpt4\"");
+              "expected recorded or one of claude, claude_clutter, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 

@@ -210,6 +210,24 @@ TEST_F(Play, ReferenceRows) {
   EXPECT_THROW(reference_actor("nothing"), InputError);
 }
 
+TEST_F(Play, ReferenceRowsThatHearNoCommandFindTheTargetWhereTheSceneGivesItAway) {
+  const auto scenes_with = [](const char* member) {
+    Json json = load_scenario("red_heart").json;
+    json["tests"] = Json::array({{{"arm", "test"}, {"distractors", {2, 2}}, {member, true}}});
+    return tests(read_scenario(json, "red_heart"), 60);
+  };
+  const auto of = [&](const std::vector<TestScene>& scenes, const Actor& actor) {
+    return successes(evaluate(*environment, scenes, actor, [](int) {}));
+  };
+  const std::vector<TestScene> hard = scenes_with("hard"), near = scenes_with("near_miss");
+  EXPECT_GT(of(hard, reference_actor("most_shared")), 28) << "the target alone shares both, half of the time";
+  EXPECT_NEAR(of(near, reference_actor("most_shared")), 20, 15) << "all three share alike; 4 sigma of 60 is 15";
+  std::vector<Scene> played;
+  for (const TestScene& test : near) played.push_back(test.scene);
+  EXPECT_EQ(of(near, reference_actor("never_demonstrated", played)), 0) << "every target was demonstrated";
+  EXPECT_NEAR(of(near, reference_actor("never_demonstrated")), 20, 15);
+}
+
 // A policy that fails in one way on every third scene and does nothing of use on the others.
 class Sometimes : public Policy {
  public:

@@ -27,6 +27,8 @@ class PickAndPlace final : public Task {
     return placed_outline(object_model(target.object_type), *layout.pallet, target.yaw_rad);
   }
 
+  int most_distractors() const override { return 6; }
+
   TwoPoses expert_action(const Scene& scene, const std::vector<Pose>& poses, const PhysicsWorld& world,
                          std::size_t object) const override {
     return bring(scene, poses, world, object, expect(scene, role::goal).position_m);

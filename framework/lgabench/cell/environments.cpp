@@ -4,7 +4,7 @@
 
 namespace lgabench {
 std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
-  return find_environment(scenario.environment).make(std::move(world), scenario.space);
+  return find_environment(scenario.environment).make(std::move(world), scenario);
 }
 
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,

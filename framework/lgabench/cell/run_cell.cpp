@@ -82,12 +82,14 @@ std::unique_ptr<Method> make_method(const CellJob& job) {
   return nullptr;
 }
 
-DemonstrationCache demonstration_cache(const CellJob& job) {
+DemonstrationCache demonstration_cache(const CellJob& job, const Scenario& scenario) {
   const std::vector<std::string> take_part{"engine", "lgabench-worker", "liblgabench_core.so",
                                            fmt::format("liblgabench_env_{}.so", job.cell.environment)};
   Json builds = Json::object();
   for (const std::string& name : take_part) builds[name] = JsonReader(job.build, "build").at(name).json();
-  return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
+  const std::string world = find_environment(job.cell.environment).world_of(scenario);
+  return {job.cache, builds,
+          fmt::format("lgabench/{}-{}-v1{}{}", job.cell.environment, job.cell.engine, world.empty() ? "" : "/", world)};
 }
 
 // What a row does with the scenes.
@@ -109,6 +111,13 @@ std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, c
     row = Row::abstraction_empty;
     return {};
   }
+}
+
+// Training scenes of a reference row that looks at them, and is shown no demonstrations.
+std::vector<Scene> demonstrated_to(const Cell& cell, const Scenario& scenario) {
+  Selected truth;
+  truth.needs.targets = Needs::Targets::truth;
+  return sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(cell.demonstrations));
 }
 
 std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
@@ -211,8 +220,8 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
-  auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job), *environment, scenes, selected.needs,
-                                                         scenario.utterances(), count),
+  auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
+                                                         selected.needs, scenario.utterances(), count),
                                    scenes, selected);
 
   // 4 learn: from observations and labels to a policy.
@@ -225,7 +234,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   phases.begin("evaluate");
   const std::vector<TestScene> tests = test_scenes(scenario, cell, row, selected);
   const Actor actor = policy                  ? policy_actor(*policy, selected.instructions, id)
-                      : row == Row::reference ? reference_actor(id)
+                      : row == Row::reference ? reference_actor(id, demonstrated_to(cell, scenario))
                                               : Actor();
   std::vector<Episode> episodes = evaluate(*environment, tests, actor, count);
   auto* const hosted = dynamic_cast<HostedMethod*>(method.get());

@@ -37,9 +37,8 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
   return tile;
 }
 
-Tile scene_and_mask(const Scenario& scenario, const std::string& arm) {
+Tile scene_and_mask(const Scenario& scenario, const std::string& layout, const std::string& arm) {
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const std::string layout = layouts_of(scenario).front();
   const Scene scene = environment.sample(scenario, {layout, "test", arm, 0}, 0);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
   const Observation seen = environment.draw(scene);
@@ -85,9 +84,9 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
 
 }  // namespace
 
-Sheet scene_sheet(const Scenario& scenario) {
+Sheet scene_sheet(const Scenario& scenario, const std::string& layout) {
   std::vector<Tile> tiles;
-  for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
+  for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, layout, arm.id));
   return sheet(tiles, 1);
 }
 
@@ -109,7 +108,8 @@ Sheet gallery(const std::string& what) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
       if (scenario.environment != environment) continue;
-      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, arm.id));
+      for (const Arm& arm : scenario.tests)
+        tiles.push_back(scene_and_mask(scenario, layouts_of(scenario).front(), arm.id));
     }
     return sheet(tiles, 2);
   }

@@ -17,7 +17,7 @@ struct Sheet {
 /// with its goal mask). Twice the observation's size. @throws InputError for anything else.
 Sheet gallery(const std::string& what);
 
-/// A test scene of every arm of the scenario, with its goal mask.
-Sheet scene_sheet(const Scenario& scenario);
+/// A test scene of every arm of the scenario in that layout, with its goal mask.
+Sheet scene_sheet(const Scenario& scenario, const std::string& layout);
 
 }  // namespace lgabench::cli

@@ -81,6 +81,10 @@ void print_list(const Json& all) {
 Json reference_rows() {
   return {{{"id", "constant_action"},
            {"summary", "The best constant action: the same in every scene, from the training actions alone"}},
+          {{"id", "most_shared"},
+           {"summary", "The visible object that shares types and textures with most others (suites that ask for it)"}},
+          {{"id", "never_demonstrated"},
+           {"summary", "A visible object that is like no demonstrated target (suites that ask for it)"}},
           {{"id", "oracle"}, {"summary", "The expert, who knows the target: what success there can be"}},
           {{"id", "random_object"}, {"summary", "A visible object, drawn at random and handled as the expert would"}}};
 }

@@ -24,7 +24,7 @@ struct NewScenarioArguments {
   std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
   Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
   std::optional<double> angle_deg;
-  bool clockwise = false, hard = false;
+  bool clockwise = false, hard = false, near_miss = false;
   fs::path directory = ".";
 };
 
@@ -78,6 +78,7 @@ Json scenario_json(const NewScenarioArguments& a) {
   const Json distractors = range_of(a.distractors);
   Json tests = Json::array({{{"arm", "test"}, {"distractors", distractors}}});
   if (a.hard) tests.push_back({{"arm", "hard"}, {"distractors", distractors}, {"hard", true}});
+  if (a.near_miss) tests.push_back({{"arm", "near_miss"}, {"distractors", distractors}, {"near_miss", true}});
   if (!a.unseen.empty()) tests.push_back({{"arm", "unseen"}, {"distractors", distractors}, {"unseen", true}});
   Json json{{"id", a.name},         {"environment", environment.id()},
             {"task", a.task},       {"feature_space", a.space},
@@ -132,6 +133,8 @@ void add_new_scenario(CLI::App& app, int& exit) {
   verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
   verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();
   verb->add_flag("--hard", a->hard, "A second arm, where a distractor shares the target's type or texture");
+  verb->add_flag("--near-miss", a->near_miss,
+                 "A further arm, where all others share the target's type or texture, and each other's");
   verb->add_option("--directory", a->directory, "Where the file is written")->capture_default_str();
   arrange(*verb, "", {{"name", "NAME"}, {"--directory", "DIR"}});
   arrange(*verb, "The command",
@@ -143,7 +146,12 @@ void add_new_scenario(CLI::App& app, int& exit) {
            {"--other-types", "TYPE,..."},
            {"--other-textures", "TEXTURE,..."}});
   arrange(*verb, "The task and its scenes",
-          {{"--task", "TASK"}, {"--angle", "DEGREES"}, {"--clockwise", ""}, {"--distractors", "N:M"}, {"--hard", ""}});
+          {{"--task", "TASK"},
+           {"--angle", "DEGREES"},
+           {"--clockwise", ""},
+           {"--distractors", "N:M"},
+           {"--hard", ""},
+           {"--near-miss", ""}});
   verb->footer(
       "docs/own-scenarios.md says more; docs/formats has every member of the file.\n"
       "Example: lgabench new-scenario round --command \"Bring me something round.\" --types round,ring");

@@ -76,7 +76,7 @@ constexpr const char* word_functions =
     "    SCENARIO* | COMMAND) _lgabench_ids scenarios ;;\n"
     "    NAME) _lgabench_ids . ;;\n"
     "    LAYOUT*) printf '%s\\n' cells continuous released ;;\n"
-    "    SOURCE) printf '%s\\n' recorded gpt4_released gpt4_study claude openai ;;\n"
+    "    SOURCE) printf '%s\\n' recorded gpt4_released gpt4_study claude claude_clutter openai ;;\n"
     "    PRESET) printf '%s\\n' paper paper_text leaderboard smoke ;;\n"
     "  esac\n"
     "}\n"

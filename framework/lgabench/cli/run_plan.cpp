@@ -225,11 +225,12 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the "
                   "preset's options, but not a row's own; may be given again")
       ->take_all();
-  verb.add_option("--answers", a.answers,
-                  "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
-                  "gpt4_released, gpt4_study, claude: only that source; cassette:FILE: a server's replies, as "
-                  "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
-                  "methods that ask no language model")
+  verb.add_option(
+          "--answers", a.answers,
+          "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
+          "gpt4_released, gpt4_study, claude, claude_clutter: only that source; cassette:FILE: a server's replies, as "
+          "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
+          "methods that ask no language model")
       ->check([](const std::string& word) { return answers_complaint(word, {no_answers}); })
       ->capture_default_str();
   verb.add_option("--model", a.model, "With --answers openai: the server's model");
@@ -269,7 +270,8 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "Compute one cell, named by the first digits of its KEY (list prints all keys), in the foreground "
                   "and unconfined: a plugin under gdb, Python where breakpoint() works. Its results are not kept")
       ->type_name("KEY");
-  verb.add_flag("--no-reference", a.no_reference, "Leave out the rows constant_action, random_object and oracle");
+  verb.add_flag("--no-reference", a.no_reference,
+                "Leave out the reference rows: constant_action, random_object, oracle, and the suite's own");
   verb.add_flag("--json", a.json, "Print summary.json instead of the table");
   verb.add_flag("--dry-run", a.dry_run,
                 "Compute nothing: print how many cells there are, how long they would take, and how much disk");

@@ -228,7 +228,8 @@ void add_select(CLI::App& app, int&) {
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
   verb->add_option("--answers", arguments->answers,
-                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude: only that source; openai: ask a "
+                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude, claude_clutter: only that source; "
+                   "openai: ask a "
                    "server now; cassette:FILE: a server's recorded replies")
       ->check([](const std::string& word) { return answers_complaint(word); })
       ->capture_default_str();

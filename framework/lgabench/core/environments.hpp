@@ -88,8 +88,11 @@ class EnvironmentType {
   virtual Perceive perception(const SceneContent& /*scenes*/) const { return nullptr; }
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene) const = 0;
-  /// An environment on that engine, for scenes of that space. @throws EngineError if the engine fails.
-  virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const FeatureSpace& space) const = 0;
+  /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what
+  /// demonstrations in it depend on.
+  virtual std::string world_of(const Scenario& /*scenario*/) const { return ""; }
+  /// An environment on that engine, for scenes of that scenario. @throws EngineError if the engine fails.
+  virtual std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const = 0;
 };
 
 /// The environment named `id`: the shared library lgabench_env_ID beside lgabench's own, loaded when it is first asked

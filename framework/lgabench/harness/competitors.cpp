@@ -66,6 +66,11 @@ struct Layer {
   }
 };
 
+bool is_reference_row(const std::string& id) {
+  return id == "constant_action" || id == "random_object" || id == "oracle" || id == "most_shared" ||
+         id == "never_demonstrated";
+}
+
 std::string named(const PluginInfo& info, const Json& options, const Json& usual, const std::set<std::string>& told) {
   std::string name = info.id;
   for (const std::string& option : told)
@@ -84,7 +89,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
   std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
   for (const std::string& written : grid.methods) {
     const std::string id = row_words(written).front();
-    if (id == "constant_action" || id == "random_object" || id == "oracle")  // tables find a row by its name
+    if (is_reference_row(id))  // tables find a row by its name
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));
   }

@@ -69,15 +69,21 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) 
     throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
                                  scenario.environment, suite.environment));
   Json json = scenario.json;
+  if (!suite.train.empty()) json["train"].update(suite.train);
   const Json first = json["tests"].front();
+  if (suite.only_arms) json["tests"] = Json::array();
   for (const Json& arm : suite.arms) {
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
+    if (suite.near_miss.contains(id) && arm.value("near_miss", Json()) == Json(true))
+      json["tests"].back()["near_miss"] = suite.near_miss[id];
   }
-  return read_scenario(json, fmt::format("{}: scenario {} with /arms", suite.file, scenario.id));
+  return read_scenario(json, fmt::format("{}: scenario {} with the suite's members", suite.file, scenario.id));
 }
 
-bool learns(const Competitor& row) { return !row.is_reference() || row.id == "constant_action"; }
+bool learns(const Competitor& row) {
+  return !row.is_reference() || row.id == "constant_action" || row.id == "never_demonstrated";
+}
 
 std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
   const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
@@ -85,6 +91,11 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
+  std::vector<const char*> references;
+  if (variation.references) {
+    references = {"constant_action", "random_object", "oracle"};
+    for (const std::string& row : suite.references) references.push_back(row.c_str());
+  }
   std::vector<Cell> cells;
   for (const std::string& id : grid.scenarios) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth);
@@ -107,10 +118,11 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
         for (const int n : grid.demonstrations)
           for (const std::uint64_t seed : grid.seeds) {
             for (const Competitor& method : methods) add(method, n, seed);
-            if (variation.references) add(reference("constant_action"), n, seed);
+            for (const char* row : references)
+              if (learns(reference(row))) add(reference(row), n, seed);
           }
-        if (variation.references)
-          for (const char* row : {"random_object", "oracle"})
+        for (const char* row : references)
+          if (!learns(reference(row)))
             for (const std::uint64_t seed : scene_sets(grid)) add(reference(row), 0, seed);
       }
     }

@@ -109,7 +109,8 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "environment", "arms", "presets"});
+  members.insert(members.end(),
+                 {"id", "note", "environment", "arms", "only_arms", "train", "near_miss", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -128,6 +129,18 @@ Suite load_suite(const std::string& id) {
       arm.at("arm").string();
       suite.arms.push_back(arm.json());
     }
+  if (reader.has("only_arms")) suite.only_arms = reader.at("only_arms").boolean();
+  if (suite.only_arms && suite.arms.empty()) reader.at("only_arms").fail("\"arms\" beside it");
+  if (reader.has("train")) {
+    if (!reader.at("train").json().is_object()) reader.at("train").fail("an object");
+    suite.train = reader.at("train").json();
+  }
+  if (reader.has("near_miss")) {
+    reader.at("near_miss").only(suite.grid.scenarios);
+    suite.near_miss = reader.at("near_miss").json();
+  }
+  if (reader.has("references"))
+    suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_grid(suite, preset.key());

@@ -37,8 +37,12 @@ struct Suite {
   Grid grid;
   /// Arms that every scenario plays beside its own: each is the scenario's first arm with these members changed.
   Json arms = Json::array();
-  Json presets;      // name -> members of Grid
-  std::string file;  // for messages
+  bool only_arms = false;               // instead of the scenario's own
+  Json train = Json::object();          // members that replace the "train" of every scenario
+  Json near_miss = Json::object();      // scenario -> "near_miss" of its arms that have one, in place of true
+  std::vector<std::string> references;  // rows of that kind beside those that every suite has
+  Json presets;                         // name -> members of Grid
+  std::string file;                     // for messages
 };
 
 /// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json; scenarios beside that

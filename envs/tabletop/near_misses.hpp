@@ -1,0 +1,33 @@
+// Distractors that a careless abstraction keeps.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/feature_space.hpp>
+#include <lgabench/core/random.hpp>
+#include <tabletop/content.hpp>
+
+namespace lgabench::tabletop {
+
+struct Features {
+  std::string type, texture;
+};
+
+/// What near misses of a target are made of.
+struct NearMissRequest {
+  const FeatureSet& meant;                      // by the command
+  Features target;                              // which it holds
+  std::vector<std::string> types, textures;     // that can be shown
+  const NearMiss& sets;                         // those of the first near miss
+  std::function<bool(const Features&)> may_be;  // a distractor
+};
+
+/// `count` objects, or one less, that share types and textures with the target and with each other alike, so that who
+/// does not hear the command cannot tell the target by what it shares (docs/protocol.md, section 3): all of the
+/// target's texture and of types that the command leaves out, or all of its type and of textures that the command
+/// leaves out; from three on, where it leaves out both, two types crossed with two or, from five on, three textures.
+/// @throws NothingToShow where the command leaves out too little for that many.
+std::vector<Features> near_misses(const NearMissRequest& request, int count, RandomStream& random);
+
+}  // namespace lgabench::tabletop
