@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <common/objects.hpp>
@@ -150,6 +151,14 @@ class TabletopType final : public EnvironmentType {
   }
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
     return sample_scene(scenario, request, index);
+  }
+  std::optional<ActionDistance> distance(const TaskInfo& task, const Action& one, const Action& other) const override {
+    const TwoPoses a = executable(two_poses(), one), b = executable(two_poses(), other);
+    ActionDistance distance{norm(a.pose0.position_m - b.pose0.position_m),
+                            norm(a.pose1.position_m - b.pose1.position_m)};
+    if (find_task(task.id).judges_turn())
+      distance.turn_rad = std::abs(std::remainder(yaw_of(a.pose1.rotation) - yaw_of(b.pose1.rotation), 2 * pi));
+    return distance;
   }
   Observation draw(const Scene& scene) const override {
     static Renderer& renderer = *new Renderer();

@@ -59,6 +59,8 @@ class Task {
   /// What is painted on the table.
   virtual Ground ground() const { return Ground::plain; }
 
+  /// Whether success depends on the turn from an action's first pose to its second.
+  virtual bool judges_turn() const { return false; }
   /// Carries out what the action means in this task. @pre `action` is executable().
   virtual Motion carry_out(const Scene& scene, const Bodies& bodies, const TwoPoses& action) const;
   /// What does the task in the present state, with objects[object] as the target. `poses` in the order of

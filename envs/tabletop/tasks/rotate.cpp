@@ -38,6 +38,8 @@ class Rotate final : public Task {
   }
   double turn_rad(const Content& content) const override { return content.numbers.at(angle).front() * pi / 180; }
 
+  bool judges_turn() const override { return true; }
+
   // The disc that the target sweeps.
   std::vector<Polygon> room(const Layout&, const SceneObject& target) const override {
     constexpr int corners = 32;

@@ -4,27 +4,19 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <iostream>
-#include <iterator>
-#include <map>
-#include <memory>
 #include <optional>
 #include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/picture.hpp>
+#include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
-#include <lgabench/core/hash.hpp>
-#include <lgabench/core/terminal.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/learning/shown_input.hpp>
-#include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/pictures.hpp>
 
 namespace lgabench::cli {
@@ -122,11 +114,6 @@ std::string targets(const Scene& scene, const Observation& seen) {
   });
 }
 
-struct Replayed {
-  Cell cell;
-  Scenario scenario;
-};
-
 class Pictures {
  public:
   // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "inputs": [...], "targets": path, "oracle": action},
@@ -135,11 +122,8 @@ class Pictures {
   // and what the oracle would do (null without the cell's engine). @throws InputError where the scene is not the one
   // asked for.
   Json draw(const PictureRequest& request) {
-    const Replayed& played = cell(request.cell.string());
-    const Scene scene = test_scene(played.scenario, played.cell.layout, request.arm, played.cell.scene_seed,
-                                   request.index, played.cell.scenes_of_seed());
-    if (hex(scene.hash()) != request.scene) throw InputError("this version samples another scene than the run played");
-
+    const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
+    const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
     const Observation seen = find_environment(played.scenario.environment).draw(scene);
     const Perception perception =
         perception_of(played.scenario, played.scenario.arm(request.arm), played.cell.scenes_of_seed());
@@ -160,7 +144,7 @@ class Pictures {
       const std::optional<std::string> after = after_action(played.scenario, scene, end);
       ends.push_back(!after ? Json() : Json(*after == picture ? "" : *after));
     }
-    Environment* const environment = on(played.cell.engine, played.scenario);
+    Environment* const environment = scenes_.on(played.cell.engine, played.scenario);
     if (environment) environment->reset(scene);
     return {{"picture", picture},
             {"masks", masks},
@@ -178,7 +162,7 @@ class Pictures {
   // None where the engine is not there, or the action is none of this environment's.
   std::optional<std::string> after_action(const Scenario& scenario, const Scene& scene,
                                           const PictureRequest::End& end) {
-    Environment* const environment = on(end.engine, scenario);
+    Environment* const environment = scenes_.on(end.engine, scenario);
     if (!environment) return std::nullopt;
     environment->reset(scene);
     try {
@@ -188,29 +172,7 @@ class Pictures {
     }
   }
 
-  // Null for an engine that is not there.
-  Environment* on(const std::string& engine, const Scenario& scenario) {
-    std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, scenario.space.id}];
-    if (made) return made.get();
-    static const Catalogue catalogue = scan_plugins(plugin_directories());
-    try {
-      made = make_environment(scenario, load_engine(catalogue.find("engine", engine)));
-    } catch (const PluginError&) {
-      return nullptr;
-    }
-    return made.get();
-  }
-
-  const Replayed& cell(const std::string& file) {
-    const auto known = cells_.find(file);
-    if (known != cells_.end()) return *known->second;
-    Cell read = read_cell(read_json(file), file);
-    Scenario scenario = read_scenario(*read.scenario, file + ": /scenario");
-    return *(cells_[file] = std::make_unique<Replayed>(Replayed{std::move(read), std::move(scenario)}));
-  }
-
-  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space
-  std::map<std::string, std::unique_ptr<Replayed>> cells_;                           // by file
+  PlayedScenes scenes_;
 };
 
 }  // namespace
@@ -223,18 +185,9 @@ void add_pictures(CLI::App& app, int&) {
       "\"HASH\",\n"
       "                \"selections\": []}]' | lgabench-worker pictures");
   verb->callback([] {
-    const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
-    const Json requests = parse_json(text, "pictures");
     Pictures pictures;
-    for (const JsonReader& request : JsonReader(requests, "pictures").elements()) {
-      Json line;
-      try {
-        line = pictures.draw(read_picture_request(request));
-      } catch (const Error& e) {
-        line = {{"problem", e.what()}};
-      }
-      to_stdout("{}\n", canonical(line));
-    }
+    answer_requests("pictures",
+                    [&](const JsonReader& request) { return pictures.draw(read_picture_request(request)); });
   });
 }
 

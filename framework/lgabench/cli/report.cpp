@@ -32,12 +32,12 @@ void print_section(const std::vector<report::Claim>& claims, const std::string& 
   to_stdout("{}\n\n{}", title, report::terminal(report::claims_section(claims, report::MethodStyles(), title)));
 }
 
-int print_claims(const fs::path& run, const report::Report& report, const std::string& format) {
+int print_claims(const report::Report& report, const std::string& format) {
   const auto& claims = report.claims;
   if (format == "text")
     print_section(claims, "The paper's claims");
   else if (format == "json")
-    to_stdout("{}", read_file(run / "claims.json"));
+    to_stdout("{}\n", canonical(report::to_json(report.summary.suite, claims)));
   else
     throw InputError("--claims: expected --format text or json");
   return verdict_of(report.run, claims);
@@ -53,6 +53,25 @@ int print_difference(const report::RunResults& results, const std::vector<std::s
   else
     throw InputError("--difference: expected --format text or json");
   return verdict_of(results, claims);
+}
+
+// By pose nothing is written into the run: physics judges what its files say.
+int print_by_pose(const report::Report& report, const report::PoseTolerance& tolerance, const std::string& format) {
+  if (format == "json") {
+    to_stdout("{}\n", canonical(report::to_json(report.summary)));
+  } else if (format == "csv") {
+    to_stdout("{}", report::to_csv(report.summary));
+  } else if (format == "text") {
+    to_stdout(
+        "Success by pose: the action begins within {:g} m and ends within {:g} m of the oracle's, and turns within "
+        "{:g}° "
+        "of it\nwhere the task asks for a turn, whatever physics made of it.\n\n",
+        tolerance.begin_m, tolerance.end_m, tolerance.turn_deg);
+    print_tables(report);
+  } else {
+    throw InputError("--judge pose: expected --format text, json or csv");
+  }
+  return exit_of(report.run, ok);
 }
 
 // Each run's report, and a page over those that are runs.
@@ -82,6 +101,8 @@ void add_report(CLI::App& app, int& exit) {
     std::string format = "text", index;
     bool claims = false;
     std::vector<std::string> difference;
+    std::string judge = "physics";
+    report::PoseTolerance tolerance;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
@@ -102,8 +123,30 @@ void add_report(CLI::App& app, int& exit) {
       ->delimiter(',')
       ->expected(2)
       ->excludes(claims);
+  verb->add_option("--judge", options->judge,
+                   "Who judges an episode: physics, as it was played; or pose, which prints what would be a success if "
+                   "its action had to be the oracle's but for --within, and writes nothing")
+      ->check(one_of("judge", {"physics", "pose"}))
+      ->capture_default_str();
+  CLI::Option* const within_m =
+      verb->add_option_function<std::vector<double>>(
+              "--within",
+              [options](const std::vector<double>& metres) {
+                options->tolerance.begin_m = metres.at(0);
+                options->tolerance.end_m = metres.at(1);
+              },
+              "With --judge pose: metres between the places where the two actions begin, and where they end "
+              "[0.07,0.10]")
+          ->delimiter(',')
+          ->expected(2)
+          ->check(within(0, 10));
   arrange(*verb, "",
-          {{"RUN", "RUN"}, {"--index", "FILE.html"}, {"--format", "text|md|latex|json|csv"}, {"--difference", "A,B"}});
+          {{"RUN", "RUN"},
+           {"--index", "FILE.html"},
+           {"--format", "text|md|latex|json|csv"},
+           {"--difference", "A,B"},
+           {"--judge", "physics|pose"},
+           {"--within", "BEGIN,END"}});
   verb->footer(
       "Writes RUN/report.html (one page that needs no other file), report.md, summary.json, summary.csv,\n"
       "episodes.csv, claims.json, each figure as SVG and PDF (figures/), each table as LaTeX and CSV (tables/).\n"
@@ -111,10 +154,13 @@ void add_report(CLI::App& app, int& exit) {
       "         xdg-open runs/q1-smoke/report.html\n"
       "All runs, and a page that compares them: lgabench report runs/*\n"
       "The paper's claims: lgabench report runs/q2 --claims\n"
-      "Two rows: lgabench report runs/q1 --difference lga,my_method");
-  verb->callback([options, &exit] {
+      "Two rows: lgabench report runs/q1 --difference lga,my_method\n"
+      "Success within 10 cm: lgabench report runs/q1 --judge pose --within 0.10,0.10");
+  verb->callback([options, within_m, &exit] {
+    const bool by_pose = options->judge == "pose";
+    if (!by_pose && within_m->count() > 0) throw InputError("--within: expected --judge pose");
     if (options->runs.size() > 1) {
-      if (options->claims || !options->difference.empty() || options->format != "text")
+      if (options->claims || !options->difference.empty() || options->format != "text" || by_pose)
         throw InputError("report: several runs have a page and a table; give one run for anything else");
       exit = report_all(options->runs, options->index);
       return;
@@ -122,13 +168,17 @@ void add_report(CLI::App& app, int& exit) {
     if (!options->index.empty()) throw InputError("--index: expected several runs");
     const fs::path run = options->runs.front();
     expect_run(run);
-    const report::Report report = report::write_report(run);
+    const report::Report report = by_pose ? report::report_by_pose(run, options->tolerance) : report::write_report(run);
     if (options->claims) {
-      exit = print_claims(run, report, options->format);
+      exit = print_claims(report, options->format);
       return;
     }
     if (!options->difference.empty()) {
       exit = print_difference(report.run, options->difference, options->format);
+      return;
+    }
+    if (by_pose) {
+      exit = print_by_pose(report, options->tolerance, options->format);
       return;
     }
     if (options->format == "text")

@@ -52,6 +52,7 @@ void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
+void add_oracle(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
 void add_check_scenario(CLI::App& app, int& exit);
 

@@ -42,6 +42,12 @@ struct SceneRequest {
 /// them.
 std::string own_stream(std::optional<std::uint64_t> training_seed);
 
+/// How far an action lies from another one that should do the same.
+struct ActionDistance {
+  double begin_m = 0, end_m = 0;  // between the places where they begin, and where they end
+  double turn_rad = 0;            // between their turns, where the task asks for one
+};
+
 /// An observation with the errors that a perception makes, drawn from the stream.
 using Perceive = std::function<Observation(Observation, RandomStream)>;
 
@@ -86,6 +92,12 @@ class EnvironmentType {
   /// How scenes of that kind are perceived, beside the noise that every environment's arms may ask for (scenario.hpp):
   /// null where nothing errs, as it is unless an environment says otherwise.
   virtual Perceive perception(const SceneContent& /*scenes*/) const { return nullptr; }
+  /// Of two actions in that task; none where an action's poses alone do not decide it, as it is unless an environment
+  /// says otherwise.
+  virtual std::optional<ActionDistance> distance(const TaskInfo& /*task*/, const Action& /*one*/,
+                                                 const Action& /*other*/) const {
+    return std::nullopt;
+  }
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene) const = 0;
   /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what

@@ -54,6 +54,12 @@ LiveModel live_of(const JsonReader& reader) {
           static_cast<int>(reader.at("concurrency").integer(1, 64))};
 }
 
+Action action_of(const JsonReader& numbers) {
+  Action action;
+  for (const JsonReader& number : numbers.elements()) action.push_back(number.number());
+  return action;
+}
+
 std::string text(const Json& line, const char* member) {
   return line.contains(member) && line[member].is_string() ? line[member].get<std::string>() : std::string();
 }
@@ -135,6 +141,30 @@ Json to_json(const PictureRequest& request) {
   return json;
 }
 
+Json to_json(const OracleRequest& request) {
+  return {{"cell", request.cell.string()}, {"arm", request.arm}, {"index", request.index}, {"scene", request.scene}};
+}
+
+OracleRequest read_oracle_request(const JsonReader& reader) {
+  return {reader.at("cell").string(), reader.at("arm").string(),
+          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
+          reader.at("scene").string()};
+}
+
+Json to_json(const OracleActions& answer) {
+  return answer.problem.empty() ? Json{{"actions", answer.actions}} : Json{{"problem", answer.problem}};
+}
+
+OracleActions read_oracle_actions(const JsonReader& reader) {
+  OracleActions answer;
+  if (reader.has("problem")) {
+    answer.problem = reader.at("problem").string();
+    return answer;
+  }
+  for (const JsonReader& action : reader.at("actions").elements()) answer.actions.push_back(action_of(action));
+  return answer;
+}
+
 PictureRequest read_picture_request(const JsonReader& reader) {
   PictureRequest request{reader.at("cell").string(), reader.at("arm").string(),
                          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
@@ -143,10 +173,8 @@ PictureRequest read_picture_request(const JsonReader& reader) {
   if (reader.has("inputs"))
     for (const JsonReader& input : reader.at("inputs").elements()) request.inputs.push_back(input.json());
   if (!reader.has("ends")) return request;
-  for (const JsonReader& end : reader.at("ends").elements()) {
-    Action& action = request.ends.emplace_back(PictureRequest::End{end.at("engine").string()}).action;
-    for (const JsonReader& number : end.at("action").elements()) action.push_back(number.number());
-  }
+  for (const JsonReader& end : reader.at("ends").elements())
+    request.ends.push_back({end.at("engine").string(), action_of(end.at("action"))});
   return request;
 }
 

@@ -1,25 +1,18 @@
 #include <lgabench/report/pictures.hpp>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <tuple>
 #include <vector>
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/process.hpp>
 #include <lgabench/core/selection.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/settings.hpp>
+#include <lgabench/report/worker.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -170,29 +163,6 @@ Pictures::Input read_input(const Json& drawn, std::vector<std::string>& seen) {
   return input;
 }
 
-using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-// Standard output of `lgabench-worker pictures`, given `input`. Returns what went wrong, or "".
-std::string run_worker(const std::string& input, std::string& output) {
-  const File in(std::tmpfile(), std::fclose), out(std::tmpfile(), std::fclose);
-  if (!in || !out || std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() || std::fflush(in.get()) != 0)
-    return fmt::format("no temporary file could be written: {}", std::strerror(errno));
-  std::rewind(in.get());
-
-  const std::string program = (program_directory() / "lgabench-worker").string();
-  const int status =
-      wait_for(start_process({{program, "pictures"},
-                              environment_with({}),
-                              {{::fileno(in.get()), STDIN_FILENO}, {::fileno(out.get()), STDOUT_FILENO}}}));
-  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started) return "lgabench-worker could not be started";
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return "lgabench-worker failed";
-
-  std::rewind(out.get());
-  char buffer[1 << 16];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, out.get())) > 0;) output.append(buffer, n);
-  return "";
-}
-
 }  // namespace
 
 std::string mask_key(const std::string& scene, const CellResult& cell, const Json& selection) {
@@ -219,13 +189,11 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
 
   Json asked = Json::array();
   for (const Request& request : requests) asked.push_back(to_json(request.scene));
-  std::string lines;
-  pictures.problem = run_worker(canonical(asked), lines);
-  std::size_t begin = 0;
-  for (const Request& request : requests) {
-    const std::size_t end = std::min(lines.find('\n', begin), lines.size());
-    const Json drawn = json_or_null(lines.substr(begin, end - begin));
-    begin = std::min(end + 1, lines.size());
+  const WorkerAnswers answers = ask_worker("pictures", asked);
+  pictures.problem = answers.problem;
+  for (std::size_t k = 0; k < requests.size(); ++k) {
+    const Request& request = requests[k];
+    const Json& drawn = answers.lines[k];
     if (!drawn.is_object() || !drawn.contains("picture")) {
       if (pictures.problem.empty()) pictures.problem = drawn.is_object() ? drawn.value("problem", "") : "no answer";
       continue;

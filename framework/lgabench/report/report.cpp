@@ -57,6 +57,17 @@ Report write_report(const fs::path& run) {
   return report;
 }
 
+Report report_by_pose(const fs::path& run, const PoseTolerance& tolerance) {
+  Report report;
+  report.run = read_cells(run);
+  judge_by_pose(report.run, tolerance);
+  report.summary = summarize(report.run);
+  report.claims = test_claims(report.run);
+  const PaperValues paper = paper_values(report.summary.suite);
+  report.document = report_document({report.run, report.summary, report.claims, report.agreements, paper, Pictures()});
+  return report;
+}
+
 void write_document(const fs::path& directory, const Document& document, const Json& data) {
   Names figures, tables;
   for (const Chart* chart : document.charts()) {

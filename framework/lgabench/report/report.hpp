@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/pose.hpp>
 #include <lgabench/report/report_document.hpp>
 
 namespace lgabench::report {
@@ -25,6 +26,10 @@ struct Report {
 /// has no pictures.
 /// @throws InputError naming the file and the line for a run that cannot be read or written.
 Report write_report(const fs::path& run);
+
+/// The report that write_report() would write were episodes judged by pose. Writes nothing, and has no pictures.
+/// @throws as read_run() and judge_by_pose().
+Report report_by_pose(const fs::path& run, const PoseTolerance& tolerance);
 
 /// What a page without episodes shows on a click: nothing.
 inline Json no_episodes() { return {{"titles", Json::array()}}; }

@@ -1,0 +1,39 @@
+// lgabench-worker oracle: what the oracle would do in test scenes, as a request on stdin lists them.
+#include <lgabench/cli/played_scenes.hpp>
+#include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/job/job.hpp>
+
+namespace lgabench::cli {
+namespace {
+
+// One for each target: any of them is right.
+OracleActions actions_in(PlayedScenes& scenes, const OracleRequest& request) {
+  const PlayedScenes::Played& played = scenes.cell(request.cell.string());
+  const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
+  Environment* const environment = scenes.on(played.cell.engine, played.scenario);
+  if (!environment) throw InputError("the run's engine is not there: " + played.cell.engine);
+  environment->reset(scene);
+  OracleActions all;
+  for (const SceneObject& object : scene.objects)
+    if (object.role == role::target) all.actions.push_back(environment->expert_action_for(object.instance_id));
+  return all;
+}
+
+}  // namespace
+
+void add_oracle(CLI::App& app, int&) {
+  CLI::App* verb = app.add_subcommand(
+      "oracle", "Tell the oracle's actions in the scenes listed as JSON on stdin, a line of JSON each");
+  verb->group("");  // `lgabench report --judge pose` starts it
+  verb->footer(
+      "Example: echo '[{\"cell\": \"runs/x/cells/KEY/cell.json\", \"arm\": \"test\", \"index\": 0, \"scene\": "
+      "\"HASH\"}]' | lgabench-worker oracle");
+  verb->callback([] {
+    PlayedScenes scenes;
+    answer_requests(
+        "oracle", [&](const JsonReader& request) { return to_json(actions_in(scenes, read_oracle_request(request))); });
+  });
+}
+
+}  // namespace lgabench::cli

@@ -1,0 +1,57 @@
+#include <lgabench/cli/played_scenes.hpp>
+
+#include <iostream>
+#include <iterator>
+#include <utility>
+
+#include <lgabench/cell/environments.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::cli {
+
+const PlayedScenes::Played& PlayedScenes::cell(const std::string& file) {
+  const auto known = cells_.find(file);
+  if (known != cells_.end()) return *known->second;
+  Cell read = read_cell(read_json(file), file);
+  Scenario scenario = read_scenario(*read.scenario, file + ": /scenario");
+  return *(cells_[file] = std::make_unique<Played>(Played{std::move(read), std::move(scenario)}));
+}
+
+Scene PlayedScenes::scene(const Played& played, const std::string& arm, int index, const std::string& hash) {
+  Scene scene =
+      test_scene(played.scenario, played.cell.layout, arm, played.cell.scene_seed, index, played.cell.scenes_of_seed());
+  if (hex(scene.hash()) != hash) throw InputError("this version samples another scene than the run played");
+  return scene;
+}
+
+Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
+  std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, scenario.space.id}];
+  if (made) return made.get();
+  static const Catalogue catalogue = scan_plugins(plugin_directories());
+  try {
+    made = make_environment(scenario, load_engine(catalogue.find("engine", engine)));
+  } catch (const PluginError&) {
+    return nullptr;
+  }
+  return made.get();
+}
+
+void answer_requests(const std::string& verb, const std::function<Json(const JsonReader&)>& answer) {
+  const std::string text((std::istreambuf_iterator<char>(std::cin)), {});
+  const Json requests = parse_json(text, verb);
+  for (const JsonReader& request : JsonReader(requests, verb).elements()) {
+    Json line;
+    try {
+      line = answer(request);
+    } catch (const Error& e) {
+      line = {{"problem", e.what()}};
+    }
+    to_stdout("{}\n", canonical(line));
+  }
+}
+
+}  // namespace lgabench::cli

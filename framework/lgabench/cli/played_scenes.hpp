@@ -1,0 +1,41 @@
+// Scenes that a run has played, made again by name, and the engines to play them on.
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/record/cell.hpp>
+
+namespace lgabench::cli {
+
+/// Reads each cell, and loads each engine, once. One thread.
+class PlayedScenes {
+ public:
+  struct Played {
+    Cell cell;
+    Scenario scenario;
+  };
+
+  /// Of a cell.json, which lives as long as this. @throws InputError
+  const Played& cell(const std::string& file);
+
+  /// @throws InputError where this version samples another scene than that hash's.
+  static Scene scene(const Played& played, const std::string& arm, int index, const std::string& hash);
+
+  /// Null for an engine that is not there.
+  Environment* on(const std::string& engine, const Scenario& scenario);
+
+ private:
+  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space
+  std::map<std::string, std::unique_ptr<Played>> cells_;                             // by file
+};
+
+/// Answers each of the JSON list on standard input with a line of JSON: {"problem": why} where answering throws an
+/// Error. `verb` is named in errors. @throws InputError where there is no such list.
+void answer_requests(const std::string& verb, const std::function<Json(const JsonReader&)>& answer);
+
+}  // namespace lgabench::cli
