@@ -1,15 +1,16 @@
 """The Dockerfile: built and run where a container engine answers (with LGABENCH_FULL), its lines checked elsewhere.
 
-Usage: docker_test.py SOURCE_DIR
+Usage: docker_test.py SOURCE_DIR BUILD_DIR
 """
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import unittest
 
-SOURCE = pathlib.Path(sys.argv[1])
+SOURCE, BUILD = map(pathlib.Path, sys.argv[1:])
 
 
 def engine():
@@ -24,19 +25,41 @@ class Dockerfile(unittest.TestCase):
 
     def test_lines(self):
         words = {line.split()[0] for line in self.lines}
-        self.assertEqual(self.lines[0], "FROM debian:12")
-        self.assertLessEqual(words, {"FROM", "COPY", "RUN", "ENV", "WORKDIR", "ENTRYPOINT", "CMD"})
+        self.assertEqual([line for line in self.lines if line.startswith("FROM")], ["FROM debian:12 AS build", "FROM debian:12"])
+        self.assertLessEqual(words, {"FROM", "ARG", "COPY", "RUN", "ENV", "WORKDIR", "USER", "ENTRYPOINT", "CMD"})
+        self.assertIn("USER lgabench", self.lines)
         for line in self.lines:
             if line.startswith("RUN "):
                 subprocess.run(["sh", "-n", "-c", line[4:]], check=True)
-                for word in line.split():
+                for word in line.split()[1:]:
                     self.assertTrue(not word.startswith("./") or os.access(SOURCE / word, os.X_OK), word)
         for name in (SOURCE / ".dockerignore").read_text().split():
             self.assertFalse(any(f"{name}/" in line for line in self.lines if line.startswith("COPY")))
 
+    def test_the_image_has_the_libraries_that_are_loaded(self):
+        """Those that programs, libraries and plugins of the build name come from packages of its second stage, or of every system."""
+        [install] = [line for line in self.lines if "apt-get install" in line]
+        listed = set(install.split())
+        found = {line.split()[0]: line.split("=> ")[1] for line in
+                 subprocess.run(["/sbin/ldconfig", "-p"], capture_output=True, text=True, check=True).stdout.splitlines() if "x86-64" in line}
+        needed = set()
+        for file in [*BUILD.glob("bin/lgabench*"), *BUILD.glob("lib/*.so"), *BUILD.glob("lib/lgabench/plugins/*.so")]:
+            said = subprocess.run(["readelf", "-d", file], capture_output=True, text=True).stdout
+            needed.update(re.findall(r"NEEDED.*\[(.*)\]", said))
+        self.assertIn("libfmt.so.9", needed)
+        needed &= set(found)
+        paths = {str(path): library for library in needed for file in [pathlib.Path(found[library])]
+                 for path in (file, file.resolve(), pathlib.Path("/usr") / file.relative_to("/"))}
+        said = subprocess.run(["dpkg", "-S", *paths], capture_output=True, text=True).stdout
+        packages = {paths[path]: package.split(":")[0] for package, path in (line.split(": ") for line in said.splitlines())}
+        self.assertEqual(set(packages), needed)
+        self.assertLessEqual(set(packages.values()), listed | {"libc6", "libgcc-s1", "libstdc++6"})
+
     @unittest.skipUnless(os.environ.get("LGABENCH_FULL") and engine(), "no container engine, or not --full")
     def test_image(self):
-        subprocess.run([engine(), "build", "-t", "lgabench-test", SOURCE], check=True)
+        subprocess.run([engine(), "build", "--build-arg", "COMMIT=0123456789ab", "-t", "lgabench-test", SOURCE], check=True)
+        said = subprocess.run([engine(), "run", "--rm", "lgabench-test", "--version"], check=True, capture_output=True, text=True)
+        self.assertIn("0123456789ab", said.stdout)
         done = subprocess.run([engine(), "run", "--rm", "lgabench-test", "run", "q1", "--preset", "smoke"], check=True,
                               capture_output=True, text=True)
         self.assertIn("lga", done.stdout)

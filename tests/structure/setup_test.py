@@ -14,7 +14,7 @@ SOURCE = pathlib.Path(sys.argv[1])
 
 
 class Setup(unittest.TestCase):
-    def said(self, machine, *programs):
+    def said(self, machine, *programs, release="VERSION_CODENAME=bookworm\n"):
         """On a machine that has these programs alone, and does nothing with them."""
         with tempfile.TemporaryDirectory() as directory:
             for program in programs:
@@ -23,8 +23,10 @@ class Setup(unittest.TestCase):
             uname = pathlib.Path(directory) / "uname"
             uname.write_text(f"#!/bin/sh\necho {machine}\n")
             uname.chmod(0o755)
+            system = pathlib.Path(directory) / "os-release"
+            system.write_text(release)
             done = subprocess.run([shutil.which("bash"), SOURCE / "cmake/setup"], capture_output=True, text=True,
-                                  env={"PATH": directory})
+                                  env={"PATH": directory, "OS_RELEASE": str(system)})
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
         self.assertIn("docker build --platform linux/amd64", done.stderr)
         return done.stderr
@@ -33,7 +35,15 @@ class Setup(unittest.TestCase):
         self.assertIn("expected an x86-64 processor, for which MuJoCo's wheel is, got aarch64", self.said("aarch64", "apt-get"))
 
     def test_another_system(self):
-        self.assertIn("expected Debian 12 with apt-get", self.said("x86_64"))
+        for release, name in (('PRETTY_NAME="Debian GNU/Linux 13 (trixie)"\nVERSION_CODENAME=trixie\n', "Debian GNU/Linux 13 (trixie)"),
+                              ('PRETTY_NAME="Ubuntu 24.04 LTS"\nVERSION_CODENAME=noble\nID_LIKE=debian\n', "Ubuntu 24.04 LTS"),
+                              ('PRETTY_NAME="Fedora Linux 41"\nID=fedora\n', "Fedora Linux 41")):
+            self.assertIn(f"expected Debian 12, whose libraries it builds with, got {name}; on",
+                          self.said("x86_64", "apt-get", release=release))
+
+    def test_a_system_of_the_same_libraries(self):
+        release = 'PRETTY_NAME="LMDE 6 (faye)"\nVERSION_CODENAME=faye\nDEBIAN_CODENAME=bookworm\n'
+        self.assertIn("expected apt-get; on", self.said("x86_64", release=release))
 
 
 if __name__ == "__main__":
