@@ -162,7 +162,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
   expect_method(entry.identity.row, catalogue);
   const std::vector<std::size_t> chosen =
       options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
-  if (options.fresh) installed.grid.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
+  if (options.fresh) installed.design.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
   const std::vector<Cell> all =
       cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
   std::vector<Cell> cells;
@@ -182,7 +182,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
                {"machine", run.machine},
                {"confinement", run.confinement}});
   if (options.fresh)
-    line.update({{"scene_seed", installed.grid.scene_seed},
+    line.update({{"scene_seed", installed.design.scene_seed},
                  {"demonstrations", entry.cells[chosen.front()].place.demonstrations},
                  {"training_seed", entry.cells[chosen.front()].place.seed}});
   return line;
