@@ -239,7 +239,7 @@ class Forgeries(Case):
                               ({"flips": 99}, "/passed: expected false, by its counts"),
                               ({"machine": {"processor": "AMD EPYC"}}, "/passed: expected false, by its counts"),
                               ({"flips": 8, "only_recorded": 8}, "/passed: expected false, by its counts"),
-                              ({"episodes": 1}, "/episodes: expected"), ({"when": "now"}, "/when: expected a date")):
+                              ({"episodes": 1}, "/episodes: expected"), ({"by": "B" * 201}, "/by: expected at most 200 bytes"), ({"when": "now"}, "/when: expected a date")):
             with self.subTest(says, **members):
                 file = self.rival / "verifications.jsonl"
                 text = file.read_text()

@@ -155,6 +155,42 @@ class StudyServer(StudyCase):
         self.assertEqual(self.server.process.returncode, 0)
         self.assertIn("1 withdrew", self.call("study", "report", "data").stdout)
 
+    def test_slow_clients_keep_nobody_out(self):
+        """A byte every two seconds begins each timeout of reading anew; a whole request has ten seconds."""
+        slow = []
+        for _ in range(64):
+            slow.append(socket.create_connection(("127.0.0.1", self.server.port)))
+            self.addCleanup(slow[-1].close)
+        started, ended = time.monotonic(), None
+        while time.monotonic() - started < 30 and ended is None:
+            for one in slow:
+                try:
+                    one.send(b"G")
+                except OSError:
+                    ended = time.monotonic() - started
+            if 3 < time.monotonic() - started < 6:
+                begun = time.monotonic()
+                self.assertEqual(self.server.ask("GET", "/")[0], 200)
+                self.assertLess(time.monotonic() - begun, 10)
+            time.sleep(2)
+        self.assertIsNotNone(ended, "a connection lasts for ever")
+        self.assertEqual(self.server.ask("GET", "/")[0], 200)
+
+    def test_who_may_begin(self):
+        server = Server(self, "invited", "--invitation", "abc", "--begins", "3")
+        about = server.ask("GET", "/study.json")[2]
+        begin = lambda key, **more: server.ask("POST", "/begin", {"key": key * 32, "consent": about["consent_sha256"], **more})
+        for more in {}, {"invitation": "abd"}, {"invitation": 7}:
+            status, _, answer = begin("0", **more)
+            self.assertEqual((status, answer["error"]), (400, "this study is by invitation: open the link that you were sent"))
+        people = [begin(key, invitation="abc") for key in "123"]
+        self.assertEqual([status for status, *_ in people], [200, 200, 200])
+        self.assertEqual(begin("4", invitation="abc")[0], 429)
+        status, _, answer = begin("1", invitation="abc")  # the answer was lost
+        self.assertEqual((status, answer), (200, people[0][2]))
+        self.assertEqual(len(server.people()), 3)
+        self.assertIn("expected letters and digits", self.call("study", "serve", "study", "--out", "x", "--invitation", "a&b", expect=2).stderr)
+
     def test_two_at_once(self):
         people = [threading.Thread(target=lambda: Person(self.server).take_part()) for _ in range(4)]
         for one in people:

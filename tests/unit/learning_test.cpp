@@ -709,8 +709,12 @@ TEST(CloningOptions, AreThoseOfTheDescriptors) {
     for (const Json& value : option.value("values", Json::array())) {
       Json options = usual;
       options[name] = value;
-      EXPECT_NO_THROW(read_cloning_options(options), read_picture_option(options), read_network_options(options))
-          << name << " " << value;
+      EXPECT_NO_THROW({
+        read_cloning_options(options);
+        read_picture_option(options);
+        read_network_options(options);
+      }) << name
+         << " " << value;
     }
   const CloningOptions all = read_cloning_options(usual), none;
   EXPECT_EQ(all.instances, none.instances);

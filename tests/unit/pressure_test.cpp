@@ -51,12 +51,12 @@ TEST(NearMisses, GiveTheTargetAwayToNobodyWhoDoesNotHearTheCommand) {
   const Suite suite = load_suite("clutter");
   for (const auto& [arm, count] : {std::pair("near_1", 1), {"near_2", 2}, {"near_4", 4}, {"near_6", 6}}) {
     double share = 0;
-    for (const std::string& id : suite.grid.scenarios) {
+    for (const std::string& id : suite.design.scenarios) {
       const Scenario scenario = suite_scenario(suite, id, Truth::released);
       double own = 0;
       for (int i = 0; i < scenes; ++i) own += share_of_target(scene_of(scenario, arm, i)) / scenes;
       EXPECT_NEAR(own, 1. / (count + 1), .12) << id << ", " << arm;
-      share += own / static_cast<double>(suite.grid.scenarios.size());
+      share += own / static_cast<double>(suite.design.scenarios.size());
     }
     EXPECT_NEAR(share, 1. / (count + 1), .05) << arm;
   }
@@ -64,7 +64,7 @@ TEST(NearMisses, GiveTheTargetAwayToNobodyWhoDoesNotHearTheCommand) {
 
 TEST(NearMisses, ShareTypeOrTextureWithTheTargetAndAreNone) {
   const Suite suite = load_suite("clutter");
-  for (const std::string& id : suite.grid.scenarios) {
+  for (const std::string& id : suite.design.scenarios) {
     const Scenario scenario = suite_scenario(suite, id, Truth::released);
     const FeatureSet& meant = scenario.commands[0].truth.target;
     const bool both = meant.object_types.size() < scenario.space.object_types.size() &&

@@ -74,7 +74,7 @@ class StudyResultsTest : public testing::Test, public TemporaryDirectory {
     const std::string id = study.begin(key, sha256_file(path / "consent.txt"), false);
     Page page;
     const auto post = [&](const std::string& kind, const Json& more = Json::object()) {
-      return study.post(id, page.event(kind, more)).value();
+      return study.post(id, page.event(kind, more), static_cast<std::int64_t>(page.ms)).value();
     };
     post("opened"), post("familiarised");
     Json state = post("example_seen");

@@ -175,7 +175,7 @@ TEST_F(StudySession, ActiveTimeLacksWhatWasAwayOrIdleEachOnce) {
   post("start");
   page.ms = 10000, post("shown");
   const auto then = [this](double s, const char* kind, const Json& more = Json::object()) {
-    page.ms = 10000 + 1000 * s;
+    page.ms = 10000 + 1000 * s, at = static_cast<std::int64_t>(1000 * s);
     post(kind, more);
   };
   then(5, "blur"), then(15, "focus");                         // 10 s
@@ -185,6 +185,22 @@ TEST_F(StudySession, ActiveTimeLacksWhatWasAwayOrIdleEachOnce) {
   then(100, "submit", submitted({"heart"}, {"red"}));
   EXPECT_DOUBLE_EQ(session->all()[2].raw_s, 100);
   EXPECT_DOUBLE_EQ(session->all()[2].active_s, 100 - 10 - 40 - 30);
+}
+
+TEST_F(StudySession, APageTellsNoTimeThatHasNotPassed) {
+  begin("paper");
+  familiarise(), answer(1), answer(1);
+  post("start"), post("shown");
+  const double shown = page.ms;
+  at += 5000;
+  for (const double ms : {shown + 66000., 1e300}) {
+    page.ms = ms;
+    EXPECT_SAYS(refused(page.event("submit", submitted({"heart"}, {"red"}))),
+                "/page_ms: expected a time that has passed");
+  }
+  page.ms = shown + 64000;  // within a minute of the server's clock: only counted
+  post("submit", submitted({"heart"}, {"red"}));
+  EXPECT_EQ(session->all()[2].state, Trial::finished);
 }
 
 TEST_F(StudySession, EditsOfTheProposalGiveWhatIsSubmitted) {

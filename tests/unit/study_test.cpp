@@ -1,6 +1,10 @@
 // A study's directory: assignment, kills between two files, withdrawal, participants' files.
 #include <lgabench/study/study.hpp>
 
+#include <fmt/format.h>
+
+#include <cctype>
+
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/study/report.hpp>
@@ -11,6 +15,8 @@
 
 namespace lgabench::study {
 namespace {
+
+std::string all(const std::vector<std::string>& lines) { return fmt::format("{}", fmt::join(lines, "\n")); }
 
 class StudyDirectory : public testing::Test, public TemporaryDirectory {
  protected:
@@ -162,6 +168,54 @@ TEST_F(StudyDirectory, WhoWithdrawsLeavesASlotAndNothingElse) {
   EXPECT_EQ(record.withdrawn, 1);
   ASSERT_EQ(record.people.size(), 2u);
   EXPECT_EQ(record.people[1].slot(), 2) << "the slot is not given again";
+}
+
+TEST_F(StudyDirectory, WhoseFileIsDamagedIsLeftOutAlone) {
+  open();
+  std::vector<std::string> ids;
+  for (int i = 0; i < 3; ++i) take_part(ids.emplace_back(agree()));
+  study.reset();
+  const fs::path damaged = data / "people" / (ids[0] + ".events"), linked = data / "people" / (ids[1] + ".events");
+  std::string bytes = read_file(damaged);
+  bytes[bytes.size() / 2] ^= 1;
+  write_file(damaged, bytes);
+  fs::rename(linked, path / "elsewhere");
+  fs::create_symlink(path / "elsewhere", linked);
+  open();
+  ASSERT_EQ(study->damaged().size(), 2u);
+  Page page{"page2"};
+  EXPECT_FALSE(study->post(ids[0], page.event("opened")));
+  EXPECT_FALSE(study->post(ids[1], page.event("opened")));
+  EXPECT_TRUE(study->post(ids[2], page.event("opened")));
+  EXPECT_EQ(study->slots(), 3) << "no place is given twice";
+  study.reset();
+  const Record record = read_study(data);
+  EXPECT_EQ(record.people.size(), 1u);
+  EXPECT_EQ(record.damaged.size(), 2u);
+  EXPECT_SAYS(all(record.damaged), "the file was changed or damaged");
+  write_report(data);
+  EXPECT_SAYS(read_file(data / "report.md"), "2 people are left out: the file cannot be read");
+}
+
+TEST_F(StudyDirectory, AHugeTimeIsNotPrintedDigitByDigit) {
+  open("paper", Kind::rehearsal);
+  for (const char* key : {"a", "b"}) {
+    const std::string id = study->begin(key, sha256("I agree.\n"), true);
+    Page page;
+    post(id, page, "opened"), post(id, page, "familiarised");
+    Json state = post(id, page, "example_seen");
+
+    while (state.at("step") == "trial") {
+      post(id, page, "start"), post(id, page, "shown");
+      page.ms += 1e300;  // of a simulated person, whose clock is no clock
+      state = post(id, page, "submit", submitted({"heart"}, {"red"}));
+    }
+  }
+  study.reset();
+  write_report(data);
+  std::size_t digits = 0, most = 0;
+  for (const char c : read_file(data / "report.md")) most = std::max(most, digits = std::isdigit(c) ? digits + 1 : 0);
+  EXPECT_LT(most, 20u);
 }
 
 TEST_F(StudyDirectory, AKillInTheMiddleOfAWithdrawalIsCarriedOutLater) {

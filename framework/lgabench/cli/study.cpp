@@ -23,12 +23,18 @@ namespace lgabench::cli {
 namespace {
 
 struct StudyArguments {
-  std::string what, host, protocol = "paper";
+  std::string what, host, invitation, protocol = "paper";
   fs::path path, out;
   std::string bind = "127.0.0.1";
-  int port = 8000, people = 1;
+  int port = 8000, people = 1, begins = 30;
   bool pin = false, rehearsal = false, behind_tls_proxy = false;
 };
+
+// What may stand in an address as it is.
+bool is_word(const std::string& text) {
+  return !text.empty() &&
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789") == text.npos;
+}
 
 int new_study(const StudyArguments& a) {
   const fs::path templates = data_directory() / "protocols";
@@ -103,9 +109,11 @@ int serve(const StudyArguments& a) {
     throw InputError("--behind-tls-proxy: expected --host NAME too, the name that people open");
   ::umask(077);
   study::Study study(a.out, std::move(protocol), file, kind);
-  study::Server server(study, study::load_site(), {a.bind, a.port, a.host});
-  to_stdout("{} at http://{}:{}/ (Ctrl-C ends it; it goes on when started again)\n",
-            a.rehearsal ? "a rehearsal" : "the study", a.bind, server.port());
+  for (const std::string& line : study.damaged()) to_stderr("LEFT OUT: {}\n", one_line(line));
+  study::Server server(study, study::load_site(), {a.bind, a.port, a.host, a.invitation, a.begins});
+  to_stdout("{} at http://{}:{}/{} (Ctrl-C ends it; it goes on when started again)\n",
+            a.rehearsal ? "a rehearsal" : "the study", a.bind, server.port(),
+            a.invitation.empty() ? "" : "?invitation=" + a.invitation);
   flush_stdout();
   serve_until_stopped(server);
   return ok;
@@ -172,6 +180,14 @@ void add_study(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: a proxy with TLS is in front of this server");
   verb->add_option("--host", a->host, "serve: the name (and port) by which that proxy is reached");
+  verb->add_option("--invitation", a->invitation,
+                   "serve: letters and digits of your own; only who opens the link with them can begin")
+      ->check([](const std::string& text) {
+        return is_word(text) ? std::string() : "expected letters and digits, got \"" + text + "\"";
+      });
+  verb->add_option("--begins", a->begins, "serve: at most so many people begin in a minute")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   verb->add_option("--people", a->people, "rehearse: how many simulated people take part")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
@@ -179,9 +195,14 @@ void add_study(CLI::App& app, int& exit) {
                  "serve: try it, without a pin; the answers are marked and no tool takes them for people's");
   arrange(*verb, "", {{"what", "new|check|serve|rehearse|report"}, {"path", "DIR"}, {"--out", "DIR"}});
   arrange(*verb, "The protocol", {{"--protocol", "paper|crossover"}, {"--pin", ""}});
-  arrange(
-      *verb, "The server",
-      {{"--bind", "ADDRESS"}, {"--port", "N"}, {"--behind-tls-proxy", ""}, {"--host", "NAME"}, {"--rehearsal", ""}});
+  arrange(*verb, "The server",
+          {{"--bind", "ADDRESS"},
+           {"--port", "N"},
+           {"--behind-tls-proxy", ""},
+           {"--host", "NAME"},
+           {"--invitation", "CODE"},
+           {"--begins", "N"},
+           {"--rehearsal", ""}});
   arrange(*verb, "Simulated people", {{"--people", "N"}});
   verb->footer(
       "docs/study.md says how, from nothing to a first participant.\n"

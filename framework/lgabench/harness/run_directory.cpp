@@ -22,7 +22,7 @@ void make_directory(const fs::path& path) {
   if (error) throw InputError(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
 }
 
-void remove_tree(const fs::path& path) {
+void remove_or_throw(const fs::path& path) {
   std::error_code error;
   fs::remove_all(path, error);
   if (error) throw InputError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
@@ -92,7 +92,7 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
     if (was_there && !is_run(path))
       throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
     if (was_there && existing == Existing::fresh) {
-      for (const char* name : run_entries) remove_tree(path / name);
+      for (const char* name : run_entries) remove_or_throw(path / name);
     } else if (was_there) {
       there = read_run_record(path);
       if (!same_cells(there.version, run.version))
@@ -111,7 +111,7 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
       write_run_record(path, run);
     make_directory(path / "cells");
     for (const auto& entry : fs::directory_iterator(path / "cells"))
-      if (entry.path().filename().string()[0] == '.') remove_tree(entry.path());
+      if (entry.path().filename().string()[0] == '.') remove_or_throw(entry.path());
   } catch (...) {
     ::close(lock_);
     throw;
@@ -126,7 +126,7 @@ fs::path RunDirectory::hidden(const std::string& key, const char* what) const {
 
 fs::path RunDirectory::scratch(const std::string& key) const {
   const fs::path directory = hidden(key, "");
-  remove_tree(directory);
+  remove_or_throw(directory);
   make_directory(directory);
   return directory;
 }
@@ -140,8 +140,8 @@ void RunDirectory::keep(const std::string& key) const {
     if (!error) fs::rename(made, there, error);
   }
   if (error) throw InputError(fmt::format("{}: cannot be written: {}", there.string(), error.message()));
-  remove_tree(old);
-  remove_tree(made);
+  remove_or_throw(old);
+  remove_or_throw(made);
 }
 
 void RunDirectory::amend(const std::function<void(RunRecord&)>& change) const {

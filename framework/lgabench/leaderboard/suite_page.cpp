@@ -281,7 +281,7 @@ std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board)
   for (std::size_t i = 0; i < table.waiting.size(); ++i) {
     const Standing& s = table.waiting[i];
     grid.rows.push_back({{},
-                         {Cell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
+                         {TableCell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
                           Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
                           Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
                          false});

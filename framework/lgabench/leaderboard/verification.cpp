@@ -14,6 +14,8 @@
 namespace lgabench::leaderboard {
 namespace {
 
+constexpr std::size_t most_words = 200;  // of a text that a page may show
+
 void expect_date(const JsonReader& reader) {
   const std::string text = reader.string();
   std::tm time{};
@@ -121,7 +123,8 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
   if (kind != "replay" && kind != "fresh") line.at("kind").fail("replay or fresh");
   if (nonce.size() != 32 || nonce.find_first_not_of("0123456789abcdef") != std::string::npos)
     line.at("nonce").fail("32 hexadecimal digits");
-  for (const char* text : {"by", "program", "confinement"}) line.at(text).string();
+  for (const char* text : {"by", "program", "confinement"})
+    if (line.at(text).string().size() > most_words) line.at(text).fail(fmt::format("at most {} bytes", most_words));
   expect_date(line.at("when"));
   line.at("machine").at("processor").string();
   if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");

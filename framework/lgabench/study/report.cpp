@@ -8,6 +8,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/rounding.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/writers.hpp>
@@ -20,18 +21,22 @@ using namespace lgabench::report;
 constexpr const char* simulated_words = "rehearsal, not people";
 
 std::string name(Condition condition) { return display_name(to_string(condition)); }
-std::string seconds(double s) { return fixed(s, 1); }
+constexpr double readable = 1e6;  // beyond it a number of seconds is an error, and not to be printed digit by digit
+std::string seconds(double s) { return std::abs(s) < readable ? fixed(s, 1) : fmt::format("{:.3g}", s); }
 std::string seconds(const std::optional<double>& s) { return s ? seconds(*s) : "–"; }
 std::string p_cell(double p) { return p < .001 ? "< 0.001" : fixed(p, 3); }
 std::string p_words(double p) { return (p < .001 ? "p " : "p = ") + p_cell(p); }
+std::string signed_seconds(double s) { return std::abs(s) < readable ? signed_text(s, 1) : fmt::format("{:+.3g}", s); }
 std::string change_words(const Change& c, const char* unit) {
-  return fmt::format("{}{} [{}, {}]", signed_text(c.difference, 1), unit, signed_text(c.interval.low, 1),
-                     signed_text(c.interval.high, 1));
+  return fmt::format("{}{} [{}, {}]", signed_seconds(c.difference), unit, signed_seconds(c.interval.low),
+                     signed_seconds(c.interval.high));
 }
 // An effect on log seconds as a ratio of seconds.
 std::string ratio_words(const Change& c) {
-  return fmt::format("{} [{}, {}]", fixed(std::exp(c.difference)), fixed(std::exp(c.interval.low)),
-                     fixed(std::exp(c.interval.high)));
+  const auto words = [](double log) {
+    return log < std::log(readable) ? fixed(std::exp(log)) : fmt::format("{:.3g}", std::exp(log));
+  };
+  return fmt::format("{} [{}, {}]", words(c.difference), words(c.interval.low), words(c.interval.high));
 }
 std::string share(const std::optional<double>& value) { return value ? fixed(*value) : "–"; }
 
@@ -135,7 +140,7 @@ Section seconds_section(const StudyResults& results) {
                      idle_after_s, change_words(*results.active, " s"), p_words(results.active->p))});
   for (const Condition condition : conditions)
     if (const auto& first = results.by_first[index(condition)])
-      tests.items.push_back({fmt::format("Who began with {}: {} s{}", name(condition), signed_text(first->mean, 1),
+      tests.items.push_back({fmt::format("Who began with {}: {} s{}", name(condition), signed_seconds(first->mean),
                                          first->sd ? fmt::format(" (sd {})", seconds(first->sd)) : "")});
   section.add(everywhere, std::move(tests));
   section.add(reading, Charts{{seconds_chart(results)}});
@@ -200,6 +205,8 @@ Section left_out_section(const StudyResults& results) {
   const auto add = [&list](const std::string& text) { list.items.push_back({text}); };
   add(fmt::format("People: {} consented and stayed, {} withdrew (nothing of them is left), {} planned; {} used",
                   results.people.size(), results.record->withdrawn, results.record->protocol->planned, results.used()));
+  if (const std::size_t damaged = results.record->damaged.size(); damaged > 0)
+    add(fmt::format("{} {} left out: the file cannot be read", damaged, damaged == 1 ? "person is" : "people are"));
   for (const PersonResult& person : results.people)
     if (!person.excluded.empty())
       add(fmt::format("{} is left out: {}", pseudonym(person.session->slot()), person.excluded));
@@ -335,7 +342,9 @@ std::string trials_csv(const StudyResults& results) {
       Selection selection = trial.selection;
       selection.provenance = Provenance::human;
       const bool done = trial.state == Trial::finished;
-      const auto number = [done](double value) { return done ? fmt::format("{:.3f}", value) : ""; };
+      const auto number = [done](double value) {
+        return !done ? "" : std::abs(value) < readable ? fmt::format("{:.3f}", value) : fmt::format("{:.9g}", value);
+      };
       text += csv_line({pseudonym(person.session->slot()), person.excluded, to_string(trial.condition),
                         std::to_string(trial.period + 1), trial.set < 0 ? "" : std::to_string(trial.set + 1),
                         trial.practice ? "1" : "0", trial.item->scenario, trial.item->asked_as,
@@ -349,6 +358,7 @@ std::string trials_csv(const StudyResults& results) {
 
 Document write_report(const fs::path& directory) {
   const Record record = read_study(directory);
+  for (const std::string& line : record.damaged) to_stderr("LEFT OUT: {}\n", one_line(line));
   const StudyResults results = results_of(record);
   Document document = document_of(results);
   write_file(directory / "trials.csv", trials_csv(results));

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 #include <httplib.h>
 
+#include <chrono>
+#include <deque>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/study/deadline.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 namespace lgabench::study {
@@ -16,7 +20,8 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t largest_body = 256 << 10, most_events = 50, threads = 32;
+constexpr std::size_t largest_body = 256 << 10, most_events = 50, threads = 128;
+constexpr double longest_request_s = 10;
 constexpr const char* json_type = "application/json";
 
 // Nothing from elsewhere, nothing kept, no address of a session told to anybody.
@@ -44,7 +49,7 @@ void guarded(Response& response, const std::function<std::optional<Json>()>& ans
     else
       reply(response, 404, {{"error", "not here"}});
   } catch (const Refused& e) {
-    reply(response, e.why() == Refused::conflict ? 409 : 400, {{"error", e.what()}});
+    reply(response, e.why() == Refused::conflict ? 409 : e.why() == Refused::later ? 429 : 400, {{"error", e.what()}});
   } catch (const std::exception& e) {
     to_stderr("study: {}\n", one_line(e.what()));
     reply(response, 507, {{"error", "it cannot be saved now"}});
@@ -74,11 +79,14 @@ struct Server::Impl {
   std::vector<std::string> hosts;  // what a Host header may say
   httplib::Server http;
   int port = 0;
+  std::mutex beginning;
+  std::deque<std::chrono::steady_clock::time_point> begun;  // of the last minute
 
   Impl(Study& of, Site made_of, Listening at) : study(of), site(std::move(made_of)), where(std::move(at)) {
     http.new_task_queue = [] { return new httplib::ThreadPool(threads); };
     http.set_payload_max_length(largest_body);
     http.set_read_timeout(10);
+    http.set_keep_alive_max_count(1);  // so that a connection's deadline is a request's
     http.set_tcp_nodelay(true);
     http.set_default_headers(guards);
     http.set_pre_routing_handler(
@@ -141,14 +149,26 @@ struct Server::Impl {
     });
   }
 
+  // Each who begins takes a place of a balanced plan: whoever is not invited, or no person, must not.
+  std::string begin(const Json& body) {
+    const std::string key = text_of(body, "key"), consent = text_of(body, "consent");
+    if (!is_id(key)) throw Refused(Refused::bad, "body: expected a key of 32 hexadecimal digits");
+    if (!where.invitation.empty() && body.value("invitation", Json()) != where.invitation)
+      throw Refused(Refused::bad, "this study is by invitation: open the link that you were sent");
+    const std::lock_guard lock(beginning);
+    const auto now = std::chrono::steady_clock::now();
+    while (!begun.empty() && now - begun.front() > std::chrono::minutes(1)) begun.pop_front();
+    const bool is_new = !study.knows(key);
+    if (is_new && where.begins_a_minute > 0 && begun.size() >= static_cast<std::size_t>(where.begins_a_minute))
+      throw Refused(Refused::later, "many people begin at this moment: try again in a minute");
+    std::string id = study.begin(key, consent, body.value("simulated", Json()) == true);
+    if (is_new) begun.push_back(now);
+    return id;
+  }
+
   void sessions() {
     http.Post("/begin", [this](const Request& request, Response& response) {
-      guarded(response, [&]() -> std::optional<Json> {
-        const Json body = body_of(request);
-        const std::string key = text_of(body, "key");
-        if (!is_id(key)) throw Refused(Refused::bad, "body: expected a key of 32 hexadecimal digits");
-        return Json{{"id", study.begin(key, text_of(body, "consent"), body.value("simulated", Json()) == true)}};
-      });
+      guarded(response, [&]() -> std::optional<Json> { return Json{{"id", begin(body_of(request))}}; });
     });
     http.Post("/withdraw", [this](const Request& request, Response& response) {
       guarded(response, [&]() -> std::optional<Json> {
@@ -178,7 +198,10 @@ Server::Server(Study& study, Site site, Listening where)
     : impl_(std::make_unique<Impl>(study, std::move(site), std::move(where))) {}
 Server::~Server() = default;
 int Server::port() const { return impl_->port; }
-void Server::run() { impl_->http.listen_after_bind(); }
+void Server::run() {
+  const ConnectionDeadline deadline(impl_->port, longest_request_s);  // a thread: with the caller's mask of signals
+  impl_->http.listen_after_bind();
+}
 void Server::stop() { impl_->http.stop(); }
 
 }  // namespace lgabench::study

@@ -23,8 +23,10 @@ Site load_site();
 
 struct Listening {
   std::string address = "127.0.0.1";
-  int port = 0;      // 0: any that is free
-  std::string host;  // the name that a proxy passes on; "": only this machine's own names are answered to
+  int port = 0;              // 0: any that is free
+  std::string host;          // the name that a proxy passes on; "": only this machine's own names are answered to
+  std::string invitation{};  // what whoever begins must bring along (/?invitation=...); "": nothing
+  int begins_a_minute = 0;   // at most so many people; 0: any number, as of simulated ones
 };
 
 class Server {

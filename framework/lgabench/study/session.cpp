@@ -13,6 +13,7 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::size_t longest_text = 4000;
+constexpr double clocks_apart_s = 60;  // more than the server's seconds no trial took
 const std::vector<std::string> scales{"mental", "physical", "temporal", "performance", "effort", "frustration"};
 
 Json names_of(const FeatureSet& set) { return {{"object_types", set.object_types}, {"textures", set.textures}}; }
@@ -97,7 +98,7 @@ bool Session::post(const Json& event, std::int64_t now_ms) {
     if (keys_.count(reader.at("key").string()) != 0) return turns_the_page(event);
     if (reader.at("kind").string() != "opened" && reader.at("page").string() != page_)
       throw Refused(Refused::conflict, "this session goes on in another page");
-    check(reader);
+    check(reader, now_ms);
   } catch (const InputError& e) {
     throw Refused(Refused::bad, e.what());
   }
@@ -108,7 +109,7 @@ bool Session::post(const Json& event, std::int64_t now_ms) {
   return turns_the_page(event);
 }
 
-void Session::check(const JsonReader& event) const {
+void Session::check(const JsonReader& event, std::int64_t now_ms) const {
   const double at = event.at("page_ms").number();
   if (!std::isfinite(at) || at < 0) event.at("page_ms").fail("milliseconds");
   const std::string kind = event.at("kind").string();
@@ -136,6 +137,8 @@ void Session::check(const JsonReader& event) const {
   if (kind == "submit") {
     only({"selection", "longest_wait_ms"}, in_trial);
     if (at <= shown_ms_) event.at("page_ms").fail("a time after the command was shown");
+    if (!simulated_ && at - shown_ms_ > static_cast<double>(now_ms - shown_at_) + 1000 * clocks_apart_s)
+      event.at("page_ms").fail("a time that has passed here too");
     event.at("longest_wait_ms").number();
     submitted(event);
     return;

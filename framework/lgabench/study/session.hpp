@@ -12,10 +12,10 @@
 
 namespace lgabench::study {
 
-/// Why an event is not taken. conflict: the session goes on in another page.
+/// Why an event is not taken. conflict: the session goes on in another page; later: too many people begin at once.
 class Refused : public Error {
  public:
-  enum Why { bad, conflict };
+  enum Why { bad, conflict, later };
   Refused(Why why, const std::string& what) : Error(what), why_(why) {}
   Why why() const { return why_; }
 
@@ -72,7 +72,7 @@ class Session {
 
  private:
   void begin(const Json& event);
-  void check(const JsonReader& event) const;
+  void check(const JsonReader& event, std::int64_t now_ms) const;
   void check_edit(const JsonReader& event) const;
   Selection submitted(const JsonReader& event) const;
   void apply(const Json& event);

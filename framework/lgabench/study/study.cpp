@@ -118,12 +118,18 @@ void Study::open_log(const fs::path& protocol_file) {
 void Study::open_people() {
   Slots slots(*log_);
   for (const std::string& id : ids_in(directory_)) {
-    EventLog log(events_of(directory_, id), true);
-    if (log.events().empty()) {  // nobody was told of this person
-      fs::remove(log.file());
+    std::unique_ptr<Session> session;
+    try {
+      EventLog log(events_of(directory_, id), true);
+      if (log.events().empty()) {  // nobody was told of this person
+        fs::remove(log.file());
+        continue;
+      }
+      session = std::make_unique<Session>(protocol_, std::move(log));
+    } catch (const InputError& e) {
+      damaged_.emplace_back(e.what());
       continue;
     }
-    auto session = std::make_unique<Session>(protocol_, std::move(log));
     if (slots.withdrawn.count(session->slot()) != 0) {
       forget(directory_, id, session->slot());
       continue;
@@ -133,6 +139,11 @@ void Study::open_people() {
     people_[id] = std::move(session);
   }
   if (!slots.given.empty()) slots_ = *slots.given.rbegin() + 1;
+}
+
+bool Study::knows(const std::string& key) {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(people_.begin(), people_.end(), [&key](const auto& item) { return item.second->key() == key; });
 }
 
 std::string Study::begin(const std::string& key, const std::string& consent_sha256, bool simulated) {
@@ -159,12 +170,12 @@ std::string Study::begin(const std::string& key, const std::string& consent_sha2
   return id;
 }
 
-std::optional<Json> Study::post(const std::string& id, const Json& event) {
+std::optional<Json> Study::post(const std::string& id, const Json& event, std::optional<std::int64_t> at_ms) {
   const std::lock_guard lock(mutex_);
   const auto found = people_.find(id);
   if (found == people_.end()) return std::nullopt;
   Session& session = *found->second;
-  const bool changed = session.post(event, now_ms());
+  const bool changed = session.post(event, at_ms.value_or(now_ms()));
   if (changed && session.answered()) finish(session);
   return changed ? session.state() : Json::object();
 }
@@ -203,10 +214,14 @@ Record read_study(const fs::path& directory) {
   const Slots slots(log);
   record.withdrawn = static_cast<int>(slots.withdrawn.size());
   for (const std::string& id : ids_in(directory)) {
-    EventLog events(events_of(directory, id));
-    if (events.events().empty()) continue;
-    Session session(*record.protocol, std::move(events));
-    if (slots.withdrawn.count(session.slot()) == 0) record.people.push_back(std::move(session));
+    try {
+      EventLog events(events_of(directory, id));
+      if (events.events().empty()) continue;
+      Session session(*record.protocol, std::move(events));
+      if (slots.withdrawn.count(session.slot()) == 0) record.people.push_back(std::move(session));
+    } catch (const InputError& e) {
+      record.damaged.emplace_back(e.what());
+    }
   }
   std::sort(record.people.begin(), record.people.end(),
             [](const Session& a, const Session& b) { return a.slot() < b.slot(); });

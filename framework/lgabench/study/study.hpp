@@ -18,7 +18,8 @@ enum class Kind { people, rehearsal };
 /// DIR/participants/pNN.json, and copies of protocol and consent. Any thread.
 class Study {
  public:
-  /// Opens or begins the study in `directory`, for this process alone, and puts right what a kill left undone.
+  /// Opens or begins the study in `directory`, for this process alone, and puts right what a kill left undone. A person
+  /// whose file cannot be read is left out; all others go on.
   /// @throws InputError where another protocol, consent or kind of data is there, or another process serves it.
   Study(fs::path directory, Protocol protocol, const fs::path& protocol_file, Kind kind);
   ~Study();
@@ -28,12 +29,17 @@ class Study {
   const Protocol& protocol() const { return protocol_; }
   Kind kind() const { return kind_; }
   int slots() const { return slots_; }  // given so far; while nobody begins
+  /// Files of people who are left out, since they cannot be read, and why; a line each.
+  const std::vector<std::string>& damaged() const { return damaged_; }
+  /// Whether somebody consented with that key.
+  bool knows(const std::string& key);
 
   /// Takes a person's consent to the text with that SHA-256; the same key gives the same person. Returns their id.
   /// @throws Refused for another text, InputError where the disk takes nothing.
   std::string begin(const std::string& key, const std::string& consent_sha256, bool simulated);
-  /// Session::post(): what to show where that changed, {} where it did not; none for an unknown id.
-  std::optional<Json> post(const std::string& id, const Json& event);
+  /// Session::post() of an event that arrives at `at_ms`, by default now: what to show where that changed, {} where it
+  /// did not; none for an unknown id.
+  std::optional<Json> post(const std::string& id, const Json& event, std::optional<std::int64_t> at_ms = {});
   /// Deletes a person's events and participant's file; the log keeps the slot, without the id. False for an unknown
   /// code.
   bool withdraw(const std::string& code);
@@ -50,7 +56,8 @@ class Study {
   int lock_ = -1;
   std::unique_ptr<EventLog> log_;
   std::map<std::string, std::unique_ptr<Session>> people_;  // by id
-  int slots_ = 0;                                           // given so far
+  std::vector<std::string> damaged_;
+  int slots_ = 0;  // given so far
 };
 
 /// A study as it lies in a directory, to be read.
@@ -59,7 +66,8 @@ struct Record {
   Kind kind = Kind::people;
   bool shown_as_now = true;  // people were shown what this version of lgabench would show
   int withdrawn = 0;
-  std::vector<Session> people;  // by slot
+  std::vector<Session> people;       // by slot
+  std::vector<std::string> damaged;  // files of others, which cannot be read, and why
 };
 /// @throws InputError where there is no study.
 Record read_study(const fs::path& directory);

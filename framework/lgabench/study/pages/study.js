@@ -118,9 +118,10 @@ function consent() {
   const key = random();
   const agree = button('I agree and begin', async () => {
     agree.disabled = true;
-    const answer = await deliver('/begin', {key, consent: about.consent_sha256});
+    const invitation = new URLSearchParams(location.search).get('invitation');
+    const answer = await deliver('/begin', {key, consent: about.consent_sha256, ...(invitation && {invitation})});
     if (answer.status === 200) location.replace('/p/' + answer.json.id);
-    else stop('Something went wrong', `Please reload the page, or tell ${about.contact}.`);
+    else stop('Something went wrong', `Please reload the page, or tell ${about.contact}.`, answer.json.error || '');
   });
   const decline = button('I do not agree', () => stop('Thank you', 'Nothing was stored. You can close this page.'), '');
   show(about.title, words(...consentText(about.consent), make('div', {class: 'buttons'}, agree, decline)));

@@ -1,0 +1,66 @@
+#include <lgabench/study/deadline.hpp>
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace lgabench::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+int port_of(const sockaddr_storage& address) {
+  if (address.ss_family == AF_INET) return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
+  if (address.ss_family == AF_INET6) return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
+  return -1;
+}
+
+// Descriptor and peer of each connection that was accepted on the port.
+std::map<std::pair<int, std::string>, Clock::time_point> connections(int port) {
+  std::map<std::pair<int, std::string>, Clock::time_point> all;
+  std::error_code gone;
+  for (const auto& entry : fs::directory_iterator("/proc/self/fd", gone)) {
+    const int fd = std::stoi(entry.path().filename().string());
+    sockaddr_storage own{}, peer{};
+    socklen_t own_size = sizeof own, peer_size = sizeof peer;
+    if (::getsockname(fd, reinterpret_cast<sockaddr*>(&own), &own_size) == 0 && port_of(own) == port &&
+        ::getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &peer_size) == 0)
+      all.try_emplace({fd, std::string(reinterpret_cast<const char*>(&peer), peer_size)}, Clock::now());
+  }
+  return all;
+}
+
+}  // namespace
+
+ConnectionDeadline::ConnectionDeadline(int port, double seconds)
+    : port_(port), seconds_(seconds), thread_([this] { watch(); }) {}
+
+ConnectionDeadline::~ConnectionDeadline() {
+  {
+    const std::lock_guard lock(mutex_);
+    end_ = true;
+  }
+  ended_.notify_all();
+  thread_.join();
+}
+
+void ConnectionDeadline::watch() {
+  std::map<std::pair<int, std::string>, Clock::time_point> before;
+  std::unique_lock lock(mutex_);
+  while (!ended_.wait_for(lock, std::chrono::milliseconds(500), [this] { return end_; })) {
+    auto now = connections(port_);
+    for (auto& [connection, since] : now) {
+      if (const auto seen = before.find(connection); seen != before.end()) since = seen->second;
+      if (std::chrono::duration<double>(Clock::now() - since).count() > seconds_)
+        ::shutdown(connection.first, SHUT_RDWR);
+    }
+    before = std::move(now);
+  }
+}
+
+}  // namespace lgabench::study
