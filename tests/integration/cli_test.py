@@ -117,7 +117,7 @@ class DryRuns(Case):
     def test_say_how_much_there_is_to_do_and_do_nothing(self):
         said = self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN, "--jobs", "1").stdout
         self.assertEqual([p for p in self.dir.iterdir()], [])
-        self.assertRegex(said, r"^runs/q1-\w{8}: 806 cells, 0 there, 806 to compute\n")
+        self.assertRegex(said, r"^runs/q1-\w{8}: 806 cells, 0 already computed, 806 to compute\n")
         self.assertRegex(said, r"\nlga +195 +0 +\d+ min  cells measured elsewhere\n")
         self.assertRegex(said, r"\nfixture_constant +195 +0 +\d+ min  LGA's cells\n")
         self.assertRegex(said, r"\nabout \d+ min with 1 worker\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
@@ -127,14 +127,14 @@ class DryRuns(Case):
 
     def test_count_what_is_there(self):
         said = self.call(*RUN, "--limit", "3", "--out", "out").stderr
-        self.assertIn("3 cells to compute, 0 are there: about ", said)
+        self.assertIn("3 cells to compute, 0 already computed: about ", said)
         self.assertRegex(said, r"\n\[1/3\] fixture_constant heart .* \d+\.\d s; \d+:\d\d left\n")
         said = self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run").stdout
-        self.assertIn("out: 3 cells, 3 there, 0 to compute\n", said)
+        self.assertIn("out: 3 cells, 3 already computed, 0 to compute\n", said)
         shutil.rmtree(next((self.dir / "out/cells").iterdir()))
         before = sorted(self.dir.rglob("*"))
         said = self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run").stdout
-        self.assertRegex(said, r"out: 3 cells, 2 there, 1 to compute\n(.*\n)*fixture_constant +3 +2 +\d+ s  this run's cells\n")
+        self.assertRegex(said, r"out: 3 cells, 2 already computed, 1 to compute\n(.*\n)*fixture_constant +3 +2 +\d+ s  this run's cells\n")
         self.assertIn("3 to compute", self.call(*RUN, "--limit", "3", "--out", "out", "--dry-run", "--fresh").stdout)
         self.assertEqual(sorted(self.dir.rglob("*")), before)
 
@@ -143,7 +143,7 @@ class DryRuns(Case):
         first = process.stderr.readline()
         process.terminate()
         process.wait()
-        self.assertRegex(first, r"^416 cells to compute, 0 are there: about \d+ min with 1 worker; --dry-run shows of what\n$")
+        self.assertRegex(first, r"^416 cells to compute, 0 already computed: about \d+ min with 1 worker; --dry-run shows of what\n$")
 
 
 class Resuming(Case):
@@ -163,7 +163,7 @@ class Resuming(Case):
         shutil.rmtree(next((other / "cells").iterdir()))
         said = self.call(*RUN, "--resume").stderr
         self.assertIn(f"going on in runs/{other.name}\n", said)
-        self.assertIn("1 cell to compute, 3 are there: about ", said)
+        self.assertIn("1 cell to compute, 3 already computed: about ", said)
         self.assertEqual([p.name for p in (self.dir / "runs").iterdir()], [other.name])
         another = [word if word != "0:2" else "0:3" for word in RUN]
         self.assertIn("no run of this command", self.call(*another, "--resume", expect=2).stderr)

@@ -136,10 +136,10 @@ class Browser:
             return False
         self.driver.execute_script("document.querySelector('h1').dataset.seen = 'yes'")  # the next page has a heading of its own
         if head in ("What the robot can see", "An example"):
-            self.click("Go on")
+            self.click("Continue")
         elif head.startswith(("Practice", "Command")):
             self.click("Start")
-        elif head == "Almost done":
+        elif head in ("Almost done", "The first part is done"):
             self.click("Send")
         elif head == "Which objects could this command mean?":
             for section in self.driver.find_elements(By.CSS_SELECTOR, "section"):
@@ -212,6 +212,25 @@ class StudySmoke(InBrowser):
         answers = json.loads((self.dir / "data/participants/p01.json").read_text())["answers"]
         self.assertTrue(all("specified" in a and "edited" in a for a in answers))
 
+    def test_chosen_only_shows_what_is_filled_in(self):
+        self.start()
+        page = Browser(self).open(self.server.address)
+        page.agree()
+        for _ in range(3):
+            page.step()
+        while "filled in" not in page.text():
+            page.step()
+        page.click("Start").see("Submit")
+        tiles = lambda: len([box for box in page.boxes() if box.is_displayed()])
+        self.assertGreater(tiles(), 100)
+        chosen = len([box for box in page.boxes() if box.is_selected()])
+        for button in page.driver.find_elements(By.XPATH, "//button[.='Chosen only']"):
+            page.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", button)
+            button.click()
+            self.assertEqual(button.get_attribute("aria-pressed"), "true")
+        self.assertEqual(tiles(), chosen)
+        self.assertEqual(len([box for box in page.boxes() if box.is_selected()]), chosen)
+
     def test_who_declines_leaves_nothing(self):
         self.start()
         page = Browser(self).open(self.server.address)
@@ -234,7 +253,7 @@ class StudySmoke(InBrowser):
         page.open(address).see("was interrupted")
         page.driver.switch_to.window(first)
         page.choose("heart")
-        page.see("This session goes on elsewhere")
+        page.see("This session is open in another window")
         page.driver.switch_to.window(page.driver.window_handles[-1])
         page.take_part()
         results = self.check_whole(trials=10)
@@ -295,7 +314,7 @@ class StudyKeyboard(InBrowser):
                         self.press(Keys.SPACE)
                 self.press_button("Submit")
             else:
-                self.press_button({"What the robot can see": "Go on", "An example": "Go on", "Almost done": "Send"}.get(head, "Start"))
+                self.press_button({"What the robot can see": "Continue", "An example": "Continue", "Almost done": "Send", "The first part is done": "Send"}.get(head, "Start"))
             page.until(lambda: page.head() != head, f"after {head}")
         self.assertEqual(self.check_whole()["used"], 1)
 

@@ -108,9 +108,11 @@ class Person:
     def take_part(self):
         self.say("familiarised")
         self.state = self.say("example_seen")
-        while self.state["step"] == "trial":
-            self.answer()
-        self.state = self.say("questionnaire", tlx=dict.fromkeys(SCALES, 50), free_text="")
+        while self.state["step"] != "debriefing":
+            if self.state["step"] == "trial":
+                self.answer()
+            else:
+                self.state = self.say("questionnaire", tlx=dict.fromkeys(SCALES, 50), free_text="")
         return self
 
 

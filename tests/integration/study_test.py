@@ -28,7 +28,7 @@ class StudyProtocols(StudyCase):
         self.assertIn("to fill: consent: [[UNTIL WHEN]]", unfilled.stdout)
         self.assertIn("to fill: protocol: [[YOUR NAME]]", unfilled.stdout)
         self.assertIn("blanks to fill", self.call(*serve, expect=2).stderr)
-        self.assertIn("blanks to fill", self.call("study", "check", "study", "--pin", expect=2).stderr)
+        self.assertRegex(self.call("study", "check", "study", "--pin", expect=2).stderr, r"\d+ blanks to fill$")
         for name in "protocol.json", "consent.txt":
             file = self.dir / "study" / name
             file.write_text(re.sub(r"\[\[.*?\]\]", "invented", file.read_text()))
@@ -191,6 +191,17 @@ class StudyServer(StudyCase):
         self.assertEqual(len(server.people()), 3)
         self.assertIn("expected letters and digits", self.call("study", "serve", "study", "--out", "x", "--invitation", "a&b", expect=2).stderr)
 
+    def test_the_terminal_says_who_comes_and_goes(self):
+        first = Person(self.server)
+        Person(self.server).take_part()
+        self.server.ask("POST", "/withdraw", {"code": first.state["withdrawal_code"]})
+        self.server.process.send_signal(signal.SIGTERM)
+        said = re.sub(r"^\d\d:\d\d ", "", self.server.process.stdout.read(), flags=re.M).splitlines()
+        self.assertEqual(said, ["p01 began, with lga_hill first; 1 under way, 0 of 18 finished",
+                                "p02 began, with human first; 2 under way, 0 of 18 finished",
+                                "p02 finished; 1 under way, 1 of 18 finished",
+                                "p01 withdrew; 0 under way, 1 of 18 finished"])
+
     def test_two_at_once(self):
         people = [threading.Thread(target=lambda: Person(self.server).take_part()) for _ in range(4)]
         for one in people:
@@ -320,6 +331,7 @@ class StudyRehearsal(StudyCase):
         self.assertEqual((results["people"], results["used"], results["rehearsal"]), (18, 18, True))
         self.assertGreater(results["crossover"]["condition"]["difference"], 0)
         self.assertEqual(results["trials"]["clicks_disagree"], 0)
+        self.assertEqual(results["tlx"]["raw"]["people"], 18)
 
 
 if __name__ == "__main__":

@@ -121,6 +121,16 @@ class Pages(unittest.TestCase):
         example = json.loads(re.search(r"^    \{\n     \"id\": \"stack_.*?^    \}\n", page, re.S | re.M)[0])
         self.assertEqual(example, {member: value for member, value in scenario.items() if member != "note"})
 
+    def test_headers_that_authors_pages_name_are_installed(self):
+        """As cmake/LgabenchHelpers.cmake chooses them: three folders, and some of learning/."""
+        some = re.search(r"foreach\(header ([\w ]+)\)\n  list\(APPEND lgabench_public_headers", (SOURCE / "cmake/LgabenchHelpers.cmake").read_text())
+        there = {f"learning/{name}.hpp" for name in some[1].split()}
+        for folder in "core", "plugin", "abstraction":
+            there |= {f"{folder}/{file.name}" for file in (SOURCE / "framework/lgabench" / folder).glob("*.hpp")}
+        for page in "add-a-method", "add-a-network", "add-an-engine":
+            named = set(re.findall(r"[`<](?:lgabench/)?(\w+/\w+\.hpp)[`>]", (SOURCE / f"docs/{page}.md").read_text()))
+            self.assertEqual(named - there, set(), page)
+
     @unittest.skipUnless(shutil.which("git"), "needs git")
     def test_the_patch_of_a_statistic_applies(self):
         page = (SOURCE / "docs/add-a-statistic.md").read_text()

@@ -140,7 +140,7 @@ TEST(Forecasts, CountByRow) {
   EXPECT_EQ(rows["my_method"].based_on, "LGA's cells");
   EXPECT_NEAR(all.wall_s, seconds, 1e-6) << "one worker";
   EXPECT_NEAR(rows["lga"].seconds / 7, 2.3, .5) << "as the five took";
-  EXPECT_EQ(all.text(1), "75 cells to compute, 5 are there: about 6 min with 1 worker");
+  EXPECT_EQ(all.text(1), "75 cells to compute, 5 already computed: about 6 min with 1 worker");
   EXPECT_GT(all.run_bytes, 75 * 28e3);
 }
 

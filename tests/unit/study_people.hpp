@@ -35,6 +35,13 @@ struct Page {
 inline Json edit(const std::string& feature, const std::vector<std::string>& values, bool on = true) {
   return {{"role", "target"}, {"feature", feature}, {"values", values}, {"on", on}};
 }
+/// NASA-TLX with one number for all scales.
+inline Json tlx(int value) {
+  Json json;
+  for (const char* scale : {"mental", "physical", "temporal", "performance", "effort", "frustration"})
+    json[scale] = value;
+  return json;
+}
 inline Json submitted(const std::vector<std::string>& types, const std::vector<std::string>& textures,
                       double wait_ms = 0) {
   return {{"selection", {{"target", {{"object_types", types}, {"textures", textures}}}}}, {"longest_wait_ms", wait_ms}};

@@ -55,6 +55,9 @@ TEST_F(StudyProtocol, IsRefusedWithThePlace) {
            {{{"sets", {{{{"scenario", "heart"}}}, {{{"scenario", "letter"}}}}}}, "two sets of one even size"},
            {{{"consent", "../consent.txt"}}, "/consent: expected a file's name"},
            {{{"exclusions", {{"fewest", 1}}}}, "/exclusions"},
+           {{{"instruction", ""}}, "/instruction: expected words"},
+           {{{"questionnaire", {{"nasa_tlx", "twice"}, {"free_text", true}}}},
+            "/questionnaire/nasa_tlx: expected true, false or \"by_condition\""},
            {{{"planned_people", 0}}, "/planned_people"}}) {
     const fs::path file = ready_protocol(path, "paper", changes);
     EXPECT_SAYS(message_of<InputError>([&file] { read_protocol(file); }), expected);
@@ -77,6 +80,28 @@ TEST_F(StudyProtocol, BeginsOnlyFilledAndAsItWasPinned) {
   other["stimuli"] = "another";
   write_file(pin_file(file), other.dump());
   EXPECT_SAYS(not_ready(read_protocol(file), file), "what people are shown (scenarios, answers) differs");
+}
+
+TEST_F(StudyProtocol, OneThat0_2_0PinnedKeepsItsPin) {
+  // Without an instruction, and with NASA-TLX at the end; "stimuli" as 0.2.0 wrote them.
+  Json json = read_json(ready_protocol(path, "paper"));
+  json.erase("instruction");
+  json["questionnaire"]["nasa_tlx"] = true;
+  const fs::path file = path / "protocol.json";
+  write_file(file, json.dump());
+  const Protocol protocol = read_protocol(file);
+  EXPECT_EQ(protocol.tlx, Tlx::at_end);
+  EXPECT_EQ(protocol.instruction, "");
+  EXPECT_EQ(pin_of(protocol).size(), 3u);
+  EXPECT_EQ(pin_of(protocol).at("stimuli"), "b654475d803a7c75ad0fe5e010283549c1f84fb5a11ca7ed08fdf7703206b0ca");
+}
+
+TEST_F(StudyProtocol, TheInstructionIsPinned) {
+  const fs::path file = ready_protocol(path, "paper");
+  EXPECT_EQ(read_protocol(file).instruction, "Work as fast as you can without mistakes.");
+  write_file(pin_file(file), pin_of(read_protocol(file)).dump());
+  ready_protocol(path, "paper", {{"instruction", "Take your time."}});
+  EXPECT_SAYS(not_ready(read_protocol(file), file), "the protocol differs from what");
 }
 
 TEST(WilliamsSquare, EveryRowColumnAndPairOnce) {

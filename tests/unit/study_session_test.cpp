@@ -32,6 +32,7 @@ class StudySession : public testing::Test, public TemporaryDirectory {
     page.ms += 1000 * seconds, at += static_cast<std::int64_t>(1000 * seconds);
     post("submit", submitted(chosen.target.object_types, chosen.target.textures, wait_ms));
   }
+  void rate(int load) { post("questionnaire", {{"tlx", tlx(load)}, {"free_text", ""}}); }
   const Trial& current() const {
     for (const Trial& trial : session->all())
       if (trial.state != Trial::finished && trial.state != Trial::interrupted) return trial;
@@ -55,24 +56,42 @@ TEST_F(StudySession, GoesFromPicturesToDebriefing) {
   EXPECT_TRUE(session->state().at("trial").at("practice"));
   answer(1), answer(1);
   for (int i = 0; i < 18; ++i) {
+    if (i == 9) rate(70);
     EXPECT_EQ(session->state().at("trial").at("number"), i + 1);
     EXPECT_FALSE(session->state().at("trial").contains("command")) << "nobody reads ahead";
     answer(10 + i);
   }
   EXPECT_EQ(session->state().at("step"), "questionnaire");
+  EXPECT_TRUE(session->state().at("last"));
+  EXPECT_TRUE(session->state().at("free_text"));
   const Json none{{"mental", nullptr},      {"physical", nullptr}, {"temporal", 5},
                   {"performance", nullptr}, {"effort", nullptr},   {"frustration", nullptr}};
   post("questionnaire", {{"tlx", none}, {"free_text", "<b>"}});
   EXPECT_EQ(session->state().at("step"), "debriefing");
+  EXPECT_EQ(session->tlx(session->assignment().conditions[0]), tlx(70));
+  EXPECT_EQ(session->tlx(session->assignment().conditions[1]), none);
   EXPECT_EQ(finished(), 18);
   EXPECT_DOUBLE_EQ(session->all()[2].raw_s, 10);
   EXPECT_DOUBLE_EQ(session->all()[2].server_s, 10);
+}
+
+TEST_F(StudySession, AProtocolOf0_2_0AsksOnceAtTheEndAsItDid) {
+  begin("paper", 0, {{"questionnaire", {{"nasa_tlx", true}, {"free_text", true}}}});
+  familiarise(), answer(1), answer(1);
+  for (int i = 0; i < 18; ++i) answer(10);
+  EXPECT_EQ(session->step(), Session::questionnaire);
+  EXPECT_FALSE(session->state().contains("condition")) << "about all of it";
+  rate(40);
+  EXPECT_EQ(session->step(), Session::debriefing);
+  EXPECT_EQ(session->answers().at("tlx"), tlx(40));
+  EXPECT_TRUE(session->tlx(Condition::human).is_null());
 }
 
 TEST_F(StudySession, ConditionsShowEmptyListsOrTheProposal) {
   begin("paper");
   familiarise(), answer(1), answer(1);
   for (int i = 0; i < 18; ++i) {
+    if (i == 9) rate(50);
     const Trial trial = current();
     post("start");
     const Json first = session->state().at("trial").at("sets").at(0).at("first");
@@ -140,6 +159,14 @@ TEST_F(StudySession, ASecondPageTakesOverAndBreaksTheTrial) {
     }
     answer(5);
   }
+  EXPECT_EQ(session->state().at("step"), "questionnaire");
+  EXPECT_EQ(session->state().at("condition"), to_string(session->assignment().conditions[0]));
+  EXPECT_FALSE(session->state().at("free_text"));
+  EXPECT_SAYS(refused(page.event("start")), "fits where the session is");
+  EXPECT_SAYS(refused(page.event("questionnaire", {{"tlx", tlx(1)}, {"free_text", "early"}})),
+              "nothing before the end");
+  EXPECT_FALSE(session->answered());
+  rate(50);
   EXPECT_EQ(current().period, 1);
   for (int i = 0; i < 4; ++i) answer(5);
   EXPECT_EQ(finished(), 8);
@@ -151,7 +178,10 @@ TEST_F(StudySession, ThePapersProtocolHasNoSpare) {
   familiarise(), answer(1), answer(1);
   answer(20, 1000 * longest_wait_s + 1);  // too long without a connection
   EXPECT_EQ(session->all()[2].state, Trial::interrupted);
-  for (int i = 0; i < 17; ++i) answer(20, 1000 * longest_wait_s);
+  for (int i = 0; i < 17; ++i) {
+    if (i == 8) rate(50);
+    answer(20, 1000 * longest_wait_s);
+  }
   EXPECT_EQ(finished(), 17);
   EXPECT_EQ(session->step(), Session::questionnaire);
 }
@@ -206,7 +236,11 @@ TEST_F(StudySession, APageTellsNoTimeThatHasNotPassed) {
 TEST_F(StudySession, EditsOfTheProposalGiveWhatIsSubmitted) {
   begin("paper");
   familiarise(), answer(1), answer(1);
-  while (current().condition != Condition::lga_hill || current().item->scenario != "red_heart") answer(1);
+  while (current().condition != Condition::lga_hill || current().item->scenario != "red_heart") {
+    if (session->step() == Session::questionnaire) rate(50);
+    answer(1);
+  }
+  if (session->step() == Session::questionnaire) rate(50);
   post("start"), post("shown");
   post("edit", edit("textures", {"red swirl", "red paisley"}, false)), post("edit", edit("object_types", {"star"}));
   page.ms += 10;
@@ -229,6 +263,8 @@ TEST_F(StudySession, IsTheSameAfterARestartAtEveryEvent) {
   familiarise(), answer(1), answer(1), answer(7);
   post("start"), post("shown"), post("edit", edit("textures", {"red"}));
   page.name = "second", post("opened"), answer(9);
+  while (session->step() == Session::trials) answer(11);
+  rate(30);
   while (session->step() == Session::trials) answer(11);
   const std::vector<Json> events = session->log().events();
   std::unique_ptr<Session> whole = std::move(session);

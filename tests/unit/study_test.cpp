@@ -38,15 +38,15 @@ class StudyDirectory : public testing::Test, public TemporaryDirectory {
     Page page;
     post(id, page, "opened"), post(id, page, "familiarised");
     Json state = post(id, page, "example_seen");
-    while (state.at("step") == "trial") {
+    while (state.at("step") != "debriefing") {
+      if (state.at("step") == "questionnaire") {
+        state = post(id, page, "questionnaire", {{"tlx", tlx(50)}, {"free_text", ""}});
+        continue;
+      }
       post(id, page, "start"), post(id, page, "shown");
       page.ms += 2500;
       state = post(id, page, "submit", submitted({"heart"}, {"red"}));
     }
-    Json tlx;
-    for (const char* scale : {"mental", "physical", "temporal", "performance", "effort", "frustration"})
-      tlx[scale] = 50;
-    post(id, page, "questionnaire", {{"tlx", tlx}, {"free_text", ""}});
   }
   std::vector<int> withdrawn_and_given() const {
     int given = 0, withdrawn = 0;
@@ -78,6 +78,20 @@ TEST_F(StudyDirectory, ConsentGivesASlotOnce) {
   open();
   EXPECT_EQ(withdrawn_and_given(), (std::vector<int>{0, 2}));
   EXPECT_EQ(study->post(std::string(32, '0'), {}), std::nullopt);
+}
+
+TEST_F(StudyDirectory, SaysWhoComesAndGoesByPseudonym) {
+  open();
+  std::vector<std::string> said;
+  study->tell([&said](const std::string& line) { said.push_back(line); });
+  const std::string first = agree(), second = agree();
+  take_part(second);
+  EXPECT_TRUE(study->withdraw(withdrawal_code(first)));
+  ASSERT_EQ(said.size(), 4u);
+  EXPECT_SAYS(said[0], "p01 began, with ");
+  EXPECT_SAYS(said[1], " first; 2 under way, 0 of 18 finished");
+  EXPECT_EQ(said[2], "p02 finished; 1 under way, 1 of 18 finished");
+  EXPECT_EQ(said[3], "p01 withdrew; 0 under way, 1 of 18 finished");
 }
 
 TEST_F(StudyDirectory, AKillBetweenThePersonAndTheLogGivesNoSlotTwice) {

@@ -305,7 +305,7 @@ class MethodCheck {
     Answering nobody(bench.scenario, job_, true);
     std::string fault = thrown([&] { select_all(bench.scenario, nobody, "select with every answer no"); });
     report_.judge("empty Selection", fault.empty() ? "" : "select() threw: " + fault,
-                  "select() bears a language model that answers no to everything",
+                  "select() handles a language model that answers no to everything",
                   "return the empty Selection: the host counts such a cell as failed by the abstraction");
     for (const TaskInfo& task : find_environment(job_.environment).tasks())
       if (task.second) judge_second_set(needs, task);
@@ -325,7 +325,7 @@ class MethodCheck {
                    "set `second` where the command has one");
     else
       report_.judge(task.id, fault.empty() ? "" : "select() threw: " + fault,
-                    fmt::format("select() bears a {} command", task.id),
+                    fmt::format("select() handles a {} command", task.id),
                     "commands of every task are given to select()");
   }
 

@@ -125,7 +125,7 @@ std::string submit_script(const fs::path& out) {
 void expect_repeatable(const RunArguments& run) {
   for (const auto& [given, option] :
        {std::pair{run.fresh, "--fresh"}, {run.dry_run, "--dry-run"}, {!run.debug.empty(), "--debug"}})
-    if (given) throw InputError(fmt::format("{}: of run alone; an element goes on where it stopped", option));
+    if (given) throw InputError(fmt::format("{}: of run alone; an element resumes where it stopped", option));
 }
 
 int write_scripts(ClusterArguments a) {

@@ -28,7 +28,8 @@ std::string resuming_command(const RunArguments& a, const fs::path& out) {
 
 // What --dry-run says.
 int print_forecast(const RunPlan& plan, const Forecast& all) {
-  to_stdout("{}: {} cells, {} there, {} to compute\n", plan.out.string(), all.cells, all.there, all.cells - all.there);
+  to_stdout("{}: {} cells, {} already computed, {} to compute\n", plan.out.string(), all.cells, all.there,
+            all.cells - all.there);
   if (all.cells < plan.cells.size())
     to_stdout("shard {}/{} of a run of {} cells\n", plan.shard.index, plan.shard.count, plan.cells.size());
   std::size_t width = 3;
@@ -69,7 +70,7 @@ int run(const RunArguments& a) {
   if (a.unconfined) to_stderr("--unconfined: methods run as you, with your files\n");
   const RunOutcome outcome = run_suite(plan, catalogue);
   if (outcome.interrupted) {
-    to_stderr("interrupted; what was finished is kept. To go on:\n  {}\n", resuming_command(a, plan.out));
+    to_stderr("interrupted; what was finished is kept. To resume:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
   std::string no_report;

@@ -1,9 +1,11 @@
 // lgabench study: the user study that people take in a browser, from a protocol to participants' files.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <pthread.h>
 #include <sys/stat.h>
 
 #include <csignal>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <random>
@@ -72,6 +74,7 @@ int check(const StudyArguments& a) {
             protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
   const fs::path pin = study::pin_file(file);
   if (a.pin && blanks.empty() && !fs::exists(pin)) write_file(pin, study::pin_of(protocol).dump(1) + "\n");
+  if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill", file.string(), blanks.size()));
   if (const std::string why = study::not_ready(protocol, file); !why.empty())
     throw InputError(fmt::format("{}: {}", file.string(), why));
   to_stdout("pinned: {}\n", protocol.pin);
@@ -111,10 +114,17 @@ int serve(const StudyArguments& a) {
   study::Study study(a.out, std::move(protocol), file, kind);
   for (const std::string& line : study.damaged()) to_stderr("LEFT OUT: {}\n", one_line(line));
   study::Server server(study, study::load_site(), {a.bind, a.port, a.host, a.invitation, a.begins});
-  to_stdout("{} at http://{}:{}/{} (Ctrl-C ends it; it goes on when started again)\n",
+  to_stdout("{} at http://{}:{}/{} (Ctrl-C stops it; the same command resumes it)\n",
             a.rehearsal ? "a rehearsal" : "the study", a.bind, server.port(),
             a.invitation.empty() ? "" : "?invitation=" + a.invitation);
   flush_stdout();
+  study.tell([](const std::string& line) {
+    try {
+      to_stdout("{:%H:%M} {}\n", fmt::localtime(std::time(nullptr)), line);
+      flush_stdout();
+    } catch (const std::exception&) {  // nobody reads any more; the study continues
+    }
+  });
   serve_until_stopped(server);
   return ok;
 }

@@ -32,9 +32,8 @@ std::string size_text(double bytes) {
 }
 
 std::string Forecast::text(int jobs) const {
-  return fmt::format("{} cell{} to compute, {} {} there: about {} with {} worker{}", cells - there,
-                     cells - there == 1 ? "" : "s", there, there == 1 ? "is" : "are", duration_text(wall_s), jobs,
-                     jobs == 1 ? "" : "s");
+  return fmt::format("{} cell{} to compute, {} already computed: about {} with {} worker{}", cells - there,
+                     cells - there == 1 ? "" : "s", there, duration_text(wall_s), jobs, jobs == 1 ? "" : "s");
 }
 
 Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,

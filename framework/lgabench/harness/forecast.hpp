@@ -21,7 +21,7 @@ struct Forecast {
   double wall_s = 0;
   double run_bytes = 0, cache_bytes = 0;  // more on the disk; of the cache at most
 
-  /// "1365 cells to compute, 26 are there: about 1 h 25 min with 2 workers"
+  /// "1365 cells to compute, 26 already computed: about 1 h 25 min with 2 workers"
   std::string text(int jobs) const;
 };
 

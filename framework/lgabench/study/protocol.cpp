@@ -103,7 +103,13 @@ void read_rules(const JsonReader& reader, Protocol& protocol) {
   if (exclusions.has("longest_seconds")) protocol.longest_s = exclusions.at("longest_seconds").number();
   const JsonReader asked = reader.at("questionnaire");
   asked.only({"nasa_tlx", "free_text"});
-  protocol.tlx = asked.at("nasa_tlx").boolean();
+  const JsonReader tlx = asked.at("nasa_tlx");
+  if (tlx.json() == "by_condition")
+    protocol.tlx = Tlx::by_condition;
+  else if (tlx.json().is_boolean())
+    protocol.tlx = tlx.boolean() ? Tlx::at_end : Tlx::never;
+  else
+    tlx.fail("true, false or \"by_condition\"");
   protocol.free_text = asked.at("free_text").boolean();
 }
 
@@ -155,7 +161,7 @@ Protocol read_protocol(const fs::path& file) {
   protocol.json = parse_json(protocol.bytes, file.string());
   const JsonReader reader(protocol.json, file.string());
   reader.only({"study", "title", "note", "researcher", "license", "consent", "seed", "planned_people", "minutes",
-               "sets", "spares", "practice", "example", "exclusions", "questionnaire"});
+               "instruction", "sets", "spares", "practice", "example", "exclusions", "questionnaire"});
   protocol.id = words(reader, "study");
   protocol.title = words(reader, "title");
   const JsonReader researcher = reader.at("researcher");
@@ -167,6 +173,7 @@ Protocol read_protocol(const fs::path& file) {
   protocol.seed = static_cast<std::uint64_t>(reader.at("seed").integer(0, 1LL << 53));
   protocol.planned = static_cast<int>(reader.at("planned_people").integer(1, 100000));
   protocol.minutes = static_cast<int>(reader.at("minutes").integer(1, 600));
+  if (reader.has("instruction")) protocol.instruction = words(reader, "instruction");
   const fs::path consent = reader.at("consent").string();
   if (consent.empty() || consent.has_parent_path()) reader.at("consent").fail("a file's name, beside the protocol");
   protocol.consent = read_file(file.parent_path() / consent, Links::followed, 1 << 20);

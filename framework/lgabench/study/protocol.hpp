@@ -30,6 +30,9 @@ struct Item {
   std::optional<Selection> truth;  // the released one; none for practice
 };
 
+/// When NASA-TLX is asked: by_condition, after each of the two parts, about that part.
+enum class Tlx { never, at_end, by_condition };
+
 /// A protocol, read and checked, with everything that people are shown.
 struct Protocol {
   std::string id, title;
@@ -40,14 +43,16 @@ struct Protocol {
   /// One set: both conditions ask all of it, in its order. Two: each condition asks one of them, in an order from a
   /// Williams square, and nobody sees a command twice.
   std::vector<std::vector<Item>> sets;
+  std::string instruction;      // how to work, shown before practice and before each command; "" for none
   std::vector<Item> spares;     // take the place of a trial that was interrupted
   Item practice;                // once in each condition, before anything is timed
   std::string example_command;  // the worked example
   Selection example;            // and its answer
   FeatureSpace example_space;
-  int fewest_trials = 1;                // in each condition; who finished fewer is left out of every test
-  std::optional<double> longest_s;      // a trial that took longer is left out
-  bool tlx = false, free_text = false;  // asked at the end
+  int fewest_trials = 1;            // in each condition; who finished fewer is left out of every test
+  std::optional<double> longest_s;  // a trial that took longer is left out
+  Tlx tlx = Tlx::never;
+  bool free_text = false;  // asked at the end
 
   Json json;           // as read
   std::string sha256;  // of the file's bytes

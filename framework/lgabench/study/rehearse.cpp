@@ -22,6 +22,7 @@ class Person {
       : protocol_(protocol),
         http_("127.0.0.1", port),
         random_(fmt::format("study rehearsal/{}/{}", protocol.seed, number)),
+        first_(number == 0),
         slowness_(spread_of_people * random_.gaussian()) {}
 
   void take_part() {
@@ -66,7 +67,9 @@ class Person {
     Json tlx;
     for (const char* scale : {"mental", "physical", "temporal", "performance", "effort", "frustration"})
       tlx[scale] = 5 * random_.below(21);
-    return say("questionnaire", {{"tlx", tlx}, {"free_text", "simulated <b>words</b> | of *nobody*"}});
+    // Words that a report must not interpret, once.
+    const bool talks = first_ && state.at("free_text").get<bool>();
+    return say("questionnaire", {{"tlx", tlx}, {"free_text", talks ? "simulated <b>words</b> | of *nobody*" : ""}});
   }
 
   // The words of a list that are chosen: what is right, with a slip here and there.
@@ -127,6 +130,7 @@ class Person {
   const Protocol& protocol_;
   httplib::Client http_;
   RandomStream random_;
+  bool first_;
   double slowness_, ms_ = 100;
   std::string address_;
 };

@@ -49,21 +49,49 @@ std::map<std::string, std::pair<double, double>> published() {
   return values;
 }
 
-// As the paper's figure 3b: mean seconds a command of each condition, with standard errors.
+// A thin line for each person, from their mean seconds in one condition to those in the other.
+std::vector<Series> lines_of_people(const StudyResults& results, double left, double right) {
+  std::vector<Series> lines;
+  for (const PersonResult& person : results.people) {
+    if (!person.excluded.empty()) continue;
+    Series line{Series::reference, pseudonym(person.session->slot()), {}, true};
+    for (const Condition condition : conditions) {
+      const double s = person.mean_s(condition);
+      line.points.push_back({condition == Condition::human ? left : right,
+                             s,
+                             s,
+                             s,
+                             fmt::format("{}, {}: {} s", line.name, name(condition), seconds(s)),
+                             {}});
+    }
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+// As the paper's figure 3b: mean seconds a command of each condition, with standard errors; and each person's two
+// means.
 Chart seconds_chart(const StudyResults& results) {
   Chart chart;
   chart.file = "seconds";
-  chart.title = "Seconds a command";
-  chart.subtitle = fmt::format("mean of {} people's means, ± 1 standard error{}", results.used(),
-                               results.record->kind == Kind::rehearsal ? fmt::format(" ({})", simulated_words) : "");
-  chart.width = 420, chart.height = 340;
+  chart.title = fmt::format("Seconds a command{}",
+                            results.record->kind == Kind::rehearsal ? fmt::format(" ({})", simulated_words) : "");
+  chart.subtitle =
+      fmt::format("{} people's means ± 1 standard error; grey: each person; hollow: the paper", results.used());
+  chart.width = 460, chart.height = 340;
+  chart.legend = false;  // the conditions stand along the axis, and people need no names
+  constexpr double left = .3, right = .7;
+  chart.series = lines_of_people(results, left, right);
   const MethodStyles styles({"human", "lga_hill"});
   double highest = 0;
+  for (const Series& line : chart.series)
+    for (const ChartPoint& point : line.points) highest = std::max(highest, point.y);
   chart.alternative = "Mean seconds a command:";
   const auto paper = published();
   for (const Condition condition : conditions) {
-    const double x = condition == Condition::human ? .3 : .7;
-    chart.ticks.push_back({x, name(condition)});
+    const bool human = condition == Condition::human;
+    chart.ticks.push_back({human ? left : right, name(condition)});
+    const double outward = human ? -1 : 1, x = (human ? left : right) + .05 * outward;  // beside the lines
     if (const auto& s = results.seconds[index(condition)]) {
       const double error = s->se.value_or(0);
       const std::string words =
@@ -82,7 +110,7 @@ Chart seconds_chart(const StudyResults& results) {
                               name(condition),
                               styles(to_string(condition)),
                               false,
-                              {{x + .08,
+                              {{x + .07 * outward,
                                 mean,
                                 mean - error,
                                 mean + error,
@@ -218,19 +246,37 @@ Section left_out_section(const StudyResults& results) {
   return section;
 }
 
+// NASA-TLX about each condition, of the same people.
+Grid tlx_grid(const StudyResults& results) {
+  Grid grid;
+  grid.name = "nasa_tlx";
+  grid.caption = "NASA-TLX, raw, 0 to 100, after each condition; p: paired t, Holm's over the rows";
+  grid.heads = {"scale", "people", "Human", "LGA-HILL", "difference", "p"};
+  grid.align = "lrrrrr";
+  for (const ScaleResult& row : results.tlx) {
+    if (row.values[0].empty()) continue;
+    grid.rows.push_back({{},
+                         {row.scale == "raw" ? "mean of the six" : row.scale, std::to_string(row.values[0].size()),
+                          seconds(spread(row.values[0]).mean), seconds(spread(row.values[1]).mean),
+                          row.change ? change_words(*row.change, "") : "–", row.change ? p_cell(row.p_holm) : "–"}});
+  }
+  return grid;
+}
+
 // Of those who answered: the mean of each scale, and words as they were typed.
 Section questionnaire_section(const StudyResults& results) {
-  Section section{"questionnaire", "Asked at the end", reading};
+  Section section{"questionnaire", results.tlx.empty() ? "Asked at the end" : "What people said", reading};
   std::map<std::string, std::vector<double>> scales;
   List words;
   for (const PersonResult& person : results.people) {
     const Json& answers = person.session->answers();
     if (answers.is_null()) continue;
     for (const auto& [scale, value] : answers.at("tlx").items())
-      if (value.is_number()) scales[scale].push_back(value.get<double>());
+      if (results.tlx.empty() && value.is_number()) scales[scale].push_back(value.get<double>());
     if (const std::string text = answers.at("free_text"); !text.empty())
       words.items.push_back({fmt::format("{}: {}", pseudonym(person.session->slot()), text)});
   }
+  if (Grid grid = tlx_grid(results); !grid.rows.empty()) section.add(reading, std::move(grid));
   if (!scales.empty()) {
     Grid grid;
     grid.name = "nasa_tlx";
@@ -266,6 +312,23 @@ Json optional_json(const std::optional<double>& value) { return value ? Json(*va
 Json spread_json(const std::optional<Spread>& s) {
   if (!s) return nullptr;
   return {{"mean", s->mean}, {"sd", optional_json(s->sd)}, {"se", optional_json(s->se)}};
+}
+// Null unless NASA-TLX was asked about each condition; else by scale.
+Json tlx_json(const StudyResults& results) {
+  if (results.tlx.empty()) return nullptr;
+  Json json;
+  for (const ScaleResult& row : results.tlx) {
+    const auto of = [&row](Condition condition) {
+      const std::vector<double>& values = row.values[index(condition)];
+      return spread_json(values.empty() ? std::nullopt : std::optional(spread(values)));
+    };
+    json[row.scale] = {{"people", row.values[0].size()},
+                       {"human", of(Condition::human)},
+                       {"lga_hill", of(Condition::lga_hill)},
+                       {"change", change_json(row.change)},
+                       {"p_holm", row.change ? Json(row.p_holm) : Json()}};
+  }
+  return json;
 }
 Json quality_json(const SetQuality& q) {
   const auto of = [](const NameQuality& one) {
@@ -308,6 +371,7 @@ Json to_json(const StudyResults& results) {
             {"withdrawn", record.withdrawn},
             {"primary", change_json(results.primary)},
             {"active", change_json(results.active)},
+            {"tlx", tlx_json(results)},
             {"trials",
              {{"interrupted", results.interrupted},
               {"too_long", results.too_long},

@@ -55,6 +55,43 @@ std::vector<CommandResult> commands_of(const StudyResults& results) {
   return all;
 }
 
+std::vector<ScaleResult> tlx_of(const StudyResults& results) {
+  std::vector<ScaleResult> all;
+  if (results.record->protocol->tlx != Tlx::by_condition) return all;
+  for (const char* scale : {"raw", "mental", "physical", "temporal", "performance", "effort", "frustration"})
+    all.push_back({scale, {}, {}});
+  for (const PersonResult& person : results.people) {
+    if (!person.excluded.empty()) continue;
+    const Json& human = person.session->tlx(Condition::human);
+    const Json& edited = person.session->tlx(Condition::lga_hill);
+    if (human.is_null() || edited.is_null()) continue;
+    std::array<double, 2> sums{};
+    std::size_t answered = 0;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      const Json &before = human.at(all[i].scale), &after = edited.at(all[i].scale);
+      if (before.is_null() || after.is_null()) continue;
+      all[i].values[0].push_back(before), all[i].values[1].push_back(after);
+      sums[0] += all[i].values[0].back(), sums[1] += all[i].values[1].back();
+      ++answered;
+    }
+    if (answered + 1 != all.size()) continue;
+    for (const std::size_t c : {0, 1}) all[0].values[c].push_back(sums[c] / static_cast<double>(answered));
+  }
+  std::vector<double> p;
+  for (ScaleResult& row : all) {
+    std::vector<double> differences;
+    for (std::size_t i = 0; i < row.values[0].size(); ++i) differences.push_back(row.values[0][i] - row.values[1][i]);
+    if (differences.size() < 2) continue;
+    row.change = report::paired_t(differences);
+    p.push_back(row.change->p);
+  }
+  const std::vector<double> adjusted = report::holm(p);
+  std::size_t next = 0;
+  for (ScaleResult& row : all)
+    if (row.change) row.p_holm = adjusted[next++];
+  return all;
+}
+
 // Mean log seconds of a period's trials that count.
 double mean_log(const PersonResult& person, int period) {
   double sum = 0;
@@ -146,6 +183,7 @@ StudyResults results_of(const Record& record) {
   }
   compare(results);
   results.commands = commands_of(results);
+  results.tlx = tlx_of(results);
   for (const Condition condition : conditions) results.phi[index(condition)] = quality_of(results, condition);
   return results;
 }

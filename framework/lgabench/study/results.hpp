@@ -29,6 +29,14 @@ struct CommandResult {
   double p_holm = 1;                     // over the commands
 };
 
+/// A scale of NASA-TLX in both conditions, of the people who answered it in both.
+struct ScaleResult {
+  std::string scale;                          // "raw": the mean of all six
+  std::array<std::vector<double>, 2> values;  // by condition, person by person
+  std::optional<report::Change> change;       // human minus lga_hill, paired t; none with fewer than two people
+  double p_holm = 1;                          // over the rows
+};
+
 struct StudyResults {
   const Record* record = nullptr;
   std::vector<PersonResult> people;                                // all, by slot
@@ -38,6 +46,7 @@ struct StudyResults {
   /// first over the second): each person's difference of periods on three columns. Empty where it has no solution.
   std::vector<report::Change> log_model;
   std::vector<CommandResult> commands;
+  std::vector<ScaleResult> tlx;   // empty unless asked about each condition
   std::array<SetQuality, 2> phi;  // of the target by condition, mean over trials; nothing where nobody chose anything
   std::array<std::optional<report::Spread>, 2> by_first;  // human minus lga_hill, of who began with each condition
   int interrupted = 0, too_long = 0, practice = 0, disagree = 0;  // trials; disagree: clicks that do not add up to φ̂

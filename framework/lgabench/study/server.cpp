@@ -143,6 +143,7 @@ struct Server::Impl {
             {{"title", p.title},
              {"contact", p.contact},
              {"consent", p.consent},
+             {"instruction", p.instruction},
              {"consent_sha256", sha256(p.consent)},
              {"rehearsal", study.kind() == Kind::rehearsal},
              {"pictures", {{"object_types", site.object_types.cells}, {"textures", site.textures.cells}}}});

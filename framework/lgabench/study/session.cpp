@@ -83,8 +83,13 @@ void Session::begin(const Json& event) {
 Session::Step Session::step() const {
   if (!familiar_) return familiarisation;
   if (!example_seen_) return example;
-  if (next_ < trials_.size()) return trials;
-  return answers_.is_null() && (protocol_->tlx || protocol_->free_text) ? questionnaire : debriefing;
+  if (next_ < trials_.size()) return between_parts() ? questionnaire : trials;
+  return answers_.is_null() && (protocol_->tlx != Tlx::never || protocol_->free_text) ? questionnaire : debriefing;
+}
+
+bool Session::between_parts() const {
+  return protocol_->tlx == Tlx::by_condition && next_ < trials_.size() && !now().practice && now().period == 1 &&
+         tlx(assignment_.conditions[0]).is_null();
 }
 
 bool Session::running() const {
@@ -97,7 +102,7 @@ bool Session::post(const Json& event, std::int64_t now_ms) {
     if (reader.at("key").string().empty() || reader.at("page").string().empty()) reader.fail("key and page");
     if (keys_.count(reader.at("key").string()) != 0) return turns_the_page(event);
     if (reader.at("kind").string() != "opened" && reader.at("page").string() != page_)
-      throw Refused(Refused::conflict, "this session goes on in another page");
+      throw Refused(Refused::conflict, "this session is open in another page");
     check(reader, now_ms);
   } catch (const InputError& e) {
     throw Refused(Refused::bad, e.what());
@@ -148,6 +153,7 @@ void Session::check(const JsonReader& event, std::int64_t now_ms) const {
   for (const std::string& scale : scales)
     if (!event.at("tlx").at(scale).json().is_null()) event.at("tlx").at(scale).integer(0, 100);
   event.at("tlx").only(scales);
+  if (between_parts() && !event.at("free_text").string().empty()) event.at("free_text").fail("nothing before the end");
   if (event.at("free_text").string().size() > longest_text)
     event.at("free_text").fail(fmt::format("at most {} bytes", longest_text));
 }
@@ -203,7 +209,9 @@ void Session::apply(const Json& event) {
   } else if (kind == "submit") {
     submit(event);
   } else if (kind == "questionnaire") {
-    answers_ = {{"tlx", event.at("tlx")}, {"free_text", event.at("free_text")}};
+    const bool first = between_parts();
+    if (protocol_->tlx == Tlx::by_condition) tlx_[index(assignment_.conditions[first ? 0 : 1])] = event.at("tlx");
+    if (!first) answers_ = {{"tlx", event.at("tlx")}, {"free_text", event.at("free_text")}};
   }
 }
 
@@ -267,6 +275,7 @@ Json Session::trial_state() const {
             {"of", std::count_if(trials_.begin(), trials_.end(), timed)},
             {"first_of_part", !trial.practice && (done == 0 || trials_[next_ - 1].period != trial.period)},
             {"interrupted", interrupted},
+            {"proposed_by_model", !trial.item->scenario.empty()},  // else by the protocol's author
             {"running", running()}};
   if (!running()) return json;  // nobody reads ahead
   const Item& item = *trial.item;
@@ -296,7 +305,12 @@ Json Session::state() const {
     json["answer"] = names_of(protocol_->example.target);
   }
   if (step() == trials) json["trial"] = trial_state();
-  if (step() == questionnaire) json.update({{"tlx", protocol_->tlx}, {"free_text", protocol_->free_text}});
+  if (step() == questionnaire) {
+    const bool first = between_parts();
+    json.update(
+        {{"tlx", protocol_->tlx != Tlx::never}, {"free_text", protocol_->free_text && !first}, {"last", !first}});
+    if (protocol_->tlx == Tlx::by_condition) json["condition"] = to_string(assignment_.conditions[first ? 0 : 1]);
+  }
   return json;
 }
 

@@ -1,6 +1,7 @@
 // One person's session: a state machine over the events of their file. Nothing else is kept, so a server that was
 // killed goes on where it was.
 #pragma once
+#include <array>
 #include <functional>
 #include <set>
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace lgabench::study {
 
-/// Why an event is not taken. conflict: the session goes on in another page; later: too many people begin at once.
+/// Why an event is not taken. conflict: the session is open in another page; later: too many people begin at once.
 class Refused : public Error {
  public:
   enum Why { bad, conflict, later };
@@ -57,9 +58,11 @@ class Session {
   const Assignment& assignment() const { return assignment_; }
   Step step() const;
   /// No command is left; a questionnaire may be.
-  bool answered() const { return step() >= questionnaire; }
+  bool answered() const { return next_ == trials_.size(); }
   const std::vector<Trial>& all() const { return trials_; }
-  const Json& answers() const { return answers_; }  // of the questionnaire; null before
+  const Json& answers() const { return answers_; }  // of the questionnaire at the end; null before
+  /// NASA-TLX about one condition, by scale; null where it was not asked, or not yet.
+  const Json& tlx(Condition condition) const { return tlx_[index(condition)]; }
   const EventLog& log() const { return log_; }
   const Json& consent() const { return log_.events().front().at("consent"); }
 
@@ -80,6 +83,7 @@ class Session {
   void edit(const Json& event);
   void interrupt(const std::string& why);
   bool running() const;
+  bool between_parts() const;  // the first part is over, and is to be rated
   Trial& now() { return trials_[next_]; }
   const Trial& now() const { return trials_[next_]; }
   Json trial_state() const;
@@ -93,6 +97,7 @@ class Session {
   std::vector<Trial> trials_;
   std::size_t next_ = 0, spares_used_ = 0;
   Json answers_;
+  std::array<Json, 2> tlx_;  // by condition
   std::set<std::string> keys_;
   // Of the trial that is running.
   double shown_ms_ = 0;

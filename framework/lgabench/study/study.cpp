@@ -165,8 +165,11 @@ std::string Study::begin(const std::string& key, const std::string& consent_sha2
   auto session = std::make_unique<Session>(protocol_, std::move(log));
   ++slots_;
   const Json entry = assigned(*session);
+  const std::string began = fmt::format("{} began, with {} first", pseudonym(session->slot()),
+                                        to_string(session->assignment().conditions[0]));
   people_[id] = std::move(session);
   log_->append(entry);
+  say(began);
   return id;
 }
 
@@ -175,9 +178,23 @@ std::optional<Json> Study::post(const std::string& id, const Json& event, std::o
   const auto found = people_.find(id);
   if (found == people_.end()) return std::nullopt;
   Session& session = *found->second;
-  const bool changed = session.post(event, at_ms.value_or(now_ms()));
+  const bool was_there = session.step() == Session::debriefing, changed = session.post(event, at_ms.value_or(now_ms()));
   if (changed && session.answered()) finish(session);
+  if (!was_there && session.step() == Session::debriefing) say(pseudonym(session.slot()) + " finished");
   return changed ? session.state() : Json::object();
+}
+
+void Study::tell(std::function<void(const std::string&)> say) {
+  const std::lock_guard lock(mutex_);
+  tell_ = std::move(say);
+}
+
+void Study::say(const std::string& what) const {
+  if (!tell_) return;
+  const auto finished = std::count_if(people_.begin(), people_.end(),
+                                      [](const auto& person) { return person.second->step() == Session::debriefing; });
+  tell_(fmt::format("{}; {} under way, {} of {} finished", what, static_cast<std::ptrdiff_t>(people_.size()) - finished,
+                    finished, protocol_.planned));
 }
 
 void Study::finish(const Session& session) const {
@@ -200,6 +217,7 @@ bool Study::withdraw(const std::string& code) {
   people_.erase(found);
   forget(directory_, id, slot);
   sync_directory(people_of(directory_));
+  say(pseudonym(slot) + " withdrew");
   return true;
 }
 

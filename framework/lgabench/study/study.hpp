@@ -1,5 +1,6 @@
 // A study's directory: its log, a file of events for each person, what `lgabench run --humans` reads.
 #pragma once
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -34,6 +35,10 @@ class Study {
   /// Whether somebody consented with that key.
   bool knows(const std::string& key);
 
+  /// Calls `say` with a line whenever somebody begins, finishes or withdraws, from any thread, one at a time: by
+  /// pseudonym, with how many are under way and how many have finished. @p say must not throw, nor use the study.
+  void tell(std::function<void(const std::string&)> say);
+
   /// Takes a person's consent to the text with that SHA-256; the same key gives the same person. Returns their id.
   /// @throws Refused for another text, InputError where the disk takes nothing.
   std::string begin(const std::string& key, const std::string& consent_sha256, bool simulated);
@@ -48,6 +53,7 @@ class Study {
   void open_log(const fs::path& protocol_file);
   void open_people();
   void finish(const Session& session) const;
+  void say(const std::string& what) const;
 
   std::mutex mutex_;
   fs::path directory_;
@@ -58,6 +64,7 @@ class Study {
   std::map<std::string, std::unique_ptr<Session>> people_;  // by id
   std::vector<std::string> damaged_;
   int slots_ = 0;  // given so far
+  std::function<void(const std::string&)> tell_;
 };
 
 /// A study as it lies in a directory, to be read.

@@ -94,7 +94,7 @@ async function send() {
     const events = waiting.slice(0, 50);
     const answer = await deliver(`/p/${id}/events`, {events});
     if (answer.status === 409)
-      return stop('This session goes on elsewhere', 'It was opened in another window or tab. You can close this one.');
+      return stop('This session is open in another window', 'You can close this one.');
     if (answer.status === 404) return gone();
     if (answer.status !== 200)
       return stop('Something went wrong', `Please tell ${about.contact}. What you did so far is kept.`, answer.json.error || '');
@@ -178,7 +178,7 @@ function familiarisation(state) {
          'Here is everything there is. Take your time to look at it; the lists will be at hand later.'),
          make('p', {class: 'note'}, 'You may stop at any time by closing this page. With your withdrawal code, ',
               make('code', {}, state.withdrawal_code), ', you can have deleted what is stored. You will see it again at the end.')),
-       gallery('object_types', state.object_types), gallery('textures', state.textures), once('Go on', 'familiarised'));
+       gallery('object_types', state.object_types), gallery('textures', state.textures), once('Continue', 'familiarised'));
 }
 
 function example(state) {
@@ -186,22 +186,24 @@ function example(state) {
        words(make('p', {class: 'command'}, `“${state.command}”`),
              ...paragraphs('Geometric shapes are these object types, and these colors have polka dots. An object that fits has one of these types and one of these colors:')),
        gallery('object_types', state.answer.object_types), gallery('textures', state.answer.textures),
-       words(...paragraphs('Next come two commands for practice, which are not timed. Then it begins.')),
-       once('Go on', 'example_seen'));
+       words(...paragraphs('Next come two commands for practice, which are not timed. Then it begins.', ...instruction())),
+       once('Continue', 'example_seen'));
 }
 
 // --- a trial ---
 
+const instruction = () => about.instruction ? [about.instruction] : [];
 let trial = null;  // while a command is shown: {lastInput, idle, away}
 
-function ready({condition, practice, number, of, first_of_part, interrupted}) {
+function ready({condition, practice, number, of, first_of_part, interrupted, proposed_by_model}) {
   const filled = condition === 'lga_hill';
   const texts = filled
-    ? ['A large language model has answered already: its answer is filled in. Change it as you like, or submit it as it is.']
+    ? [proposed_by_model ? 'A large language model’s answer is filled in. Change it as you like, or submit it as it is.'
+      : 'For practice, an answer that we made up is filled in. Change it as you like, or submit it as it is. In the study, a large language model’s answers will be filled in.']
     : ['The lists are empty at first: choose all object types and all colors that the command could mean.'];
-  if (!practice) texts.push('Time runs from when the command appears until you submit. Please stay on this page until then.');
+  if (!practice) texts.push(...instruction(), 'Time runs from when the command appears until you submit. Please stay on this page until then.');
   const notes = interrupted ? [make('p', {class: 'note'}, practice
-    ? 'The last command was interrupted: it comes again.' : 'The last command was interrupted. It does not count; the study goes on with the next one.')] : [];
+    ? 'The last command was interrupted, so it is shown again.' : 'The last command was interrupted. It does not count; the study continues with the next one.')] : [];
   if (first_of_part) notes.push(make('p', {class: 'note'}, filled ? 'In this part the answers are filled in.' : 'In this part the lists begin empty.'));
   show(practice ? `Practice ${number} of 2` : `Command ${number} of ${of}`, words(...notes, ...paragraphs(...texts), once('Start', 'start')));
 }
@@ -212,6 +214,10 @@ function list(set, feature, names, chosen, changed) {
                                 autocomplete: 'off', spellcheck: 'false'});
   const count = make('p', {class: 'count soft'});
   const all = button('', () => choose(shown(), true), ''), none = button('', () => choose(shown(), false), '');
+  const only = make('button', {type: 'button', 'aria-pressed': 'false', onclick: () => {
+    only.setAttribute('aria-pressed', only.getAttribute('aria-pressed') === 'false');
+    filter();
+  }}, 'Chosen only');
   const tiles = make('ul', {class: 'tiles', role: 'group', 'aria-label': `${title}: arrow keys move, space chooses`});
   const shown = () => boxes.filter(box => !box.closest('li').hidden);
 
@@ -228,7 +234,7 @@ function list(set, feature, names, chosen, changed) {
     all.textContent = all_shown ? 'Select all' : `Select the ${shown().length} shown`;
     none.textContent = all_shown ? 'Select none' : `Unselect the ${shown().length} shown`;
     all.disabled = none.disabled = shown().length === 0;
-    count.textContent = `${chosen.size} of ${boxes.length} chosen` + (shown().length ? '' : '; nothing is called so');
+    count.textContent = `${chosen.size} of ${boxes.length} chosen` + (shown().length ? '' : '; no match');
     changed();
   }
   function reach(box) {  // one stop of the Tab key for the whole list
@@ -243,12 +249,14 @@ function list(set, feature, names, chosen, changed) {
     tiles.append(make('li', {}, make('label', {class: 'tile'}, box, picture(feature, name), name)));
   }
   reach(boxes[0]);
-  search.addEventListener('input', () => {
-    const parts = search.value.toLowerCase().split(/\s+/);
-    for (const box of boxes) box.closest('li').hidden = !parts.every(part => box.value.toLowerCase().includes(part));
+  function filter() {  // what is unchosen later stays until the next change of the filter: nothing moves under the pointer
+    const parts = search.value.toLowerCase().split(/\s+/), chosenOnly = only.getAttribute('aria-pressed') === 'true';
+    for (const box of boxes)
+      box.closest('li').hidden = !parts.every(part => box.value.toLowerCase().includes(part)) || (chosenOnly && !box.checked);
     if (shown().length) reach(shown()[0]);
     refresh();
-  });
+  }
+  search.addEventListener('input', filter);
   tiles.addEventListener('keydown', event => {
     const here = shown(), at = here.indexOf(event.target);
     const top = here.length ? here[0].closest('li').offsetTop : 0;
@@ -259,7 +267,7 @@ function list(set, feature, names, chosen, changed) {
     if (here[to]) here[to].focus();
   });
   refresh();
-  return make('section', {'aria-label': title}, make('h2', {}, title), make('div', {class: 'tools'}, count, search, all, none), tiles);
+  return make('section', {'aria-label': title}, make('h2', {}, title), make('div', {class: 'tools'}, count, search, all, none, only), tiles);
 }
 
 function running(state) {
@@ -277,7 +285,8 @@ function running(state) {
   const changed = () => {
     const complete = chosen.every(set => set.object_types.size && set.textures.size);
     submit.disabled = !complete;
-    const sizes = chosen.map(set => `${set.object_types.size} object types, ${set.textures.size} colors`);
+    const several = (n, one) => `${n} ${one}${n === 1 ? '' : 's'}`;
+    const sizes = chosen.map(set => `${several(set.object_types.size, 'object type')}, ${several(set.textures.size, 'color')}`);
     bar.textContent = complete ? `Chosen: ${sizes.join('; ')}`
       : 'Choose at least one object type and one color' + (chosen.length > 1 ? ' in each part.' : '.');
   };
@@ -349,12 +358,16 @@ function questionnaire(state) {
     }
   const text = make('textarea', {id: 'text', maxlength: 1000});
   if (state.free_text)
-    content.push(make('p', {}, make('label', {for: 'text'}, 'Is there anything you want to say? Please name nobody.')), text);
+    content.push(make('p', {}, make('label', {for: 'text'}, 'Is there anything you want to say? Please do not name anyone.')), text);
   const send = button('Send', () => {
     send.disabled = true;
     post('questionnaire', {tlx, free_text: text.value});
   });
-  show('Almost done', words(...paragraphs('All commands are answered. These questions are about all of them together; leave out what you like.'),
+  const how = {human: 'the lists were empty at first', lga_hill: 'answers were filled in'}[state.condition];
+  const which = how ? `the ${state.last ? 'second' : 'first'} part, in which ${how}` : 'all of them together';
+  show(state.last ? 'Almost done' : 'The first part is done', words(...paragraphs(state.last
+    ? `All commands are answered. These questions are about ${which}; leave out what you like.`
+    : `These questions are about ${which}; leave out what you like. Then the second part begins.`),
                             ...content, make('div', {class: 'buttons'}, send)));
 }
 
