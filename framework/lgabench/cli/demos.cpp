@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>

@@ -15,7 +15,7 @@
 #include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
-#include <lgabench/cell/environments.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/verbs.hpp>
