@@ -104,6 +104,22 @@ TEST_F(Play, CallsOutOfOrderAreErrorsAndMayBeMadeRight) {
   for (const auto& call : calls) EXPECT_SAYS(message_of<Error>(call), "expected a reset() before it");
 }
 
+TEST_F(Play, CircumstancesAddToAFileAndItReadsBackAsBefore) {
+  const auto shown = scenes(10);
+  Circumstances c{"heart", "kinematic", "cells", "train", 0, environment->action_space(), {}};
+  const auto before = demonstrate(*environment, shown, {Needs::Targets::truth, 1, .2}, {"u"}, &c.outcomes);
+  const auto without = demonstrate(*environment, shown, {Needs::Targets::truth, 1, .2}, {"u"});
+  EXPECT_EQ(bytes(before), bytes(without)) << "carrying labels out changes none";
+  ASSERT_EQ(c.outcomes.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_EQ(c.outcomes[i].size(), before[i].steps.size());
+    EXPECT_TRUE(c.outcomes[i].front().is_success);
+  }
+  const std::string more = demonstrations_hdf5(before, "test", &c);
+  EXPECT_GT(more.size(), bytes(before).size());
+  EXPECT_EQ(bytes(read_demonstrations(more, "more.hdf5")), bytes(before));
+}
+
 TEST_F(Play, FileReadsBackAsItWasWritten) {
   const auto before = demonstrations(3, 2);
   write_file(path / "d.hdf5", bytes(before));
