@@ -61,10 +61,7 @@ endfunction()
 # Data lies in the build tree where the installed programs look for it.
 function(lgabench_link_data)
   set(share ${PROJECT_BINARY_DIR}/share/lgabench)
-  if(IS_SYMLINK ${share}/python)  # to the sources, in a tree that an older version configured
-    file(REMOVE ${share}/python)
-  endif()
-  file(MAKE_DIRECTORY ${share} ${share}/python)
+  file(MAKE_DIRECTORY ${share})
   # Of all environments together: ids are the files' names.
   foreach(kind scenarios suites spaces)
     file(REMOVE_RECURSE ${share}/${kind})
@@ -90,7 +87,7 @@ function(lgabench_link_data)
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
                page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
-               python/lgabench_method:python/lgabench_method fetch:cmake/fetch)
+               python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})
     list(GET pair 0 name)
     list(GET pair 1 source)
