@@ -17,7 +17,7 @@ import lgabench
 from lgabench import registration
 from scenes_test import ENGINE, EXAMPLES, FULL
 
-VERSIONS = pathlib.Path(__file__).parents[2] / "python/lgabench/versions.json"
+VERSIONS = pathlib.Path(__file__).parents[2] / "python/package/lgabench/versions.json"
 
 
 def make(scenario, **arguments):
