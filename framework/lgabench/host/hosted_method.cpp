@@ -68,11 +68,12 @@ Reach reach_of(const HostJob& job) {
     reach.reads.push_back(python.at("interpreter").get<std::string>());
     for (const Json& path : python.at("reads")) reach.reads.push_back(path.get<std::string>());
   }
+  reach.reads.push_back(encoder_directory());
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
     const std::string name = entry.path().filename();
     const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
-    std::vector<fs::path>& list = readable ? reach.reads : reach.hidden;
+    std::vector<fs::path>& list = readable ? reach.reads : reach.unread;
     list.push_back(entry.path());
     for (const auto& file : fs::directory_iterator(entry.path(), none_there))
       if (file.is_symlink()) list.push_back(file.path());  // in a build tree, to the sources
