@@ -25,7 +25,7 @@ def run(*words):
 
 
 def is_elf(path):
-    return path.is_file() and not path.is_symlink() and path.open("rb").read(4) == b"\x7fELF"
+    return path.is_file() and not path.is_symlink() and path.read_bytes()[:4] == b"\x7fELF"
 
 
 def needed(path):

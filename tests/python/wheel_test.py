@@ -73,7 +73,7 @@ class Wheel(unittest.TestCase):
 
     def test_what_it_loads_and_holds(self):
         for path in self.site.glob("lgabench/**/*"):
-            if path.is_file() and path.open("rb").read(4) == b"\x7fELF":
+            if path.is_file() and path.read_bytes()[:4] == b"\x7fELF":
                 said = subprocess.run(["ldd", path], capture_output=True, text=True).stdout
                 self.assertNotIn("not found", said, path)
                 outside = [file for file in re.findall(r"=> (/\S+)", said) if not file.startswith(str(self.dir))]
