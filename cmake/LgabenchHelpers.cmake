@@ -93,7 +93,7 @@ function(lgabench_link_data)
     list(GET pair 1 source)
     file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${source} ${share}/${name} SYMBOLIC)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/${source}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/lgabench/${name}
-            PATTERN __pycache__ EXCLUDE)
+            PATTERN __pycache__ EXCLUDE PATTERN package EXCLUDE)  # python/package is the wheel's
   endforeach()
   # Pages and examples, so that an installation needs no sources.
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}

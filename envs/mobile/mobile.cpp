@@ -186,6 +186,7 @@ class MobileType final : public EnvironmentType {
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return plans(); }
   PictureSize picture_size() const override { return front_camera().size; }
+  int most_instances() const override { return most_objects; }
   Vec2 in_picture(Vec3 point_m) const override {
     if (front_camera().depth(point_m) <= 0) return {-1e6, -1e6};  // behind the camera
     const Vec2 at = front_camera().at(point_m);

@@ -11,6 +11,7 @@ void register_pytorch(const std::string& name, const std::vector<int>& channels,
 void register_environment();
 void register_llvmpipe();  // where EGL's headers are
 void register_tinyrenderer();
+void register_python();  // skipped without the package lgabench
 void register_plugin();
 void register_harness();
 

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   lgabench::register_llvmpipe();
 #endif
   lgabench::register_tinyrenderer();
+  lgabench::register_python();
   lgabench::register_plugin();
   lgabench::register_harness();
   benchmark::Initialize(&count, arguments.data());

@@ -71,6 +71,18 @@ class Confinement(Case):
         self.assertEqual([found["read", str(path)] for path in hidden], ["EACCES"] * len(hidden))
         self.assertEqual([found["read", str(path)] for path in readable], ["reached"] * len(readable))
 
+    def test_files_where_the_data_lies_beside_the_plugin(self):
+        """As in a virtual environment that holds lgabench: its interpreter must list the directories above the data."""
+        shutil.copytree(FIXTURES / "faulty", self.dir / "mine")
+        shutil.copytree(BUILD / "share/lgabench", self.dir / "mine/share/data", ignore=shutil.ignore_patterns("encoder"))
+        self.environment["LGABENCH_DATA"] = str(self.dir / "mine/share/data")
+        found = self.probes([f"read+path={self.dir}/mine/share/data/scenarios/heart.json", f"list+path={self.dir}/mine",
+                             f"list+path={self.dir}/mine/share"], plugins="mine")
+        self.need("Landlock")
+        self.assertEqual(found["read", f"{self.dir}/mine/share/data/scenarios/heart.json"], "EACCES")
+        for path in f"{self.dir}/mine", f"{self.dir}/mine/share":
+            self.assertEqual(found["list", path], "reached")
+
     def test_system_calls(self):
         words = ["socket", "unix_socket", "ptrace", "kill", "kill_all", "prlimit", "memory_of_worker", "memfd",
                  "socketpair", "raise"]
@@ -140,6 +152,14 @@ class Confinement(Case):
         self.assertEqual({p["id"]: p.get("asks") for p in record["plugins"]},
                          {"fixture_probe_network": "network", os.environ["LGABENCH_TEST_ENGINE"]: None})
         self.assert_matches_schemas("declared")
+
+    def test_the_encoder_that_a_variable_names(self):
+        (self.dir / "encoder").mkdir()
+        (self.dir / "encoder/vocab.txt").write_text("heart")
+        self.environment["LGABENCH_ENCODER"] = str(self.dir / "encoder")
+        found = self.probes([f"read+path={self.dir}/encoder/vocab.txt", "environment"])
+        self.assertEqual(found["read", f"{self.dir}/encoder/vocab.txt"], "reached")
+        self.assertIn("LGABENCH_ENCODER", found["environment", ""])
 
     def test_what_it_inherits(self):
         os.environ["A_SECRET"] = "x"

@@ -394,6 +394,14 @@ class PythonExamples(Case):
                 for row in json.loads((self.dir / module / "summary.json").read_text())["rows"]:
                     self.assertNotIn("method_error", row["failures"])
 
+    def test_behaviour_cloning_with_a_spatial_softmax(self):
+        self.need("torch")
+        rows, _ = self.beside(f"{EXAMPLES}/bc_torch.py:Bc", "bc_torch.py:Bc+input=rgb", "--set", "*.epochs=40", "--demos",
+                              "50", "--episodes", "10", "--layout", "cells")
+        self.assertNotIn("method_error", rows["bc_torch"]["failures"])
+        success = [row["success"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]]
+        self.assertGreaterEqual(max(success), .7, "on masks")
+
     def test_a_forest_in_scikit_learn(self):
         self.need("sklearn")
         rows, _ = self.beside("lga", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50", "--episodes",

@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <tabletop/two_poses.hpp>
 
 namespace lgabench {

@@ -4,10 +4,10 @@
 #include <functional>
 #include <set>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/core/files.hpp>
@@ -88,6 +88,36 @@ TEST_F(Play, RecoveryAddsDisturbedStatesWithTheirOwnLabels) {
   ASSERT_EQ(still[0].steps.size(), 2u);
   EXPECT_NEAR(TwoPoses(still[0].steps[1].label).pose0.position_m.y,
               TwoPoses(still[0].steps[0].label).pose1.position_m.y, .02);
+}
+
+TEST_F(Play, CallsOutOfOrderAreErrorsAndMayBeMadeRight) {
+  const auto fresh = make_environment(*scenario, make_engine());
+  const Scene scene = scenes(1).front();
+  const std::function<void()> calls[] = {[&] { fresh->step(TwoPoses()); }, [&] { fresh->observe(); },
+                                         [&] { fresh->expert_action(); }, [&] { fresh->expert_action_for(1); }};
+  for (const auto& call : calls) EXPECT_SAYS(message_of<Error>(call), "expected a reset() before it");
+  fresh->reset(scene);
+  EXPECT_TRUE(fresh->step(fresh->expert_action()).is_success);
+  Scene unknown = scene;
+  unknown.objects.front().object_type = "unicorn";
+  EXPECT_THROW(fresh->reset(unknown), InputError);
+  for (const auto& call : calls) EXPECT_SAYS(message_of<Error>(call), "expected a reset() before it");
+}
+
+TEST_F(Play, CircumstancesAddToAFileAndItReadsBackAsBefore) {
+  const auto shown = scenes(10);
+  Circumstances c{"heart", "kinematic", "cells", "train", 0, environment->action_space(), {}};
+  const auto before = demonstrate(*environment, shown, {Needs::Targets::truth, 1, .2}, {"u"}, &c.outcomes);
+  const auto without = demonstrate(*environment, shown, {Needs::Targets::truth, 1, .2}, {"u"});
+  EXPECT_EQ(bytes(before), bytes(without)) << "carrying labels out changes none";
+  ASSERT_EQ(c.outcomes.size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_EQ(c.outcomes[i].size(), before[i].steps.size());
+    EXPECT_TRUE(c.outcomes[i].front().is_success);
+  }
+  const std::string more = demonstrations_hdf5(before, "test", &c);
+  EXPECT_GT(more.size(), bytes(before).size());
+  EXPECT_EQ(bytes(read_demonstrations(more, "more.hdf5")), bytes(before));
 }
 
 TEST_F(Play, FileReadsBackAsItWasWritten) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/check.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>

@@ -10,9 +10,9 @@
 
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/check.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/steps.hpp>

@@ -92,19 +92,25 @@ std::vector<Demonstration> read_sealed(const fs::path& file, const Json& made_fr
 }  // namespace
 
 std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
-                                       const std::vector<std::string>& utterances) {
+                                       const std::vector<std::string>& utterances, Outcomes* outcomes) {
   std::vector<Demonstration> all;
   for (const Scene& scene : scenes) {
+    std::vector<StepResult> results;
+    const auto add = [&](Demonstration& demonstration, Step step) {
+      if (outcomes) results.push_back(environment.step(step.label));
+      demonstration.steps.push_back(std::move(step));
+    };
     Demonstration demonstration;
     demonstration.instruction.utterance = utterances.at(static_cast<std::size_t>(scene.command));
     Observation observation = environment.reset(scene);
-    demonstration.steps.push_back({std::move(observation), label(environment)});
+    add(demonstration, {std::move(observation), label(environment)});
     for (int k = 1; k <= needs.noisy_per_clean; ++k) {
       Step step;
       if (recovery_step(environment, scene, needs.noise_max * k / needs.noisy_per_clean, k, step))
-        demonstration.steps.push_back(std::move(step));
+        add(demonstration, std::move(step));
     }
     all.push_back(std::move(demonstration));
+    if (outcomes) outcomes->push_back(std::move(results));
   }
   return all;
 }

@@ -10,6 +10,9 @@
 
 namespace lgabench {
 
+/// What the label of each step of each demonstration leads to.
+using Outcomes = std::vector<std::vector<StepResult>>;
+
 /// One demonstration a scene. Its first step is clean. With needs.noisy_per_clean = n > 0, recovery (docs/protocol.md,
 /// section 5; DART: Laskey et al. 2017): rollout k of n resets the scene, executes the oracle's action with Gaussian
 /// noise of sigma = noise_max k / n (x std .25 sigma, y std .5 sigma, yaw std pi sigma, on both poses), and the state
@@ -17,9 +20,10 @@ namespace lgabench {
 /// that left the workspace, touched the obstacle or did not come to rest is dropped. Labels are noiseless and have the
 /// precision of a file. A function of its arguments: the noise is a random stream per scene and k. `utterances`: of the
 /// scenario's commands, as Scene::command counts them.
+/// `outcomes`: filled if given; then every label is carried out.
 /// @throws EngineError if the engine fails.
 std::vector<Demonstration> demonstrate(Environment& environment, const std::vector<Scene>& scenes, const Needs& needs,
-                                       const std::vector<std::string>& utterances);
+                                       const std::vector<std::string>& utterances, Outcomes* outcomes = nullptr);
 
 /// Where finished demonstrations are kept, shared by methods, runs and processes.
 struct DemonstrationCache {

@@ -7,8 +7,6 @@
 #include <set>
 #include <utility>
 
-#include <lgabench/abstraction/textualization.hpp>
-#include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -92,21 +90,6 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
 }
 
 }  // namespace
-
-Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
-  const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
-  const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
-  if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
-  const std::string own = own_stream(training_seed);
-  return [&scenario, noise, perceive, own](const Observation& seen, const Scene& scene) {
-    const auto stream = [&](const char* of) {
-      return RandomStream(
-          fmt::format("{}/{}/{}/{}{}/{}", of, scene.scenario, scene.layout, scene.seed, own, scene.index));
-    };
-    return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
-                                    stream("textualization"));
-  };
-}
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
   return [&policy, &instructions, plugin_id](const Environment&, const Scene& scene, const Observation& observation) {

@@ -6,28 +6,13 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/record/episode.hpp>
 
 namespace lgabench {
-
-/// What a policy is given in place of what the environment shows.
-using Perception = std::function<Observation(const Observation& seen, const Scene& scene)>;
-
-/// A test scene, and how it is seen.
-struct TestScene {
-  Scene scene;
-  Perception perception = nullptr;  // null: as it is
-  bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
-};
-
-/// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
-/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. `training_seed`:
-/// as in SceneRequest. @pre the scenario outlives it.
-Perception perception_of(const Scenario& scenario, const Arm& arm,
-                         std::optional<std::uint64_t> training_seed = std::nullopt);
 
 /// What an actor does, and what it says of the input that made it do so.
 struct Move {

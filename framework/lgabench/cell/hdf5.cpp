@@ -71,6 +71,13 @@ void write_attribute(const Library& h5, hid_t object, const char* name, std::int
   h5.check(H5Awrite(attribute, H5T_NATIVE_INT64, &value), name);
 }
 
+void write_attribute(const Library& h5, hid_t object, const char* name, const std::vector<double>& values) {
+  const hsize_t size = values.size();
+  const Handle space = h5.handle(H5Screate_simple(1, &size, nullptr), name);
+  const Handle attribute = h5.handle(H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), name);
+  h5.check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data()), name);
+}
+
 // Pictures are packed a step at a time: mostly background, they shrink twentyfold.
 void write_dataset(const Library& h5, hid_t group, const char* name, hid_t type, const Sizes& sizes, const void* data,
                    bool packed) {
@@ -113,18 +120,29 @@ std::array<hsize_t, 2> sizes(PictureSize picture) {
   return {static_cast<hsize_t>(picture.rows), static_cast<hsize_t>(picture.columns)};
 }
 
+// Of steps or of their results, which all are of one environment.
+template <class WithObservations>
+void write_observations(const Library& h5, hid_t group, const char* name, const WithObservations& all) {
+  std::vector<std::uint8_t> rgb, ids;
+  for (const auto& one : all) {
+    rgb.insert(rgb.end(), one.observation.rgb.begin(), one.observation.rgb.end());
+    ids.insert(ids.end(), one.observation.ids.begin(), one.observation.ids.end());
+  }
+  const auto [rows, columns] = sizes(all.front().observation.size);
+  const hsize_t steps = all.size();
+  const Handle obs = make_group(h5, group, name);
+  write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
+  write_dataset(h5, obs, "ids", H5T_STD_U8LE, {steps, rows, columns}, ids.data(), true);
+}
+
 void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration) {
   std::vector<float> actions;
-  std::vector<std::uint8_t> rgb, ids;
   Json instances = Json::array();
   for (const Step& step : demonstration.steps) {
     actions.insert(actions.end(), step.label.begin(), step.label.end());
-    rgb.insert(rgb.end(), step.observation.rgb.begin(), step.observation.rgb.end());
-    ids.insert(ids.end(), step.observation.ids.begin(), step.observation.ids.end());
     instances.push_back(instances_json(step.observation));
   }
-  const Step& first = demonstration.steps.front();  // all are of one environment
-  const auto [rows, columns] = sizes(first.observation.size);
+  const Step& first = demonstration.steps.front();
   const hsize_t steps = demonstration.steps.size();
   write_attribute(h5, group, "num_samples", static_cast<std::int64_t>(steps));
   write_attribute(h5, group, "utterance", demonstration.instruction.utterance);
@@ -132,9 +150,47 @@ void write_demonstration(const Library& h5, hid_t group, const Demonstration& de
   const std::string table = canonical(instances);
   write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, first.label.size()}, actions.data(), false);
   write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
-  const Handle obs = make_group(h5, group, "obs");
-  write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
-  write_dataset(h5, obs, "ids", H5T_STD_U8LE, {steps, rows, columns}, ids.data(), true);
+  write_observations(h5, group, "obs", demonstration.steps);
+}
+
+void write_results(const Library& h5, hid_t group, const std::vector<StepResult>& results) {
+  write_observations(h5, group, "next_obs", results);
+  std::vector<float> rewards;
+  for (const StepResult& result : results) rewards.push_back(result.is_success ? 1 : 0);
+  const std::vector<std::uint8_t> dones(results.size(), 1);
+  write_dataset(h5, group, "rewards", H5T_IEEE_F32LE, {results.size()}, rewards.data(), false);
+  write_dataset(h5, group, "dones", H5T_STD_U8LE, {results.size()}, dones.data(), false);
+}
+
+void write_circumstances(const Library& h5, hid_t data, const Circumstances& c) {
+  write_attribute(h5, data, "scenario", c.scenario);
+  write_attribute(h5, data, "layout", c.layout);
+  write_attribute(h5, data, "split", c.split);
+  write_attribute(h5, data, "seed", static_cast<std::int64_t>(c.seed));
+  Json names = Json::array(), units = Json::array();
+  std::vector<double> low, high;
+  for (const ActionNumber& number : c.action_space.numbers) {
+    names.push_back(number.name);
+    units.push_back(number.unit);
+    low.push_back(number.low);
+    high.push_back(number.high);
+  }
+  write_attribute(h5, data, "action_names", canonical(names));
+  write_attribute(h5, data, "action_units", canonical(units));
+  write_attribute(h5, data, "action_rotations", canonical(Json(c.action_space.rotations)));
+  write_attribute(h5, data, "action_low", low);
+  write_attribute(h5, data, "action_high", high);
+}
+
+// Names of demonstrations first to last - 1: texts of a fixed length, one after the other.
+void write_mask(const Library& h5, hid_t mask, const char* name, std::size_t first, std::size_t last) {
+  constexpr std::size_t name_size = 16;
+  std::string names;
+  for (std::size_t i = first; i < last; ++i) {
+    names += fmt::format("demo_{}", i);
+    names.resize((i - first + 1) * name_size);
+  }
+  write_dataset(h5, mask, name, text_type(h5, name_size), {last - first}, names.data(), false);
 }
 
 std::string read_text(const Library& h5, hid_t object, const char* name, const std::string& place) {
@@ -211,7 +267,8 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
 
 }  // namespace
 
-std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations, const std::string& environment_id) {
+std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations, const std::string& environment_id,
+                                const Circumstances* circumstances) {
   // Made in memory, so that the one writer of files (core/files.hpp) puts it on the disk.
   const Library h5("demonstrations");
   const Handle access = h5.handle(H5Pcreate(H5P_FILE_ACCESS), "/");
@@ -222,21 +279,24 @@ std::string demonstrations_hdf5(const std::vector<Demonstration>& demonstrations
   {
     const Handle data = make_group(h5, file, "data");
     std::int64_t total = 0;
-    std::string names;  // fixed-length strings, one after the other
-    const std::size_t name_size = 16;
     for (std::size_t i = 0; i < demonstrations.size(); ++i) {
-      std::string name = fmt::format("demo_{}", i);
-      write_demonstration(h5, make_group(h5, data, name), demonstrations[i]);
+      const Handle group = make_group(h5, data, fmt::format("demo_{}", i));
+      write_demonstration(h5, group, demonstrations[i]);
+      if (circumstances) write_results(h5, group, circumstances->outcomes.at(i));
       total += static_cast<std::int64_t>(demonstrations[i].steps.size());
-      name.resize(name_size);
-      names += name;
     }
     write_attribute(h5, data, "total", total);
     constexpr int gym_type = 2;  // robomimic's EnvType.GYM_TYPE
-    const Json arguments{{"env_name", environment_id}, {"type", gym_type}, {"env_kwargs", Json::object()}};
+    Json arguments{{"env_name", environment_id}, {"type", gym_type}, {"env_kwargs", Json::object()}};
+    if (circumstances)
+      arguments["env_kwargs"] = {
+          {"engine", circumstances->engine}, {"layout", circumstances->layout}, {"split", circumstances->split}};
     write_attribute(h5, data, "env_args", canonical(arguments));
+    if (circumstances) write_circumstances(h5, data, *circumstances);
     const Handle mask = make_group(h5, file, "mask");
-    write_dataset(h5, mask, "train", text_type(h5, name_size), {demonstrations.size()}, names.data(), false);
+    const std::size_t count = demonstrations.size(), held_out = circumstances ? count / 10 : 0;
+    write_mask(h5, mask, "train", 0, count - held_out);
+    if (held_out > 0) write_mask(h5, mask, "valid", count - held_out, count);
   }
   h5.check(H5Fflush(file, H5F_SCOPE_GLOBAL), "/");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);

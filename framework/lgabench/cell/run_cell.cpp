@@ -8,10 +8,10 @@
 #include <utility>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/answers.hpp>
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/steps.hpp>

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include <lgabench/cell/environments.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/record/layout.hpp>

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include <lgabench/abstraction/recorded.hpp>
-#include <lgabench/cell/environments.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/findings.hpp>

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/demonstrations.hpp>
-#include <lgabench/cell/environments.hpp>
 #include <lgabench/cell/hdf5.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
@@ -57,9 +57,9 @@ void write(const DemosArguments& a) {
       a.selection.empty() ? std::vector<Selection>() : selections_of(a.selection, scenario);
   for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, selections, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
-  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances());
-  write_file(a.out,
-             demonstrations_hdf5(demonstrations, fmt::format("lgabench/{}-{}-v1", scenario.environment, engine.id)));
+  Circumstances circumstances{scenario.id, engine.id, layout, "train", a.seed, environment->action_space(), {}};
+  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances(), &circumstances.outcomes);
+  write_file(a.out, demonstrations_hdf5(demonstrations, "lgabench/" + scenario.id + "-v1", &circumstances));
   to_stdout("{}\n", a.out);
 }
 

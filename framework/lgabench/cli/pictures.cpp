@@ -10,6 +10,7 @@
 #include <set>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/played_scenes.hpp>

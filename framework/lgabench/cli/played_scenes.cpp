@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include <lgabench/cell/environments.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>

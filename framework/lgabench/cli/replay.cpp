@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include <lgabench/cell/environments.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
 #include <lgabench/cli/help.hpp>

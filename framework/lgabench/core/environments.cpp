@@ -15,13 +15,6 @@ namespace {
 
 constexpr const char *prefix = "liblgabench_env_", *suffix = ".so";
 
-// Where the library lies that this code is in: environments lie beside it.
-fs::path library_directory() {
-  Dl_info here;
-  if (::dladdr(reinterpret_cast<const void*>(&environment_ids), &here) == 0) throw Error("dladdr: no library found");
-  return fs::canonical(here.dli_fname).parent_path();
-}
-
 // Never closed: objects of the environment may live as long as the program.
 const EnvironmentType* load(const std::string& id) {
   const fs::path file = library_directory() / (prefix + id + suffix);

@@ -73,6 +73,8 @@ class EnvironmentType {
   virtual const ActionSpace& action_space() const = 0;
   /// Of each observation.
   virtual PictureSize picture_size() const = 0;
+  /// How many instances an observation may have, whatever the scenario.
+  virtual int most_instances() const = 0;
   /// Where the camera shows a point of the world, in metres: x its column, y its row, in pixels, 0 at the picture's
   /// corner; also outside of the picture.
   virtual Vec2 in_picture(Vec3 point_m) const = 0;

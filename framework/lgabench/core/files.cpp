@@ -1,6 +1,7 @@
 #include <lgabench/core/files.hpp>
 
 #include <dirent.h>
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -187,9 +188,16 @@ fs::path program_directory() {
   return self.parent_path();
 }
 
+fs::path library_directory() {
+  Dl_info here;
+  if (::dladdr(reinterpret_cast<const void*>(&library_directory), &here) == 0)
+    throw InputError("dladdr: lgabench's library is not found");
+  return fs::canonical(here.dli_fname).parent_path();
+}
+
 fs::path data_directory() {
   if (const char* named = std::getenv("LGABENCH_DATA")) return named;
-  return program_directory().parent_path() / "share" / "lgabench";
+  return library_directory().parent_path() / "share" / "lgabench";
 }
 
 fs::path encoder_directory() {
@@ -197,6 +205,6 @@ fs::path encoder_directory() {
   return named && *named ? fs::path(named) : data_directory() / "encoder";
 }
 
-fs::path shipped_plugin_directory() { return program_directory().parent_path() / "lib" / "lgabench" / "plugins"; }
+fs::path shipped_plugin_directory() { return library_directory() / "lgabench" / "plugins"; }
 
 }  // namespace lgabench

@@ -49,11 +49,14 @@ void sync_directory(const fs::path& directory);
 /// All that was written to the directory's file system is on the disk afterwards. @throws InputError
 void sync_file_system(const fs::path& directory);
 
+/// Directory of the library that this code is in, whatever program loaded it: environments lie beside it.
+fs::path library_directory();
+
 /// Installed data (scenarios/, suites/, spaces/, answers/, embeddings/, paper/): $LGABENCH_DATA, or ../share/lgabench
-/// from the program.
+/// from the library.
 fs::path data_directory();
 
-/// Plugins shipped with the program: ../lib/lgabench/plugins from it.
+/// Plugins shipped with the library: lgabench/plugins beside it.
 fs::path shipped_plugin_directory();
 
 /// Where the sentence encoder's weights are: $LGABENCH_ENCODER, else encoder/ in the data directory. It may not exist.

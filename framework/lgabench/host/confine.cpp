@@ -64,14 +64,21 @@ class Rules {
       throw EngineError(fmt::format("Landlock: {}: {}", path.string(), std::strerror(errno)));
   }
 
-  // All of the directory but what is hidden: then its entries one by one, since a rule cannot take back another.
-  void add_visible(const fs::path& path, const std::vector<fs::path>& hidden) const {
-    const auto hides = [&path](const fs::path& one) { return is_below(path, one); };
-    if (std::any_of(hidden.begin(), hidden.end(), hides)) return;
+  // All of the directory but what is hidden or unread: then its entries one by one, since a rule cannot take back
+  // another. It can still be listed where nothing below is hidden: Python finds no module in a directory otherwise.
+  void add_visible(const fs::path& path, const std::vector<fs::path>& hidden,
+                   const std::vector<fs::path>& unread) const {
+    const auto is_within = [&path](const fs::path& one) { return is_below(path, one); };
     const auto lies_below = [&path](const fs::path& one) { return is_below(one, path); };
-    if (std::none_of(hidden.begin(), hidden.end(), lies_below)) return add(path, reading, false);
+    const auto any = [](const std::vector<fs::path>& all, const auto& what) {
+      return std::any_of(all.begin(), all.end(), what);
+    };
+    if (any(hidden, is_within) || any(unread, is_within)) return;
+    const bool hides = any(hidden, lies_below);
+    if (!hides && !any(unread, lies_below)) return add(path, reading, false);
+    if (!hides) add(path, read_dir, false);
     std::error_code unreadable;
-    for (const auto& entry : fs::directory_iterator(path, unreadable)) add_visible(entry.path(), hidden);
+    for (const auto& entry : fs::directory_iterator(path, unreadable)) add_visible(entry.path(), hidden, unread);
   }
 
   Descriptor file;
@@ -123,14 +130,15 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   const int version = landlock_version();
   if (version == 0) return;
   Rules rules(version, network_);
-  std::vector<fs::path> hidden;
+  std::vector<fs::path> hidden, unread;
   std::error_code not_there;
   for (const fs::path& path : reach.hidden) hidden.push_back(fs::weakly_canonical(path, not_there));
+  for (const fs::path& path : reach.unread) unread.push_back(fs::weakly_canonical(path, not_there));
   std::vector<fs::path> reads = reach.reads;
   if (network_) reads.insert(reads.end(), std::begin(for_network), std::end(for_network));
   for (const fs::path& path : reads) {
     const fs::path real = fs::canonical(path, not_there);
-    if (!not_there) rules.add_visible(real, hidden);
+    if (!not_there) rules.add_visible(real, hidden, unread);
   }
   for (const fs::path& path : reach.writes) rules.add(path, ~devices_and_sockets);
   rules_ = std::move(rules.file);

@@ -13,6 +13,7 @@ struct Reach {
   std::vector<std::filesystem::path> writes;  // likewise, to be read and written
   std::vector<std::filesystem::path> hidden;  // neither, though they lie below one of `reads`
   bool network = false;  // sockets of IP, and what looking up a name and checking a certificate read
+  std::vector<std::filesystem::path> unread{};  // as `hidden`, but that they are there, and their names, may be seen
 };
 
 /// Prepared before a process is forked, applied in it. Without the kernel's support a part is left out.

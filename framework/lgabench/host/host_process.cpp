@@ -61,6 +61,7 @@ std::vector<std::string> environment_of(const HostCommand& command) {
                                "LOGNAME=lgabench",
                                "TORCHINDUCTOR_CACHE_DIR=" + scratch + "/torchinductor",
                                "LGABENCH_DATA=" + data_directory().string(),
+                               "LGABENCH_ENCODER=" + fs::absolute(encoder_directory()).string(),
                                "GLIBC_TUNABLES=glibc.malloc.hugetlb=1"};
   for (const char* name : {"PATH", "LD_LIBRARY_PATH", "OPENBLAS_CORETYPE"})
     if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));

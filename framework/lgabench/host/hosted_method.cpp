@@ -59,11 +59,12 @@ Reach reach_of(const HostJob& job) {
   reach.writes.push_back(job.scratch);
   reach.hidden = job.hidden;
   if (!job.method.python.is_null()) add_python(reach, job.method.python);
+  reach.reads.push_back(encoder_directory());
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(data, none_there)) {
     const std::string name = entry.path().filename();
     const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
-    std::vector<fs::path>& list = readable ? reach.reads : reach.hidden;
+    std::vector<fs::path>& list = readable ? reach.reads : reach.unread;
     list.push_back(entry.path());
     for (const auto& file : fs::directory_iterator(entry.path(), none_there))
       if (file.is_symlink()) list.push_back(file.path());  // in a build tree, to the sources

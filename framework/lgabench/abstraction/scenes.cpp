@@ -1,0 +1,77 @@
+#include <lgabench/abstraction/scenes.hpp>
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include <lgabench/abstraction/textualization.hpp>
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/random.hpp>
+
+namespace lgabench {
+namespace {
+
+// Refuses what needs a scene while there is none: environments take a reset for granted.
+class InOrder final : public Environment {
+ public:
+  explicit InOrder(std::unique_ptr<Environment> environment) : environment_(std::move(environment)) {}
+
+  const ActionSpace& action_space() const override { return environment_->action_space(); }
+  Observation reset(const Scene& scene) override {
+    has_scene_ = false;
+    Observation seen = environment_->reset(scene);
+    has_scene_ = true;
+    return seen;
+  }
+  StepResult step(const Action& action) override { return after_reset("step()").step(action); }
+  Observation observe() override { return after_reset("observe()").observe(); }
+  Action expert_action() const override { return after_reset("expert_action()").expert_action(); }
+  Action expert_action_for(std::uint8_t instance_id) const override {
+    return after_reset("expert_action_for()").expert_action_for(instance_id);
+  }
+
+ private:
+  Environment& after_reset(const char* call) const {
+    if (!has_scene_) throw Error(fmt::format("{}: expected a reset() before it, which puts a scene there", call));
+    return *environment_;
+  }
+
+  std::unique_ptr<Environment> environment_;
+  bool has_scene_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world) {
+  return std::make_unique<InOrder>(find_environment(scenario.environment).make(std::move(world), scenario));
+}
+
+Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
+                     std::uint64_t training_seed, int index) {
+  return find_environment(scenario.environment)
+      .sample(scenario, {layout, "train", "train", training_seed, selections}, index);
+}
+
+Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
+                 int index, std::optional<std::uint64_t> training_seed) {
+  return find_environment(scenario.environment)
+      .sample(scenario, {layout, "test", arm, scene_seed, {}, training_seed}, index);
+}
+
+Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
+  const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
+  const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
+  if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
+  const std::string own = own_stream(training_seed);
+  return [&scenario, noise, perceive, own](const Observation& seen, const Scene& scene) {
+    const auto stream = [&](const char* of) {
+      return RandomStream(
+          fmt::format("{}/{}/{}/{}{}/{}", of, scene.scenario, scene.layout, scene.seed, own, scene.index));
+    };
+    return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
+                                    stream("textualization"));
+  };
+}
+
+}  // namespace lgabench

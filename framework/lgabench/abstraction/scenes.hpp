@@ -1,0 +1,45 @@
+// Scenes of a scenario as a run plays them and as a method sees them: for the harness, and for programs of one's own.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/environment.hpp>
+#include <lgabench/core/physics_world.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// The scenario's environment on that engine. Calls out of their order (Environment) @throws Error, and may be made
+/// right. @throws InputError for an environment that is not known.
+std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::unique_ptr<PhysicsWorld> world);
+
+/// Scene `index` to demonstrate. Where the scenario leaves it to the method, targets are drawn from `selections`, one a
+/// command; empty: the truth. @throws as EnvironmentType::sample().
+Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
+                     std::uint64_t training_seed, int index);
+
+/// Test scene `index` of an arm, whatever was selected or trained on; with a training seed its own, else shared by all.
+Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
+                 int index, std::optional<std::uint64_t> training_seed = std::nullopt);
+
+/// What a policy is given in place of what the environment shows.
+using Perception = std::function<Observation(const Observation& seen, const Scene& scene)>;
+
+/// A test scene, and how it is seen.
+struct TestScene {
+  Scene scene;
+  Perception perception = nullptr;  // null: as it is
+  bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
+};
+
+/// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
+/// from a stream in which the arm has no part: more noise adds errors to those that less of it makes. `training_seed`:
+/// as in SceneRequest. @pre the scenario outlives it.
+Perception perception_of(const Scenario& scenario, const Arm& arm,
+                         std::optional<std::uint64_t> training_seed = std::nullopt);
+
+}  // namespace lgabench

@@ -1,0 +1,20 @@
+"""lgabench in Python: scenes to step, as Gymnasium environments too, demonstrations and runs to read (docs/python.md).
+
+    env = lgabench.Environment("heart")
+    seen = env.reset("test", 0)
+    env.step(env.expert_action()).success
+
+`import lgabench` registers "lgabench/heart-v1" and the other scenarios where Gymnasium is installed.
+"""
+import importlib.util
+
+from lgabench._core import EngineError, engines, scenarios, version as __version__
+from lgabench.evaluation import Result, evaluate
+from lgabench.scenes import ActionSpace, Batch, Environment, Pool, Scenario, StepResult
+
+__all__ = ["ActionSpace", "Batch", "EngineError", "Environment", "Pool", "Result", "Scenario", "StepResult", "__version__",
+           "engines", "evaluate", "scenarios"]
+
+if importlib.util.find_spec("gymnasium"):
+    from lgabench import registration as _registration
+    _registration.register()

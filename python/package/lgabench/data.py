@@ -1,0 +1,137 @@
+"""Runs as data frames (pandas), demonstrations as a method gets them (h5py)."""
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import pathlib
+import re
+import stat
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Union
+
+import numpy
+
+from lgabench.scenes import ActionSpace
+from lgabench_method import Demonstration, Instance, Instruction, Observation, Selection, Step, goal_mask
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["Demonstrations", "Run", "goal_mask", "load_demonstrations", "load_run"]
+
+Path = Union[str, os.PathLike[str]]
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run directory. Frames have the index `cell`, a cell's key; columns beside those of docs/formats are kept too."""
+    run: dict[str, Any]  # run.json
+    cells: pandas.DataFrame  # a row a finished cell: its setting, and the quality of what was selected
+    episodes: pandas.DataFrame  # as episodes.csv, and `action`
+    training: pandas.DataFrame  # a row an epoch
+    timing: pandas.DataFrame
+    failed: dict[str, str] = field(default_factory=dict)  # cell -> why it has no result
+
+
+def _read(path: pathlib.Path) -> bytes:
+    descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    with os.fdopen(descriptor, "rb") as file:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise ValueError(f"{path}: expected a regular file")
+        return file.read()
+
+
+def _lines(data: bytes) -> Iterator[dict[str, Any]]:
+    return map(json.loads, data.splitlines())
+
+
+def load_run(directory: Path, verify: bool = True) -> Run:
+    """Reads what a run left. `verify`: each file's SHA-256 is compared with the cell's status.json. ValueError says which
+    file is not as it was written, OSError which cannot be read; a symbolic link is refused."""
+    import pandas
+
+    root = pathlib.Path(directory)
+    run = json.loads(_read(root / "run.json"))
+    cells: list[dict[str, Any]] = []
+    episodes: list[dict[str, Any]] = []
+    training: list[dict[str, Any]] = []
+    timing: list[dict[str, Any]] = []
+    failed: dict[str, str] = {}
+    for key in run["cells"]:
+        if not re.fullmatch("[0-9a-f]{16}", key):
+            raise ValueError(f"{root / 'run.json'}: /cells: expected keys of 16 digits, got {key!r}")
+        folder = root / "cells" / key
+        if not (folder / "status.json").exists():
+            failed[key] = "not played yet"
+            continue
+        if (root / "cells").is_symlink() or folder.is_symlink():
+            raise ValueError(f"{folder}: a symbolic link; a run holds none")
+        status = json.loads(_read(folder / "status.json"))
+        if status["state"] != "ok":
+            failed[key] = str(status.get("reason", status["state"]))
+            continue
+        files = {name: _read(folder / name)
+                 for name in ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json")}
+        for name, data in files.items():
+            if verify and hashlib.sha256(data).hexdigest() != status["files"].get(name):
+                raise ValueError(f"{folder / name}: not as it was written: its SHA-256 is not that of status.json")
+        cell = json.loads(files["cell.json"])
+        setting = _setting(key, cell)
+        selected = json.loads(files["selection.json"])["commands"]
+        cells.append({**setting, "options": cell["method"].get("options", {}),
+                      "selection": [one["selection"] for one in selected], "quality": [one["quality"] for one in selected]})
+        commands = [one["utterance"] for one in cell["scenario"]["commands"]]
+        episodes += [{**setting, **one, "command": commands[one["command"]]} for one in _lines(files["episodes.jsonl"])]
+        training += [{"cell": key, **one} for one in _lines(files["training.jsonl"])]
+        timing.append({"cell": key, **json.loads(files["timing.json"])})
+
+    def frame(rows: list[dict[str, Any]]) -> pandas.DataFrame:
+        return pandas.DataFrame(rows, columns=None if rows else ["cell"]).set_index("cell")
+
+    return Run(run, frame(cells), frame(episodes), frame(training), frame(timing), failed)
+
+
+def _setting(key: str, cell: Mapping[str, Any]) -> dict[str, Any]:
+    method = cell["method"]
+    return {"cell": key, "scenario": cell["scenario"]["id"], "layout": cell["layout"], "engine": cell["engine"],
+            "method": method["name"], "method_kind": method["kind"], "demonstrations": cell["demonstrations"],
+            "training_seed": cell["training_seed"], "participant": cell.get("participant", "")}
+
+
+class Demonstrations(list[Demonstration]):
+    """A list of demonstrations, and what the file says of where they come from: "" or None in files before 0.3."""
+    scenario: str = ""
+    layout: str = ""
+    split: str = ""
+    seed: Union[int, None] = None
+    action_space: Union[ActionSpace, None] = None
+
+
+def load_demonstrations(file: Path) -> Demonstrations:
+    """Reads what `lgabench demos` wrote, also with recovery steps. Instructions come without a Selection."""
+    import h5py  # type: ignore[import-untyped]
+
+    all_of_them = Demonstrations()
+    with h5py.File(file, "r") as opened:
+        data = opened["data"]
+        for name in ("scenario", "layout", "split"):
+            setattr(all_of_them, name, _text(data.attrs.get(name, "")))
+        if "action_names" in data.attrs:
+            names = tuple(json.loads(_text(data.attrs["action_names"])))
+            rotations = tuple(map(tuple, json.loads(_text(data.attrs["action_rotations"]))))
+            all_of_them.action_space = ActionSpace(names, tuple(json.loads(_text(data.attrs["action_units"]))),
+                                                   data.attrs["action_low"], data.attrs["action_high"], rotations)
+            all_of_them.seed = int(data.attrs["seed"])
+        for number in range(len(data)):
+            one = data[f"demo_{number}"]
+            tables = json.loads(one["instances"][()].tobytes())
+            rgb, ids, actions = one["obs/rgb"][()], one["obs/ids"][()], one["actions"][()].astype(numpy.float64)
+            steps = [Step(Observation(rgb[t], ids[t], [Instance(row["id"], row["object_type"], row["texture"], row["pixels"])
+                                                       for row in table]), actions[t]) for t, table in enumerate(tables)]
+            all_of_them.append(Demonstration(Instruction(_text(one.attrs["utterance"]), Selection()), steps))
+    return all_of_them
+
+
+def _text(value: Any) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)

@@ -1,0 +1,213 @@
+"""Scenes as Gymnasium environments: one action an episode, made by gymnasium.make("lgabench/heart-v1")."""
+from __future__ import annotations
+
+import os
+from typing import Any, NoReturn, Optional, Sequence, SupportsFloat, Union
+
+import gymnasium
+import numpy
+from gymnasium import spaces
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from lgabench.scenes import Batch, Environment, Numbers, Pool, Scenario, SPLITS
+
+__all__ = ["SceneEnv", "SceneVectorEnv"]
+
+PRINTABLE = "".join(map(chr, range(32, 127)))
+Path = Union[str, os.PathLike[str]]
+
+
+def observation_space(scenario: Scenario) -> spaces.Dict:
+    rows, columns = scenario.picture_size
+    return spaces.Dict({
+        "rgb": spaces.Box(0, 255, (rows, columns, 3), numpy.uint8),
+        "ids": spaces.Box(0, 255, (rows, columns), numpy.uint8),
+        "instances": spaces.Box(-1, 32767, (scenario.most_instances, 4), numpy.int16),
+        "instruction": spaces.Text(256, charset=PRINTABLE + "".join(sorted(set("".join(scenario.commands)) - set(PRINTABLE)))),
+    })
+
+
+class _Choice:
+    """Which scene a reset begins: options decide; else split train draws one, dev and test play scene `seed` or the next."""
+
+    def __init__(self, scenario: Scenario, split: str, arm: Optional[str], scene_seed: int) -> None:
+        if split not in SPLITS:
+            raise ValueError(f"split {split!r}: expected train, dev or test")
+        if arm is not None and arm not in scenario.arms:
+            raise ValueError(f"arm {arm!r}: expected one of {', '.join(scenario.arms)}")
+        self.usual = {"split": split, "arm": arm or scenario.arms[0], "scene_seed": scene_seed}
+        self.next = 0
+
+    def __call__(self, seed: Optional[int], options: Optional[dict[str, Any]], random: numpy.random.Generator
+                 ) -> tuple[str, str, int, int]:
+        chosen = {**self.usual, **(options or {})}
+        if unknown := set(chosen) - {*self.usual, "index"}:
+            raise ValueError(f"options {sorted(unknown)}: expected split, arm, index, scene_seed")
+        index = chosen.get("index")
+        if index is None and chosen["split"] == "train":
+            index = random.integers(2**31 - 1)
+        elif index is None:
+            index = self.next if seed is None else seed % (2**31 - 1)
+        if chosen["split"] != "train":
+            self.next = int(index) + 1
+        return chosen["split"], chosen["arm"], int(chosen["scene_seed"]), int(index)
+
+
+class SceneEnv(gymnasium.Env[dict[str, Any], numpy.typing.NDArray[numpy.float32]]):
+    """One scenario, by id or by a file of one's own (`path`). Actions within [-1, 1]; `to_metres` says what they are."""
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}
+
+    def __init__(self, scenario: Union[str, Scenario, None] = None, *, path: Optional[Path] = None, split: str = "train",
+                 engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None, scene_seed: int = 0,
+                 render_mode: Optional[str] = None) -> None:
+        self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
+        self.environment = Environment(self.scenario, engine, layout)
+        self.render_mode = render_mode
+        self.object_types, self.textures = self.scenario.space.object_types, self.scenario.space.textures
+        self.to_metres, self.from_metres = self.scenario.action_space.to_metres, self.scenario.action_space.from_metres
+        self.observation_space = observation_space(self.scenario)
+        self.action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
+        self.task = self.task_description = self.scenario.commands[0]
+        self._max_episode_steps = 1  # an episode is one action
+        self._choice = _Choice(self.scenario, split, arm, scene_seed)
+        self._picture: Optional[numpy.typing.NDArray[numpy.uint8]] = None
+        self._ready = False
+
+    def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
+              ) -> tuple[dict[str, Any], dict[str, Any]]:
+        super().reset(seed=seed)
+        self._ready = False
+        split, arm, scene_seed, index = self._choice(seed, options, self.np_random)
+        seen = self.environment.reset(split, index, arm=arm, seed=scene_seed)
+        self._ready = True
+        self.task = self.task_description = self.environment.utterance
+        return self._seen(seen), {"scene": self.environment.scene_hash}
+
+    def step(self, action: numpy.typing.NDArray[numpy.float32]
+             ) -> tuple[dict[str, Any], SupportsFloat, bool, bool, dict[str, Any]]:
+        if not self._ready:
+            raise RuntimeError("step: expected a reset() before it; an episode is one action")
+        metres = self.to_metres(action)
+        self._ready = False
+        result = self.environment.step(metres)
+        return (self._seen(result.observation), float(result.success), True, False,
+                {"is_success": result.success, "failure": result.failure})
+
+    def expert_action(self) -> numpy.typing.NDArray[numpy.float32]:
+        """The oracle's, within [-1, 1]."""
+        return self.from_metres(self.environment.expert_action())
+
+    def render(self) -> Any:
+        return None if self.render_mode is None or self._picture is None else self._picture.copy()
+
+    def close(self) -> None:
+        self.environment.close()
+
+    def _seen(self, seen: Any) -> dict[str, Any]:
+        self._picture = seen.rgb
+        return {"rgb": seen.rgb, "ids": seen.ids, "instances": self.environment.instance_rows, "instruction": self.task}
+
+    def __deepcopy__(self, memo: Any) -> NoReturn:
+        raise TypeError("a scene's physics cannot be copied; make the environment again from its spec")
+
+
+class SceneVectorEnv(VectorEnv[dict[str, Any], Any, Any]):
+    """`num_envs` of a scenario on C++ threads: gymnasium.make_vec("lgabench/heart-v1", 8, threads=2). Environment i equals a
+    SceneEnv with seed + i. Episodes are one action, so each step() ends all: SAME_STEP begins the next ones at once."""
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 1, "autoreset_mode": AutoresetMode.SAME_STEP}
+
+    def __init__(self, scenario: Union[str, Scenario, None] = None, num_envs: int = 1, *, path: Optional[Path] = None,
+                 split: str = "train", engine: str = "mujoco", layout: Optional[str] = None, arm: Optional[str] = None,
+                 scene_seed: int = 0, threads: Optional[int] = None,
+                 autoreset_mode: Union[AutoresetMode, str] = AutoresetMode.SAME_STEP,
+                 render_mode: Optional[str] = None) -> None:
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        if self.autoreset_mode == AutoresetMode.NEXT_STEP:
+            raise ValueError("autoreset_mode NextStep: an episode is one action, so every second step() would play nothing; "
+                             "expected SameStep or Disabled")
+        self.metadata = {**self.metadata, "autoreset_mode": self.autoreset_mode}
+        self.scenario = scenario if isinstance(scenario, Scenario) else Scenario(scenario, path=path)
+        self.num_envs, self.render_mode = num_envs, render_mode
+        self.pool = Pool(self.scenario, num_envs, threads, engine, layout)
+        self.to_metres, self.from_metres = self.scenario.action_space.to_metres, self.scenario.action_space.from_metres
+        self.single_observation_space = observation_space(self.scenario)
+        self.single_action_space = spaces.Box(-1, 1, self.scenario.action_space.low.shape, numpy.float32)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._choices = [_Choice(self.scenario, split, arm, scene_seed) for _ in range(num_envs)]
+        self._randoms: dict[int, numpy.random.Generator] = {}
+        self._ready = numpy.zeros(num_envs, bool)
+        self._batch: Optional[Batch] = None
+        self._utterances: list[str] = []
+
+    def reset(self, *, seed: Union[int, Sequence[Optional[int]], None] = None, options: Optional[dict[str, Any]] = None
+              ) -> tuple[dict[str, Any], dict[str, Any]]:
+        seeds = ([None] * self.num_envs if seed is None else
+                 [seed + i for i in range(self.num_envs)] if isinstance(seed, int) else list(seed))
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed: expected {self.num_envs}, got {len(seeds)}")
+        options = dict(options or {})
+        mask = numpy.asarray(options.pop("reset_mask", numpy.ones(self.num_envs, bool)))
+        if mask.shape != (self.num_envs,) or mask.dtype != bool or not mask.any():
+            raise ValueError(f"reset_mask: expected {self.num_envs} truth values, one or more of them true")
+        if not mask.all() and self._batch is None:
+            raise RuntimeError("reset_mask: expected a reset() of all environments before it")
+        infos = self._begin([int(i) for i in numpy.flatnonzero(mask)], seeds, options)
+        return self._observations(), infos
+
+    def step(self, actions: Any) -> tuple[dict[str, Any], Any, Any, Any, dict[str, Any]]:
+        if not self._ready.all():
+            late = numpy.flatnonzero(~self._ready).tolist()
+            raise RuntimeError(f"step: expected a reset() of environments {late} before it")
+        self._ready[:] = False
+        utterances = self._utterances
+        batch, success, failures = self.pool.step(self.to_metres(actions))
+        self._batch = batch
+        finals = [{"is_success": bool(success[i]), "failure": failures[i]} for i in range(self.num_envs)]
+        infos: dict[str, Any] = {}
+        if self.autoreset_mode == AutoresetMode.SAME_STEP:
+            for i, final in enumerate(finals):
+                last = {name: array[i] for name, array in batch._asdict().items()}
+                last["instruction"] = utterances[i]
+                infos = self._add_info(infos, {"final_obs": last, "final_info": final}, i)
+            infos.update(self._begin(list(range(self.num_envs)), [None] * self.num_envs, {}))
+        else:
+            for i, final in enumerate(finals):
+                infos = self._add_info(infos, final, i)
+        return (self._observations(), success.astype(numpy.float64), numpy.ones(self.num_envs, bool),
+                numpy.zeros(self.num_envs, bool), infos)
+
+    def expert_actions(self) -> numpy.typing.NDArray[numpy.float32]:
+        """The oracle's, a row for each environment."""
+        return self.from_metres(self.pool.expert_actions())
+
+    def render(self) -> Any:
+        return None if self.render_mode is None or self._batch is None else tuple(self._batch.rgb.copy())
+
+    def close_extras(self, **kwargs: Any) -> None:
+        self.__dict__.pop("pool", None)  # there is none where the constructor failed
+
+    def _begin(self, at: list[int], seeds: Sequence[Optional[int]], options: dict[str, Any]) -> dict[str, Any]:
+        for i in at:
+            if seeds[i] is not None or i not in self._randoms:
+                self._randoms[i] = seeding.np_random(seeds[i])[0]
+        self._ready[at] = False
+        chosen = [self._choices[i](seeds[i], options, self._randoms[i]) for i in at]
+        batch = self.pool.reset(chosen[0][0], [one[3] for one in chosen], arms=[one[1] for one in chosen],
+                                seeds=[one[2] for one in chosen], at=at)
+        if len(at) < self.num_envs and self._batch is not None:
+            kept = Batch(self._batch.rgb.copy(), self._batch.ids.copy(), self._batch.instances.copy())
+            kept.rgb[at], kept.ids[at], kept.instances[at] = batch
+            batch = kept
+        self._batch, self._ready[at] = batch, True
+        self._utterances, hashes = self.pool.utterances, self.pool.scene_hashes
+        infos: dict[str, Any] = {}
+        for i in at:
+            infos = self._add_info(infos, {"scene": hashes[i]}, i)
+        return infos
+
+    def _observations(self) -> dict[str, Any]:
+        assert self._batch is not None
+        return {**self._batch._asdict(), "instruction": tuple(self._utterances)}

@@ -1,0 +1,231 @@
+"""Scenarios and their scenes, stepped as a run steps them; numpy alone."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, NamedTuple, Optional, Sequence, Union
+
+import numpy
+import numpy.typing
+
+from lgabench import _core
+from lgabench_method import Command, FeatureSpace, Instance, Observation, SecondRole, Selection
+from lgabench_method.values import selection as _selection
+
+Numbers = numpy.typing.NDArray[numpy.float64]
+SPLITS = ("train", "dev", "test")
+
+
+@dataclass(frozen=True)
+class ActionSpace:
+    """What the numbers of an action mean. `rotations`: numbers that are a unit vector together, as indices; they are
+    normalised, all others clipped to their bounds, when an action is carried out."""
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    low: Numbers
+    high: Numbers
+    rotations: tuple[tuple[int, ...], ...]
+
+    def to_metres(self, scaled: numpy.typing.ArrayLike) -> Numbers:
+        """Numbers within [-1, 1] -> the action; one action, or a row each. A rotation of no length becomes no turn."""
+        given = numpy.asarray(scaled, numpy.float64)
+        if given.shape[-1:] != self.low.shape or not numpy.isfinite(given).all():
+            raise ValueError(f"action: expected {len(self.low)} finite numbers, got {scaled!r}")
+        metres = self.low + (given + 1) / 2 * (self.high - self.low)
+        for rotation in map(list, self.rotations):
+            no_turn = numpy.eye(len(rotation))[3 if len(rotation) == 4 else 0]
+            null = numpy.linalg.norm(metres[..., rotation], axis=-1, keepdims=True) < 1e-6
+            metres[..., rotation] = numpy.where(null, no_turn, metres[..., rotation])
+        return metres
+
+    def from_metres(self, action: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float32]:
+        """The other way: what a learner of numbers within [-1, 1] is to imitate."""
+        scaled = 2 * (numpy.asarray(action, numpy.float64) - self.low) / (self.high - self.low) - 1
+        return numpy.clip(scaled, -1, 1).astype(numpy.float32)
+
+
+class Scenario:
+    """A task with its commands, layouts and test arms: a shipped one's id, or a file of one's own."""
+
+    def __init__(self, id: Optional[str] = None, *, path: Union[str, os.PathLike[str], None] = None) -> None:
+        self._core = _core.scenario(id, None if path is None else os.fspath(path))
+        self.id: str = self._core.id
+        self.task: str = self._core.task
+        self.environment: str = self._core.environment
+        self.commands: list[str] = self._core.commands
+        self.layouts: list[str] = self._core.layouts
+        self.arms: list[str] = self._core.arms
+        self.space = FeatureSpace(self._core.space_id, self._core.object_types, self._core.textures)
+        self.picture_size: tuple[int, int] = self._core.picture_size
+        self.most_instances: int = self._core.most_instances
+        space = json.loads(self._core.action_space_json)
+        numbers = space["numbers"]
+        self.action_space = ActionSpace(tuple(one["name"] for one in numbers), tuple(one["unit"] for one in numbers),
+                                        numpy.array([one["low"] for one in numbers], numpy.float64),
+                                        numpy.array([one["high"] for one in numbers], numpy.float64),
+                                        tuple(map(tuple, space["rotations"])))
+
+    def command(self, index: int) -> Command:
+        """As Method.select() is given it."""
+        second = self._core.second
+        return Command(self.commands[index], self.task, SecondRole(*second) if second else None)
+
+    def truth(self, index: int) -> Selection:
+        """What the scenario's author means by command `index`; no observation holds it."""
+        number = range(len(self.commands))[index]
+        return _selection({**json.loads(self._core.truth_json(number)), "provenance": "truth"})
+
+    @property
+    def usual_layout(self) -> str:
+        """The layout of the first shipped suite that has the scenario; its own first one where none has."""
+        for file in sorted((pathlib.Path(_core.data_directory()) / "suites").glob("*.json")):
+            suite = json.loads(file.read_text())
+            if self.id in suite.get("scenarios", []) and suite["layouts"][0] in self.layouts:
+                return str(suite["layouts"][0])
+        return self.layouts[0]
+
+    def __repr__(self) -> str:
+        return f"lgabench.Scenario({self.id!r})"
+
+
+class StepResult(NamedTuple):
+    """What an action led to. `failure`: "none", or a word of docs/protocol.md; `came_to_rest`: else it was cut off."""
+    observation: Observation
+    success: bool
+    failure: str
+    came_to_rest: bool
+
+
+def as_scenario(scenario: Union[str, Scenario]) -> Scenario:
+    return scenario if isinstance(scenario, Scenario) else Scenario(scenario)
+
+
+def layout_of(scenario: Scenario, layout: Optional[str]) -> str:
+    if layout is not None and layout not in scenario.layouts:
+        raise ValueError(f"layout {layout!r}: expected one of {', '.join(scenario.layouts)}")
+    return layout or scenario.usual_layout
+
+
+def _observation(seen: Any) -> Observation:
+    return Observation(seen[0], seen[1], [Instance(*row) for row in seen[2]])
+
+
+class Environment:
+    """Scenes of one scenario on one engine, seen as a run's methods see them. Arrays are never reused. One thread at a
+    time; another one's call meanwhile raises RuntimeError, as does a call out of order."""
+
+    def __init__(self, scenario: Union[str, Scenario], engine: str = "mujoco", layout: Optional[str] = None) -> None:
+        self.scenario = as_scenario(scenario)
+        self.engine, self.layout = engine, layout_of(self.scenario, layout)
+        self._one: Optional[_core.Environment] = _core.Environment(self.scenario._core, engine, self.layout)
+        self._rows: numpy.typing.NDArray[numpy.int16]
+
+    @property
+    def action_space(self) -> ActionSpace:
+        return self.scenario.action_space
+
+    def reset(self, split: str = "train", index: int = 0, *, arm: Optional[str] = None, seed: int = 0,
+              own_scenes: Optional[int] = None) -> Observation:
+        """Scene `index`. Test scenes are of an arm (the first if None), with its errors of perception. `seed`: the
+        training seed for split train, the scene seed for test. `own_scenes`: of a training seed that has test scenes of
+        its own, as in the suite mobile."""
+        if split not in SPLITS:
+            raise ValueError(f"split {split!r}: expected train, dev or test")
+        if not 0 <= index < 2**31:
+            raise ValueError(f"index {index}: expected 0 to 2147483647")
+        *seen, self._rows = self._open().reset(split, arm or self.scenario.arms[0], seed, index, own_scenes)
+        return _observation(seen)
+
+    def step(self, action: numpy.typing.ArrayLike) -> StepResult:
+        """Carries out an action, in metres and unit vectors. A second one goes on from the state that was reached."""
+        (*seen, self._rows), success, failure, at_rest = self._open().step(numpy.ascontiguousarray(action, numpy.float64))
+        return StepResult(_observation(seen), success, failure, at_rest)
+
+    def expert_action(self, instance: Optional[int] = None) -> Numbers:
+        """The oracle's action in the present state; with an instance's id, as if that were the target."""
+        action: Numbers = self._open().expert_action(instance)
+        return action
+
+    @property
+    def utterance(self) -> str:
+        """The present scene's command."""
+        return str(self._open().utterance)
+
+    @property
+    def instance_rows(self) -> numpy.typing.NDArray[numpy.int16]:
+        """The last observation's instances: id, index into object types and into textures, visible pixels; -1 unused."""
+        self._open().scene_hash
+        return self._rows
+
+    @property
+    def scene_hash(self) -> str:
+        """16 digits: as episodes.jsonl names the present scene."""
+        return str(self._open().scene_hash)
+
+    def close(self) -> None:
+        self._one = None
+
+    def _open(self) -> _core.Environment:
+        if self._one is None:
+            raise RuntimeError("environment: closed")
+        return self._one
+
+    def __enter__(self) -> Environment:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close()
+
+
+class Batch(NamedTuple):
+    """Observations of several environments, a row each; `instances` as Environment.instance_rows."""
+    rgb: numpy.typing.NDArray[numpy.uint8]
+    ids: numpy.typing.NDArray[numpy.uint8]
+    instances: numpy.typing.NDArray[numpy.int16]
+
+
+class Pool:
+    """`count` environments of one scenario, advanced together on `threads` threads (all cores if None). Batches are new
+    arrays. After a fork it raises RuntimeError in the child."""
+
+    def __init__(self, scenario: Union[str, Scenario], count: int, threads: Optional[int] = None, engine: str = "mujoco",
+                 layout: Optional[str] = None) -> None:
+        self.scenario = as_scenario(scenario)
+        self.engine, self.layout = engine, layout_of(self.scenario, layout)
+        cores = len(os.sched_getaffinity(0))
+        self._pool = _core.Pool(self.scenario._core, engine, self.layout, count, threads or cores)
+
+    def __len__(self) -> int:
+        return len(self._pool)
+
+    def reset(self, split: str, indices: Sequence[int], *, arms: Optional[Sequence[str]] = None,
+              seeds: Optional[Sequence[int]] = None, at: Optional[Sequence[int]] = None) -> Batch:
+        """Begins scene indices[i] in environment at[i] (all, in order, if None)."""
+        at = range(len(self)) if at is None else at
+        return Batch(*self._pool.reset(list(at), split, list(arms or [self.scenario.arms[0]] * len(at)),
+                                       list(seeds or [0] * len(at)), list(indices)))
+
+    def step(self, actions: numpy.typing.ArrayLike, at: Optional[Sequence[int]] = None
+             ) -> tuple[Batch, numpy.typing.NDArray[numpy.bool_], list[str]]:
+        """Carries out a row of `actions` in each; -> observations, successes, failures."""
+        at = range(len(self)) if at is None else at
+        seen, success, failures, _ = self._pool.step(list(at), numpy.ascontiguousarray(actions, numpy.float64))
+        return Batch(*seen), success.view(numpy.bool_), failures
+
+    def expert_actions(self) -> Numbers:
+        actions: Numbers = self._pool.expert_actions(list(range(len(self))))
+        return actions
+
+    @property
+    def utterances(self) -> list[str]:
+        utterances: list[str] = self._pool.utterances
+        return utterances
+
+    @property
+    def scene_hashes(self) -> list[str]:
+        hashes: list[str] = self._pool.scene_hashes
+        return hashes
