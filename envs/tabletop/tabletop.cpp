@@ -119,6 +119,7 @@ class TabletopType final : public EnvironmentType {
   TabletopType() {
     failures_ = {failure::missed_object, failure::wrong_object};
     for (const Task* task : tabletop::tasks()) {
+      most_instances_ = std::max(most_instances_, task->most_distractors() + 2);  // with target and goal
       TaskInfo info{task->id(), {}, std::nullopt, task->failures(), task->example()};
       for (const Layout& layout : task->layouts()) info.layouts.push_back(layout.id);
       if (const auto second = task->second()) info.second = *second;
@@ -134,7 +135,7 @@ class TabletopType final : public EnvironmentType {
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return two_poses(); }
   PictureSize picture_size() const override { return Workspace::picture; }
-  int most_instances() const override { return most_bodies; }
+  int most_instances() const override { return most_instances_; }
   // The corner of the first pixel is half a pixel before its centre.
   Vec2 in_picture(Vec3 point_m) const override {
     const Vec2 at = tabletop::in_picture(point_m.x, point_m.y);
@@ -175,6 +176,7 @@ class TabletopType final : public EnvironmentType {
 
  private:
   std::string id_ = "tabletop";
+  int most_instances_ = most_bodies;
   std::vector<TaskInfo> tasks_;
   std::vector<std::string> failures_;
 };

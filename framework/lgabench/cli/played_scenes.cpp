@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
@@ -29,7 +30,8 @@ Scene PlayedScenes::scene(const Played& played, const std::string& arm, int inde
 }
 
 Environment* PlayedScenes::on(const std::string& engine, const Scenario& scenario) {
-  std::unique_ptr<Environment>& made = environments_[{engine, scenario.environment, scenario.space.id}];
+  std::unique_ptr<Environment>& made = environments_[{
+      engine, scenario.environment, scenario.space.id + find_environment(scenario.environment).world_of(scenario)}];
   if (made) return made.get();
   static const Catalogue catalogue = scan_plugins(plugin_directories());
   try {

@@ -30,7 +30,7 @@ class PlayedScenes {
   Environment* on(const std::string& engine, const Scenario& scenario);
 
  private:
-  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space
+  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space and world
   std::map<std::string, std::unique_ptr<Played>> cells_;                             // by file
 };
 
