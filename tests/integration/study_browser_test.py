@@ -237,6 +237,14 @@ class StudySmoke(InBrowser):
         page.click("I do not agree").see("Nothing was stored")
         self.assertEqual(self.server.people(), [])
 
+    def test_an_invitation_is_in_the_link(self):
+        self.start("paper", "--invitation", "abc")
+        page = Browser(self).open(self.server.address)
+        page.click("I agree and begin").see("this study is by invitation")
+        self.assertEqual(self.server.people(), [])
+        page.open(self.server.address + "?invitation=abc").see("I agree").agree()
+        self.assertEqual(len(self.server.people()), 1)
+
     def test_reload_and_second_tab_break_a_trial_and_lose_nothing(self):
         self.start("crossover", seed=1)
         page = Browser(self).open(self.server.address)
