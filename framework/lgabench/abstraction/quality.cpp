@@ -21,7 +21,34 @@ SetQuality quality_of(const FeatureSet& selected, const FeatureSet& truth) {
   return {quality_of(selected.object_types, truth.object_types), quality_of(selected.textures, truth.textures)};
 }
 
-// The mean of what is there; the number itself where all agree, without rounding.
+NameQuality mean_names(const std::vector<NameQuality>& all) {
+  const auto over = [&all](auto member) {
+    std::vector<std::optional<double>> numbers;
+    for (const NameQuality& one : all) numbers.emplace_back(one.*member);
+    return mean_of(numbers);
+  };
+  return {over(&NameQuality::precision), over(&NameQuality::recall), over(&NameQuality::size).value_or(0),
+          over(&NameQuality::true_size).value_or(0)};
+}
+
+Json to_json(const NameQuality& quality) {
+  const auto share = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  return {{"precision", share(quality.precision)},
+          {"recall", share(quality.recall)},
+          {"size", count_json(quality.size)},
+          {"true_size", count_json(quality.true_size)}};
+}
+
+NameQuality read_names(const JsonReader& reader) {
+  const auto share = [&reader](const char* member) {
+    const JsonReader value = reader.at(member);
+    return value.json().is_null() ? std::nullopt : std::optional(value.number());
+  };
+  return {share("precision"), share("recall"), reader.at("size").number(), reader.at("true_size").number()};
+}
+
+}  // namespace
+
 std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
   std::optional<double> first;
   bool agree = true;
@@ -36,36 +63,7 @@ std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
   return agree ? first : sum / n;
 }
 
-NameQuality mean_of(const std::vector<NameQuality>& all) {
-  const auto over = [&all](auto member) {
-    std::vector<std::optional<double>> numbers;
-    for (const NameQuality& one : all) numbers.emplace_back(one.*member);
-    return mean_of(numbers);
-  };
-  return {over(&NameQuality::precision), over(&NameQuality::recall), over(&NameQuality::size).value_or(0),
-          over(&NameQuality::true_size).value_or(0)};
-}
-
-Json to_json(const NameQuality& quality) {
-  const auto share = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  const auto number = [](double value) {
-    return value == std::floor(value) ? Json(static_cast<long long>(value)) : Json(value);
-  };
-  return {{"precision", share(quality.precision)},
-          {"recall", share(quality.recall)},
-          {"size", number(quality.size)},
-          {"true_size", number(quality.true_size)}};
-}
-
-NameQuality read_names(const JsonReader& reader) {
-  const auto share = [&reader](const char* member) {
-    const JsonReader value = reader.at(member);
-    return value.json().is_null() ? std::nullopt : std::optional(value.number());
-  };
-  return {share("precision"), share("recall"), reader.at("size").number(), reader.at("true_size").number()};
-}
-
-}  // namespace
+Json count_json(double count) { return count == std::floor(count) ? Json(static_cast<long long>(count)) : Json(count); }
 
 Quality quality(const Selection& selection, const Selection& truth) {
   if (selection.provenance == Provenance::none) return {};
@@ -88,7 +86,7 @@ Quality mean_quality(const std::vector<Quality>& all) {
         types.push_back(found->second.object_types);
         textures.push_back(found->second.textures);
       }
-    mean[set] = {mean_of(types), mean_of(textures)};
+    mean[set] = {mean_names(types), mean_names(textures)};
   }
   return mean;
 }

@@ -8,6 +8,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -37,7 +38,7 @@ int print_claims(const fs::path& run, const report::Report& report, const std::s
   if (format == "text")
     print_section(claims, "The paper's claims");
   else if (format == "json")
-    to_stdout("{}", read_file(run / "claims.json"));
+    to_stdout("{}", read_file(run / report_file::claims));
   else
     throw InputError("--claims: expected --format text or json");
   return verdict_of(report.run, claims);
@@ -61,7 +62,7 @@ int report_all(const std::vector<std::string>& directories, const std::string& i
   for (const std::string& directory : directories) {
     if (!is_run(directory)) continue;
     reports.push_back(report::write_report(directory));
-    to_stderr("{}\n", (fs::path(directory) / "report.html").string());
+    to_stderr("{}\n", (fs::path(directory) / report_file::page).string());
   }
   if (reports.empty()) expect_run(directories.front());  // says which there are
   const fs::path first = reports.front().run.directory.lexically_normal(),
@@ -137,10 +138,10 @@ void add_report(CLI::App& app, int& exit) {
       for (const report::Grid* grid : report.document.grids())
         to_stdout("% {}\n{}\n", grid->caption, report::latex(*grid));
     else if (options->format == "md")
-      to_stdout("{}", read_file(run / "report.md"));
+      to_stdout("{}", read_file(run / report_file::markdown));
     else
       to_stdout("{}", read_file(run / ("summary." + options->format)));
-    to_stderr("{}\n", (run / "report.html").string());
+    to_stderr("{}\n", (run / report_file::page).string());
     exit = exit_of(report.run, ok);
   });
 }

@@ -242,7 +242,7 @@ int verify(const VerifyArguments& a) {
     plan.out = scratch.path / "run";
     plan.cache = scratch.path / "cache";
     plan.answers = kept_answers(a.run);
-    if (is_live(cells.front().cell.answers)) {
+    if (std::holds_alternative<LiveAnswers>(cells.front().cell.answers)) {
       const std::optional<AnswerFile> replies = kept_replies(a.run);
       if (!replies)
         throw InputError(fmt::format(

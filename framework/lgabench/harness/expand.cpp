@@ -33,11 +33,6 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
-// Training seeds of cells that play different test scenes: all, or 0 alone where all play the same.
-std::vector<std::uint64_t> scene_sets(const Grid& grid) {
-  return grid.test_scenes == "per_seed" ? grid.seeds : std::vector<std::uint64_t>{0};
-}
-
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string>& there = layouts_of(scenario);
@@ -49,7 +44,7 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
 
 }  // namespace
 
-Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const std::string& answers) {
+Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const AnswerSource& answers) {
   Cell cell;
   cell.suite = suite.id;
   cell.environment = suite.environment;
@@ -111,7 +106,7 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
           }
         if (variation.references)
           for (const char* row : {"random_object", "oracle"})
-            for (const std::uint64_t seed : scene_sets(grid)) add(reference(row), 0, seed);
+            for (const std::uint64_t seed : scene_sets(grid.test_scenes, grid.seeds)) add(reference(row), 0, seed);
       }
     }
   }

@@ -85,11 +85,7 @@ Grid apply(const JsonReader& overrides, Grid grid) {
   if (overrides.has("episodes")) grid.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
   if (overrides.has("scene_seed"))
     grid.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
-  if (overrides.has("test_scenes")) {
-    grid.test_scenes = overrides.at("test_scenes").string();
-    if (grid.test_scenes != "shared" && grid.test_scenes != "per_seed")
-      overrides.at("test_scenes").fail("shared or per_seed");
-  }
+  if (overrides.has("test_scenes")) grid.test_scenes = read_test_scenes(overrides.at("test_scenes"));
   if (overrides.has("options")) {
     grid.options = options_of(overrides.at("options"), grid.methods);
     grid.options_place = overrides.at("options").place();

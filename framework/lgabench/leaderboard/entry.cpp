@@ -15,7 +15,7 @@ namespace {
 // Two-sided p of a difference of which the 95 % interval is recorded.
 double p_of_fresh(const Json& line) {
   const double width = line.at("high").get<double>() - line.at("low").get<double>();
-  return std::erfc(std::sqrt(2.) * 1.959964 * std::abs(line.at("difference").get<double>()) / width);
+  return std::erfc(std::sqrt(2.) * report::z_95 * std::abs(line.at("difference").get<double>()) / width);
 }
 
 }  // namespace
@@ -25,7 +25,7 @@ Json to_json(const Identity& identity) {
             {"kind", identity.row.kind},
             {"version", identity.row.version},
             {"options", identity.row.options},
-            {"answers", {{"source", identity.answers}, {"sha256", identity.answers_sha256}}},
+            {"answers", {{"source", to_string(identity.answers)}, {"sha256", identity.answers_sha256}}},
             {"engine", {{"id", identity.engine}, {"version", identity.engine_version}}},
             {"preset", identity.preset_sha256},
             {"scene_seed", identity.scene_seed}};
@@ -42,9 +42,9 @@ int PlayedCell::episodes() const {
 }
 
 int PlayedCell::successes() const {
-  std::ptrdiff_t n = 0;
-  for (const auto& arm : outcomes) n += std::count(arm.second.begin(), arm.second.end(), success_letter);
-  return static_cast<int>(n);
+  int n = 0;
+  for (const auto& arm : outcomes) n += lgabench::successes(arm.second);
+  return n;
 }
 
 Json to_json(const PlayedCell& cell) {
@@ -104,7 +104,7 @@ int Entry::fresh() const {
   for (const Json& line : verifications)
     if (line.at("kind") == "fresh") p.push_back(p_of_fresh(line));
   const std::vector<double> adjusted = report::holm(p);
-  return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= .05 ? -1 : 1;
+  return p.empty() ? 0 : *std::min_element(adjusted.begin(), adjusted.end()) <= report::alpha ? -1 : 1;
 }
 
 std::string Entry::spec() const {

@@ -46,9 +46,9 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.cache = scratch / "cache";
   plan.pool = options.pool;
   const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
-  if (is_live(entry.identity.answers))
+  if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
     plan.live.emplace(LiveModel{cassette, false, -1});
-  else if (!cassette_of(entry.identity.answers).empty())
+  else if (has_cassette(entry.identity.answers))
     plan.answers.push_back({cassette.filename(), cassette, Json::object()});
   return plan;
 }
@@ -73,7 +73,7 @@ int other_outcomes(const PlayedCell& there, const PlayedCell& here) {
   int flips = 0;
   for (const auto& [arm, letters] : there.outcomes)
     for (std::size_t i = 0; i < letters.size(); ++i)
-      flips += (letters[i] == success_letter) != (here.outcomes.at(arm).at(i) == success_letter);
+      flips += is_success(letters[i]) != is_success(here.outcomes.at(arm).at(i));
   return flips;
 }
 
@@ -120,14 +120,13 @@ Json compared_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, 
     for (const auto& [cell, sign] : {std::pair(&before, -1.), {&now[i], 1.}}) {
       const std::string& letters = cell->outcomes.at(arm);
       const auto n = static_cast<double>(letters.size());
-      const double rate =
-          (static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)) + 1) / (n + 2);
+      const double rate = (successes(letters) + 1) / (n + 2);
       difference += sign * rate / cells;
       variance += rate * (1 - rate) / (n + 2) / cells / cells;
       episodes += static_cast<int>(letters.size());
     }
   }
-  const double margin = 1.959964 * std::sqrt(variance), low = difference - margin, high = difference + margin;
+  const double margin = report::z_95 * std::sqrt(variance), low = difference - margin, high = difference + margin;
   return {{"kind", "fresh"},
           {"cells", keys},
           {"bit_identical", 0},
@@ -147,7 +146,7 @@ std::vector<std::size_t> one_of_each(const Entry& entry, const std::string& nonc
     return static_cast<std::size_t>(std::stoull(sha256(nonce + what).substr(0, 8), nullptr, 16)) % count;
   };
   const int n = learning ? setting.demonstrations[pick("demonstrations", setting.demonstrations.size())] : 0;
-  const bool seeds = learning || setting.test_scenes == "per_seed";
+  const bool seeds = learning || setting.test_scenes == TestScenes::per_seed;
   const std::uint64_t seed = seeds ? setting.seeds[pick("seed", setting.seeds.size())] : 0;
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < entry.cells.size(); ++i)

@@ -1,11 +1,11 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/base64.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
@@ -62,8 +62,9 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (times[names[i]] > 1) {
       const Identity& identity = all[i].entry->identity;
-      names[i] += fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
-                              identity.answers.substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
+      names[i] +=
+          fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
+                      to_string(identity.answers).substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
     }
   return names;
 }
@@ -180,15 +181,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   return grid;
 }
 
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
 // Successes of all cells, in the order of places, arms and episodes, eight to a byte, the first in its highest bit.
 std::string success_bits(const Entry& entry) {
   std::string bytes;
@@ -197,7 +189,7 @@ std::string success_bits(const Entry& entry) {
     for (const std::string& arm : entry.setting.scenario(cell.place.scenario).arms)
       for (const char letter : cell.outcomes.at(arm)) {
         if (bit % 8 == 0) bytes.push_back('\0');
-        if (letter == success_letter) bytes.back() = static_cast<char>(bytes.back() | (0x80 >> bit % 8));
+        if (is_success(letter)) bytes.back() = static_cast<char>(bytes.back() | (0x80 >> bit % 8));
         ++bit;
       }
   return base64(bytes);
@@ -208,9 +200,8 @@ std::string command_of(const Entry& entry) {
   std::string text = fmt::format("lgabench run {} --preset {} --engines {}", entry.setting.suite, entry.setting.preset,
                                  identity.engine);
   if (!identity.row.is_reference()) text += fmt::format(" --methods '{}' --no-reference", entry.spec());
-  if (identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers))
-    return text + fmt::format(" --answers cassette:answers/{}.jsonl", identity.answers_sha256);
-  return text + " --answers " + identity.answers;
+  const AnswerSource kept = CassetteAnswers{fmt::format("answers/{}.jsonl", identity.answers_sha256)};
+  return text + " --answers " + to_string(has_cassette(identity.answers) ? kept : identity.answers);
 }
 
 }  // namespace
@@ -229,7 +220,8 @@ std::string what_was_played(const Setting& setting) {
       "{} scenarios, {} demonstrations, {} training seeds, {} test scenes of each arm and {}; scene seed {}, preset "
       "{}.",
       setting.scenarios.size(), fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.episodes,
-      setting.test_scenes == "per_seed" ? "training seed" : "scenario", setting.scene_seed, hash(setting).substr(0, 8));
+      setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed,
+      hash(setting).substr(0, 8));
 }
 
 std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
@@ -316,7 +308,7 @@ Json suite_data(const std::vector<NamedTable>& tables) {
            {"place", entry.place().string()},
            {"learns", learns(entry.identity.row)},
            {"version", entry.identity.row.version},
-           {"answers", entry.identity.answers},
+           {"answers", to_string(entry.identity.answers)},
            {"command", command_of(entry)},
            {"authors", entry.about.at("authors")},
            {"license", entry.about.at("license")},

@@ -52,7 +52,7 @@ CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& rec
   if (same) return both;
   both.detail = changed.empty() ? "episodes failed otherwise" : changed;
   const std::vector<double> adjusted = holm(p);
-  const bool chance = std::all_of(adjusted.begin(), adjusted.end(), [](double value) { return value > 0.05; });
+  const bool chance = std::all_of(adjusted.begin(), adjusted.end(), [](double value) { return value > alpha; });
   both.agreement = chance ? Agreement::within_interval : Agreement::differs;
   return both;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::report {
 
@@ -26,7 +27,7 @@ struct CellAgreement {
 
 /// Compares the directories of two finished cells. `excused`: build, processor or data are not those of the record.
 /// Without that the same bytes are owed, and anything else differs. What was selected is not a matter of numerics: it
-/// differs, excused or not. By chance: McNemar's exact p of each arm, Holm's over the arms, above .05.
+/// differs, excused or not. By chance: McNemar's exact p of each arm, Holm's over the arms, above alpha.
 /// @throws InputError for files that are not as docs/formats says.
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused);
 
@@ -37,7 +38,7 @@ struct PooledAgreement {
   int cells = 0, only_recorded = 0, only_recomputed = 0;
   double p_holm = 1;  // McNemar's exact test, Holm's p over the rows and all rows
 
-  bool differs() const { return p_holm <= 0.05; }
+  bool differs() const { return p_holm <= alpha; }
 };
 
 /// Pools the cells of each row in which an episode changed, by name, and all of them where there are several such rows.
