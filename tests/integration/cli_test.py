@@ -277,6 +277,27 @@ class Completion(Case):
             listed = set(re.findall(r"(?:^|\s)(--[a-z-]+)", self.call(verb, "--help").stdout.split("Usage")[1]))
             self.assertLessEqual(set(self.completed(verb, "--")) - {"--help"}, listed)
 
+    def test_words_are_those_that_the_suite_takes(self):
+        self.assertEqual(self.completed("run", "mobile", "--layout", ""), ["table"])
+        self.assertEqual(self.completed("render", "bring_fruit", "--layout", ""), ["table"])
+        self.assertNotIn("paper_text", self.completed("run", "mobile", "--preset", ""))
+        self.assertNotIn("heart", self.completed("run", "mobile", "--scenarios", ""))
+        for suite, option in (("mobile", "--layout"), ("mobile", "--preset"), ("q1", "--layout"), ("q1", "--preset"),
+                              ("q1", "--answers"), ("mobile", "--scenarios"), ("q1", "--scenarios")):
+            offered = self.completed("run", suite, option, "")
+            self.assertTrue(offered, (suite, option))
+            for word in offered:
+                words = [option, word]
+                if word == "openai":
+                    words += ["--model", "m", "--cassette", self.dir / "cassette"]
+                if option == "--scenarios":
+                    words += ["--answers", "none"]  # an example was never asked about
+                if option == "--answers" and word != "recorded":
+                    words += ["--scenarios", "heart"]
+                self.call("run", suite, *words, "--dry-run")
+        self.assertEqual(self.completed("list", "lay"), ["layouts"])
+        self.assertIn('no suite "q9"', self.call("list", "presets", "--of", "q9", expect=2).stderr)
+
     def test_scripts_are_well_formed(self):
         if shutil.which("shellcheck"):
             done = subprocess.run(["shellcheck", "-s", "bash", PAGES / "lgabench.bash"], capture_output=True, text=True)

@@ -3,6 +3,7 @@
 Elements are played by bash here; in ./test --full on a real Slurm of this machine and over a real ssh, where they are installed.
 By hand: python3 cluster_test.py Elements
 """
+import fcntl
 import getpass
 import json
 import os
@@ -70,6 +71,18 @@ class Elements(Case):
         self.assertEqual([part[name] for name in ("shard", "cells", "done", "failed", "missing")], [1, 10, 8, 1, 1])
         self.assertEqual((said["array"], said["absent"]), ("1-2", "2"))
 
+    def test_status_counts_a_cell_once(self):
+        """One that is being computed is not missing."""
+        self.call("run", *RUN, "--shard", "1/2", "--out", "part")
+        cells = sorted((self.dir / "part/cells").iterdir())
+        for cell in cells[:3]:
+            shutil.rmtree(cell)
+        cells[0].with_name(f".{cells[0].name}.1").mkdir()
+        directory = os.open(self.dir / "part", os.O_RDONLY)
+        self.addCleanup(os.close, directory)
+        fcntl.flock(directory, fcntl.LOCK_EX)
+        self.assertRegex(self.call("status", "part", expect=3).stdout, r" 1/2 +10 +7 +1 +0 +2  part \(running\)")
+
     def test_status_of_two_parts_in_one_directory_is_the_whole_runs(self):
         for shard in ("1/2", "2/2", "1/2"):
             self.call("run", *RUN, "--shard", shard, "--out", "both")
@@ -82,6 +95,9 @@ class Elements(Case):
         for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
                               (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),
                               (("--elements", "2", "--time", "2h"), "--time 2h: expected HH:MM:SS"),
+                              (("--elements", "2", "--time", "00:02:30"), "--time 00:02:30: expected 300 s at least: an "
+                               "element stops 120 s before its limit"),
+                              (("--elements", "2", "--out", 'a "b"'), 'a "b"/logs/%A_%a.txt: expected no quote'),
                               (("--elements", "2", "--fresh"), "--fresh: of run alone"),
                               (("--elements", "2", "--dry-run"), "--dry-run: of run alone"),
                               (("--elements", "2", "--debug", "0"), "--debug: of run alone")]:
@@ -89,6 +105,16 @@ class Elements(Case):
                 done = self.call("cluster", *with_options(RUN + ("--time", "00:30:00", "--out", "out"), *words), expect=2)
                 self.assertIn(reason, done.stderr)
                 self.assertFalse((self.dir / "out").exists())
+
+    def test_a_path_with_blanks_and_percent_signs(self):
+        out = self.dir / "my runs/it's %j"
+        self.call("cluster", *RUN, "--time", "00:30:00", "--cpus", "1", "--elements", "1", "--out", out)
+        self.assertIn(f'#SBATCH --output="{self.dir}/my runs/it\'s %%j/logs/%A_%a.txt"\n', (out / "array.sbatch").read_text())
+        self.assertIn(f'#SBATCH --output="{self.dir}/my runs/it\'s %%j/logs/merge_%j.txt"\n', (out / "merge.sbatch").read_text())
+        for script in out / "array.sbatch", out / "merge.sbatch":
+            done = subprocess.run(["bash", script], capture_output=True, text=True, cwd="/", timeout=300,
+                                  env=dict(self.environment, SLURM_ARRAY_TASK_ID="1"))
+            self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_smoke_runs_cells_tell_the_time(self):
         self.call("run", *with_options(RUN, "--demos", "2", "--seeds", "0"), "--out", "smoke")

@@ -41,7 +41,7 @@ class Verify(BesideOneRun):
 
     def verify(self, *arguments, expect):
         done = self.call("verify", "run", *arguments, expect=expect)
-        self.assertEqual(list(self.dir.glob("lgabench-verify-*")), [], "scratch was left behind")
+        self.assertEqual(list(self.dir.glob("lgabench-verify.*")), [], "scratch was left behind")
         return done
 
     def line_of_the_cell(self, output):

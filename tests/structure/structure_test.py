@@ -94,8 +94,16 @@ class IncludeGraph(unittest.TestCase):
                  for file in sorted((SOURCE / "framework").rglob("*.[ch]pp")) if file.parent.name != "record"}
         self.assertEqual({file: all_of_it for file, all_of_it in found.items() if all_of_it}, {})
 
-    def test_the_study_knows_core_abstraction_and_report(self):
-        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|report/|study/)|torch|opencv")
+    def test_the_study_knows_core_abstraction_records_and_reports(self):
+        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|report/|study/)|torch|opencv")
+
+    def test_words_of_a_record_stand_in_one_file(self):
+        """The grammar of answers, whose test scenes, and names of what a report writes."""
+        for words, file in ((r'"cassette:"|"openai:?"', "answer_source"), (r'"per_seed"', "test_scenes"),
+                            (r'"(?:summary\.(?:json|csv)|report\.(?:md|html)|episodes\.csv)"', "layout")):
+            found = {file.relative_to(SOURCE / "framework/lgabench").with_suffix("") for file in
+                     (SOURCE / "framework").rglob("*.[ch]pp") if re.search(words, file.read_text())}
+            self.assertEqual(found, {pathlib.Path("record", file)}, words)
 
 
 class Needed(unittest.TestCase):

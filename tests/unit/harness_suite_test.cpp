@@ -42,8 +42,9 @@ TEST(Expand, AsksThePeopleThatAMethodDeclares) {
     edits.answers[command].edited = Selection();
     specifies.answers[command].specified = Selection();
   }
-  const std::vector<Cell> cells = expand(
-      load_suite("q1"), small_grid(), {"recorded", Json::object(), true, Truth::released, {edits, specifies}}, known);
+  const std::vector<Cell> cells =
+      expand(load_suite("q1"), small_grid(),
+             {RecordedAnswers(), Json::object(), true, Truth::released, {edits, specifies}}, known);
   for (const Cell& cell : cells) {
     EXPECT_EQ(cell.participant.has_value(), cell.method.id == "b") << cell.title();
     if (cell.participant) {
@@ -68,7 +69,7 @@ TEST(Suite, q1) {
   EXPECT_EQ(board.layouts, std::vector<std::string>{"continuous"});
   EXPECT_EQ(board.episodes, 100);
   EXPECT_EQ(board.seeds.size(), 3u);
-  EXPECT_EQ(board.test_scenes, "per_seed");
+  EXPECT_EQ(board.test_scenes, TestScenes::per_seed);
   EXPECT_EQ(board.options, suite.design.options);
   EXPECT_EQ(to_json(preset_design(suite, "paper")), to_json(suite.design)) << "the paper's setting is the suite's own";
   EXPECT_EQ(board.demonstrations.size(), 5u) << "what a preset does not name it takes from the suite";
@@ -95,7 +96,8 @@ TEST(Cells, ExpandCrossesTheGrid) {
       EXPECT_EQ(cell.demonstrations, 0);
     }
   }
-  EXPECT_EQ(expand(suite, small_grid(), {"recorded", Json::object(), false}, catalogue()).size(), 2u * 2 * 3 * 2);
+  EXPECT_EQ(expand(suite, small_grid(), {RecordedAnswers(), Json::object(), false}, catalogue()).size(),
+            2u * 2 * 3 * 2);
 }
 
 TEST(Cells, OfOneScenarioShareIt) {
@@ -145,14 +147,16 @@ TEST(Cells, KeyIsOfTheWholeConfiguration) {
     if (member.key() == "test_scenes") other["test_scenes"] = "per_seed";
     if (member.key() == "scenario") other["scenario"] = {{"id", "x"}};
     if (member.key() == "method")
-      other["method"] = {{"kind", "method"}, {"id", "x"}, {"name", "x"}, {"version", ""}, {"options", {}}};
+      other["method"] = {{"kind", "method"}, {"id", "x"}, {"name", "x"}, {"version", ""}, {"options", Json::object()}};
     EXPECT_NE(key(read_cell(other, "test")), key(cell)) << member.key();
   }
 }
 
 TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
   const Suite suite = load_suite("q1");
-  const auto with = [&](const Json& options) { expand(suite, small_grid(), {"recorded", options, true}, catalogue()); };
+  const auto with = [&](const Json& options) {
+    expand(suite, small_grid(), {RecordedAnswers(), options, true}, catalogue());
+  };
   EXPECT_NO_THROW(with({{"a", {{"epochs", 5}}}}));
   EXPECT_SAYS(message_of<InputError>([&] { with({{"a", {{"epoks", 5}}}}); }), "epoks");
   EXPECT_SAYS(message_of<InputError>([&] { with({{"c", {{"epochs", 5}}}}); }), "--set c");
@@ -165,7 +169,7 @@ TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
 std::vector<std::string> rows(const std::vector<std::string>& methods, const Json& settings = Json::object()) {
   Design design{{"heart"}, {"cells"}, {"e"}, methods, {10}, {0}, 5, 7, false};
   std::vector<std::string> names;
-  for (const Cell& cell : expand(load_suite("q1"), design, {"recorded", settings, false}, catalogue()))
+  for (const Cell& cell : expand(load_suite("q1"), design, {RecordedAnswers(), settings, false}, catalogue()))
     names.push_back(cell.method.name + " " + canonical(cell.method.options.at("epochs")));
   return names;
 }
@@ -189,7 +193,7 @@ TEST(DesignOptions, TheFirstGivenHolds) {
   const auto epochs = [](const std::string& method, const Json& settings, const Json& options) {
     Design design{{"heart"}, {"cells"}, {"e"}, {method}, {10}, {0}, 5, 7, false};
     design.options = options;
-    return expand(load_suite("q1"), design, {"recorded", settings, false}, catalogue())
+    return expand(load_suite("q1"), design, {RecordedAnswers(), settings, false}, catalogue())
         .front()
         .method.options.at("epochs")
         .get<int>();
@@ -253,7 +257,7 @@ TEST(DesignOptions, OfASuitesStarReachTheFrameworksOptionsAlone) {
   Design design{{"heart"}, {"cells"}, {"e"}, {"a", "mine"}, {10}, {0}, 5, 7, false};
   design.options = {{"*", {{"loss", "squared"}, {"epochs", 5}}}};
   const auto cells_with = [&](const Json& settings) {
-    return expand(suite, design, {"recorded", settings, false}, with_a_strangers("mine"));
+    return expand(suite, design, {RecordedAnswers(), settings, false}, with_a_strangers("mine"));
   };
   const std::vector<Cell> cells = cells_with(Json::object());
   EXPECT_EQ(cells.at(0).method.options, Json({{"epochs", 5}, {"rate", .5}, {"loss", "squared"}}));
@@ -292,7 +296,7 @@ TEST(Layouts, ThatAScenarioLacksAreRefusedBeforeAnythingRuns) {
 TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
   Design design = small_grid();
   const std::vector<Cell> shared = expand(load_suite("q1"), design, {}, catalogue());
-  design.test_scenes = "per_seed";
+  design.test_scenes = TestScenes::per_seed;
   const std::vector<Cell> own = expand(load_suite("q1"), design, {}, catalogue());
   // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + 3 seeds x (random object + oracle))
   EXPECT_EQ(own.size(), 2u * (2 * 3 * 3 + 3 * 2));
@@ -306,7 +310,7 @@ TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
   EXPECT_EQ(oracles, (std::set<std::uint64_t>{0, 1, 2}));
   Json old = to_json(shared.front());
   old.erase("test_scenes");
-  EXPECT_EQ(read_cell(old, "test").test_scenes, "shared") << "a cell of 0.1";
+  EXPECT_EQ(read_cell(old, "test").test_scenes, TestScenes::shared) << "a cell of 0.1";
   old["test_scenes"] = "mine";
   EXPECT_SAYS(message_of<InputError>([&] { read_cell(old, "test"); }), "/test_scenes: expected shared or per_seed");
 }
@@ -342,7 +346,7 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
     for (const std::string preset : {"", "smoke", "paper", "paper_text", "leaderboard"}) {
       Design design = preset_design(suite, preset);
       design.engines = {engine_under_test().id};
-      const std::size_t seeds = design.seeds.size(), sets = design.test_scenes == "per_seed" ? seeds : 1;
+      const std::size_t seeds = design.seeds.size(), sets = scene_sets(design.test_scenes, design.seeds).size();
       const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * sets;
       EXPECT_EQ(expand(suite, design, {}, shipped).size(), design.scenarios.size() * each) << id << " " << preset;
     }
@@ -351,7 +355,7 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   for (const std::string preset : {"", "smoke", "paper", "leaderboard"}) {
     Design design = preset_design(mobile, preset);
     design.engines = {engine_under_test().id};
-    EXPECT_EQ(design.test_scenes, "per_seed") << "same_place is near each seed's own first demonstration";
+    EXPECT_EQ(design.test_scenes, TestScenes::per_seed) << "same_place is near each seed's own first demonstration";
     const std::size_t seeds = design.seeds.size();
     const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * seeds;
     EXPECT_EQ(expand(mobile, design, {}, shipped).size(), design.scenarios.size() * each) << preset;

@@ -182,7 +182,7 @@ Json fresh_of(const Entry& entry, const std::map<std::string, int>& more, char n
     line["cells"].push_back(cell.key);
     Json& successes = line["successes"].emplace_back();
     for (const auto& [arm, letters] : cell.outcomes) {
-      const auto before = static_cast<int>(std::count(letters.begin(), letters.end(), success_letter));
+      const int before = lgabench::successes(letters);
       successes[arm] = std::clamp(before + (more.count(arm) ? more.at(arm) : 0), 0, entry.setting.episodes);
     }
     episodes += cell.episodes();

@@ -3,6 +3,8 @@
 
 #include <lgabench/report/agreement.hpp>
 #include <lgabench/report/compare.hpp>
+#include <lgabench/report/engines.hpp>
+#include <lgabench/report/summary.hpp>
 
 #include "report_run.hpp"
 
@@ -40,6 +42,24 @@ TEST(Compare, EqualRunsDifferInNothing) {
   }
   EXPECT_FALSE(comparison.regressed());
   for (const auto& time : comparison.times) EXPECT_EQ(time.change.difference, 0);
+}
+
+TEST(Compare, EpisodesWithoutAnActionAreNotTheSameAction) {
+  Spec silent{"lga", 0};
+  silent.arms = {{"test", 0, {0}, NAN}, {"hard", 0, {0}, NAN}};
+  FabricatedRun run, engines;
+  run.add(silent);
+  for (const ComparedRow& row : compared(run, run).rows) EXPECT_FALSE(row.total.same_actions);
+  for (const report::Row& row : report::summarize(report::read_run(run.path)).tables[0].rows)
+    if (row.shift) {
+      EXPECT_FALSE(row.shift->same_actions);
+    }
+  engines.add(silent);
+  silent.engine = "bullet";
+  engines.add(silent);
+  const auto agreement = report::engine_agreement(report::read_run(engines.save().path));
+  EXPECT_EQ(agreement.at(0).rows.at(0).same.episodes, 0);
+  EXPECT_EQ(agreement.at(0).rows.at(0).other_actions, 0);
 }
 
 TEST(Compare, FindsTheRowThatIsWorse) {

@@ -37,18 +37,18 @@ TEST(Engines, AgreeWhereTheSameActionEndsAlike) {
   EXPECT_EQ(a.first + a.second, "bulletmujoco");
   ASSERT_EQ(a.rows.size(), 4u);
   for (const std::size_t same : {0u, 1u}) {
-    EXPECT_EQ(a.rows[same].episodes, 20);
-    EXPECT_EQ(a.rows[same].won_first, 13);
-    EXPECT_EQ(a.rows[same].won_second, 15);
-    EXPECT_EQ(a.rows[same].agreed, 18);
+    EXPECT_EQ(a.rows[same].same.episodes, 20);
+    EXPECT_EQ(a.rows[same].same.won_first, 13);
+    EXPECT_EQ(a.rows[same].same.won_second, 15);
+    EXPECT_EQ(a.rows[same].same.agreed(), 18);
     EXPECT_NEAR(a.rows[same].interval.low, .699, .001);  // Wilson's of 18 of 20
     EXPECT_NEAR(a.rows[same].interval.high, .972, .001);
   }
   EXPECT_EQ(a.rows[2].method, "gcbc_dart");
-  EXPECT_EQ(a.rows[2].episodes, 0);
+  EXPECT_EQ(a.rows[2].same.episodes, 0);
   EXPECT_EQ(a.rows[2].other_actions, 20);
   EXPECT_EQ(a.rows[3].method, "");
-  EXPECT_EQ(a.rows[3].episodes, 20);
+  EXPECT_EQ(a.rows[3].same.episodes, 20);
   ASSERT_EQ(a.disagreements.size(), 2u);
   EXPECT_EQ(a.disagreements[0].index, 13u);
   EXPECT_EQ(a.disagreements[0].episode().failure, "missed_object");
@@ -63,7 +63,7 @@ TEST(Engines, OtherScenesAreNotCompared) {
   run.add(on("bullet", elsewhere));
   run.save();
   const report::RunResults results = report::read_run(run.path);
-  EXPECT_EQ(report::engine_agreement(results)[0].rows[0].episodes, 0);
+  EXPECT_EQ(report::engine_agreement(results)[0].rows[0].same.episodes, 0);
 }
 
 TEST(Engines, OneHasNoAgreement) {

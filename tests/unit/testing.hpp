@@ -1,5 +1,6 @@
 // What several tests need.
 #pragma once
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>

@@ -23,22 +23,7 @@ SetQuality quality_of(const FeatureSet& selected, const FeatureSet& truth) {
   return {quality_of(selected.object_types, truth.object_types), quality_of(selected.textures, truth.textures)};
 }
 
-// The mean of what is there; the number itself where all agree, without rounding.
-std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
-  std::optional<double> first;
-  bool agree = true;
-  double sum = 0;
-  int n = 0;
-  for (const auto& one : all) {
-    if (!one) continue;
-    if (n++ == 0) first = one;
-    agree = agree && one == first;
-    sum += *one;
-  }
-  return agree ? first : sum / n;
-}
-
-NameQuality mean_of(const std::vector<NameQuality>& all) {
+NameQuality mean_names(const std::vector<NameQuality>& all) {
   const auto over = [&all](auto member) {
     std::vector<std::optional<double>> numbers;
     for (const NameQuality& one : all) numbers.emplace_back(one.*member);
@@ -50,13 +35,10 @@ NameQuality mean_of(const std::vector<NameQuality>& all) {
 
 Json to_json(const NameQuality& quality) {
   const auto share = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
-  const auto number = [](double value) {
-    return value == std::floor(value) ? Json(static_cast<long long>(value)) : Json(value);
-  };
   return {{"precision", share(quality.precision)},
           {"recall", share(quality.recall)},
-          {"size", number(quality.size)},
-          {"true_size", number(quality.true_size)}};
+          {"size", count_json(quality.size)},
+          {"true_size", count_json(quality.true_size)}};
 }
 
 constexpr double most_names = 1e6;
@@ -75,6 +57,22 @@ NameQuality read_names(const JsonReader& reader) {
 }
 
 }  // namespace
+
+std::optional<double> mean_of(const std::vector<std::optional<double>>& all) {
+  std::optional<double> first;
+  bool agree = true;
+  double sum = 0;
+  int n = 0;
+  for (const auto& one : all) {
+    if (!one) continue;
+    if (n++ == 0) first = one;
+    agree = agree && one == first;
+    sum += *one;
+  }
+  return agree ? first : sum / n;
+}
+
+Json count_json(double count) { return count == std::floor(count) ? Json(static_cast<long long>(count)) : Json(count); }
 
 Quality quality(const Selection& selection, const Selection& truth) {
   if (selection.provenance == Provenance::none) return {};
@@ -97,7 +95,7 @@ Quality mean_quality(const std::vector<Quality>& all) {
         types.push_back(found->second.object_types);
         textures.push_back(found->second.textures);
       }
-    mean[set] = {mean_of(types), mean_of(textures)};
+    mean[set] = {mean_names(types), mean_names(textures)};
   }
   return mean;
 }

@@ -24,9 +24,14 @@ using Quality = std::map<std::string, SetQuality>;
 
 Quality quality(const Selection& selection, const Selection& truth);
 
+/// The mean of those that are there; the number itself where all agree, without rounding.
+std::optional<double> mean_of(const std::vector<std::optional<double>>& all);
+
 /// Of each set of the first one; a precision or recall is the mean over those that have it.
 Quality mean_quality(const std::vector<Quality>& all);
 
+/// A count, or a mean of counts: without a fraction where it is whole.
+Json count_json(double count);
 /// {"target": {"object_types": {"precision", "recall", "size", "true_size"}, "textures": ...}, ...}; null if empty.
 Json to_json(const Quality& quality);
 Json to_json(const SetQuality& quality);

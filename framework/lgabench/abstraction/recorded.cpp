@@ -20,20 +20,6 @@ std::vector<std::string> recorded_sources() {
   return json_names(data_directory() / "answers", none_to_list);
 }
 
-std::string answers_complaint(const std::string& word, const std::vector<std::string>& others) {
-  std::vector<std::string> words = recorded_sources();
-  words.insert(words.begin(), "recorded");
-  words.push_back("openai");
-  words.insert(words.end(), others.begin(), others.end());
-  if (!cassette_of(word).empty() || contains(words, word)) return "";
-  return fmt::format("expected {} or cassette:FILE, got {}", fmt::join(words, ", "), word);
-}
-
-std::string cassette_of(const std::string& word) {
-  const std::string prefix = cassette_prefix;
-  return word.rfind(prefix, 0) == 0 ? word.substr(prefix.size()) : "";
-}
-
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit) {
   if (answers != "recorded") return answers;
   return to_edit ? scenario.edited : scenario.recorded;

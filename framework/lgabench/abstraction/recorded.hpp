@@ -11,16 +11,6 @@ namespace lgabench {
 /// Whose answers there are: the data directory's answers/, without their ending.
 std::vector<std::string> recorded_sources();
 
-/// What answers begin with that are a cassette's: its file follows, in Cell::answers its SHA-256.
-constexpr const char* cassette_prefix = "cassette:";
-/// Answers of a run in which nobody is asked: a method that asks fails its cell.
-constexpr const char* no_answers = "none";
-/// The words that --answers takes: recorded, one of recorded_sources(), openai (a server's model is asked now),
-/// cassette:FILE (what one said before), and `others`. "" for one of these, else what is expected.
-std::string answers_complaint(const std::string& word, const std::vector<std::string>& others = {});
-/// FILE of cassette:FILE; "" for another word.
-std::string cassette_of(const std::string& word);
-
 /// Whose answers `answers` means for the scenario: one of recorded_sources(), or for "recorded" the scenario's own, to
 /// be edited by people or used as they are.
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit = false);

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
-
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/abstraction/recorded.hpp>
@@ -42,9 +40,9 @@ class NobodyAnswers : public LanguageModel {
  public:
   std::vector<bool> answer(const Command& command, const FeatureSpace&, const std::vector<Question>&) override {
     throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers {} has none",
-                                 command.utterance, no_answers));
+                                 command.utterance, model()));
   }
-  std::string model() const override { return no_answers; }
+  std::string model() const override { return to_string(NoAnswers()); }
   Provenance provenance() const override { return Provenance::none; }
   SelectionCost cost() const override { return {}; }
 };
@@ -54,24 +52,24 @@ class NobodyAnswers : public LanguageModel {
 Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server) {
   const Cell& cell = job.cell;
   Answers answers;
-  if (is_live(cell.answers)) {
-    ChatOptions options{cell.answers.substr(std::string_view(live_prefix).size())};
+  if (const auto* asked = std::get_if<LiveAnswers>(&cell.answers)) {
+    ChatOptions options{asked->model};
     const LiveModel live = job.live.value_or(LiveModel());
     options.max_queries = live.max_queries;
     options.concurrency = live.concurrency;
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     answers.cassette = std::make_unique<Cassette>(live.cassette);
     answers.lm = std::make_unique<AskedByCells>(*answers.cassette, server, options);
-  } else if (const std::string hash = cassette_of(cell.answers); !hash.empty()) {
-    const fs::path file = kept_file(job.answers, hash, ".jsonl");
+  } else if (const auto* replies = std::get_if<CassetteAnswers>(&cell.answers)) {
+    const fs::path file = kept_file(job.answers, replies->file, ".jsonl");
     answers.cassette = std::make_unique<Cassette>(file);
     answers.lm =
         std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr, ChatOptions{answers.cassette->only_model()});
-  } else if (cell.answers == no_answers) {
-    answers.lm = std::make_unique<NobodyAnswers>();
-  } else {
+  } else if (const auto* recorded = std::get_if<RecordedAnswers>(&cell.answers)) {
     answers.lm = std::make_unique<RecordedLanguageModel>(
-        scenario, recorded_source(scenario, cell.answers, cell.method.asks == "edit"));
+        scenario, recorded_source(scenario, recorded->source, cell.method.asks == "edit"));
+  } else {
+    answers.lm = std::make_unique<NobodyAnswers>();
   }
   std::unique_ptr<HumanAnswers> human;
   if (cell.participant)

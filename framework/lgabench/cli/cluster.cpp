@@ -41,6 +41,8 @@ Words run_words() {
   return words;
 }
 
+constexpr double stops_before_s = 120, shortest_s = 300;
+
 // Seconds of "HH:MM:SS" or "D-HH:MM:SS".
 double seconds_of(const std::string& time) {
   int days = 0, hours = 0, minutes = 0, seconds = 0, end = 0;
@@ -74,11 +76,26 @@ double longest_s(const RunPlan& plan, const ClusterArguments& a) {
   return longest;
 }
 
+// A value of an #SBATCH line, where Slurm reads quotes, and in a path of a log "%j" and the like.
+std::string quoted(const std::string& value) {
+  if (value.find_first_of("\"\\\n") != std::string::npos)
+    throw InputError(fmt::format("{}: expected no quote, backslash or line break, which Slurm's options cannot have",
+                                 one_line(value)));
+  return '"' + value + '"';
+}
+
+std::string log_of(const fs::path& out, const char* name) {
+  std::string path;
+  for (const char c : (out / "logs").string()) path += c == '%' ? "%%" : std::string(1, c);
+  return quoted(path + "/" + name);
+}
+
 std::string header(const ClusterArguments& a, const std::string& name, const std::string& time, const fs::path& out,
                    const char* log) {
   return fmt::format(
-      "#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --ntasks=1\n#SBATCH --time={}\n#SBATCH --output={}/logs/{}\n{}",
-      name, time, out.string(), log, a.partition.empty() ? "" : fmt::format("#SBATCH --partition={}\n", a.partition));
+      "#!/bin/bash\n#SBATCH --job-name={}\n#SBATCH --ntasks=1\n#SBATCH --time={}\n#SBATCH --output={}\n{}",
+      quoted(name), time, log_of(out, log),
+      a.partition.empty() ? "" : fmt::format("#SBATCH --partition={}\n", quoted(a.partition)));
 }
 
 std::string array_script(const ClusterArguments& a, const std::string& program, const fs::path& out,
@@ -88,7 +105,7 @@ std::string array_script(const ClusterArguments& a, const std::string& program, 
              R"(#SBATCH --array=1-{0}
 #SBATCH --cpus-per-task={1}
 #SBATCH --mem={2:.0f}M
-#SBATCH --signal=B:TERM@120
+#SBATCH --signal=B:TERM@{7:.0f}
 #SBATCH --requeue
 # Submitted again, an element computes what it lacks and nothing else. Two minutes before the limit it stops by itself.
 cd {3} || exit 2
@@ -104,7 +121,7 @@ rm -rf "$scratch"
 exit $status
 )",
              a.elements, a.cpus, memory_gib * 1024 * a.cpus + 512, shell_line({fs::current_path().string()}), program,
-             shell_line({out.string()}), memory_gib);
+             shell_line({out.string()}), memory_gib, stops_before_s);
 }
 
 std::string merge_script(const ClusterArguments& a, const std::string& program, const fs::path& out) {
@@ -130,7 +147,10 @@ void expect_repeatable(const RunArguments& run) {
 
 int write_scripts(ClusterArguments a) {
   expect_repeatable(a.run);
-  const double limit_s = seconds_of(a.time);
+  if (seconds_of(a.time) < shortest_s)
+    throw InputError(fmt::format("--time {}: expected {} s at least: an element stops {} s before its limit", a.time,
+                                 shortest_s, stops_before_s));
+  const double usable_s = seconds_of(a.time) - stops_before_s;
   const fs::path out = fs::absolute(a.run.out.empty() ? "runs/" + a.run.suite + "-cluster" : a.run.out);
   a.run.out = out.string();
   const RunPlan plan = plan_run(a.run).plan;
@@ -148,9 +168,9 @@ int write_scripts(ClusterArguments a) {
             duration_text(expected_s), a.cpus,
             a.timings.empty() ? "by cells measured elsewhere (--timings: by your own)"
                               : "by the cells of " + a.timings.string());
-  if (expected_s > .8 * limit_s)
+  if (expected_s > .8 * usable_s)
     to_stdout("--time {} is short for that: {} elements would fit, or submit the array again\n", a.time,
-              static_cast<int>(a.elements * expected_s / (.6 * limit_s)) + 1);
+              static_cast<int>(a.elements * expected_s / (.6 * usable_s)) + 1);
   to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", shell_line({out.string()}), shell_line({out.string()}));
   return ok;
 }

@@ -84,7 +84,8 @@ void add_demos(CLI::App& app, int&) {
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--selection", a->selection,
                    "Draw targets from what a method selected instead: a cell's selection.json");
-  verb->add_option("--layout", a->layout, "How objects are placed; the scenario's first layout if not given")
+  verb->add_option("--layout", a->layout,
+                   "How objects are placed, of lgabench list layouts --of SCENARIO; the first of them if not given")
       ->check(one_of("layout", installed_layouts()));
   verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
@@ -103,7 +104,7 @@ void add_demos(CLI::App& app, int&) {
   arrange(*verb, "", {{"scenario", "SCENARIO"}});
   arrange(*verb, "What is demonstrated",
           {{"--selection", "FILE"},
-           {"--layout", "cells|continuous|released"},
+           {"--layout", "LAYOUT"},
            {"--n", "N"},
            {"--seed", "N"},
            {"--noisy", "N"},

@@ -2,14 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <set>
 
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -76,6 +80,46 @@ void print_list(const Json& all) {
     to_stderr("refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
 }
 
+constexpr std::array kinds{"methods",   "rows",    "engines", "environments", "suites",
+                           "scenarios", "layouts", "presets", "sources",      "kinds"};
+
+std::vector<std::string> layouts_of_all(const Suite& suite) {
+  std::vector<std::string> common = layouts_of(load_scenario(suite.grid.scenarios.front()));
+  for (const std::string& id : suite.grid.scenarios) {
+    const std::vector<std::string>& there = layouts_of(load_scenario(id));
+    common.erase(std::remove_if(common.begin(), common.end(),
+                                [&there](const std::string& layout) {
+                                  return std::find(there.begin(), there.end(), layout) == there.end();
+                                }),
+                 common.end());
+  }
+  return common;
+}
+
+// The words of one kind that options take: with `of`, those that a run of that suite or, of layouts, that scenario
+// takes.
+std::vector<std::string> words(const std::string& kind, const std::string& of, const Json& all) {
+  const Json& shipped = all.at("suites");
+  const bool of_suite =
+      std::any_of(shipped.begin(), shipped.end(), [&of](const Json& suite) { return suite.at("id") == of; });
+  if (kind == "kinds") return {kinds.begin(), kinds.end()};
+  if (kind == "sources") return answer_words(false);
+  if (kind == "layouts" && of.empty()) return installed_layouts();
+  if (kind == "layouts") return of_suite ? layouts_of_all(load_suite(of)) : layouts_of(load_scenario(of));
+  std::vector<Suite> suites;
+  if (!of.empty()) suites.push_back(load_suite(of));
+  for (const Json& suite : of.empty() ? shipped : Json::array()) suites.push_back(load_suite(suite.at("id")));
+  std::set<std::string> found;
+  if (kind == "presets")
+    for (const Suite& suite : suites)
+      for (const auto& preset : suite.presets.items()) found.insert(preset.key());
+  else
+    for (const Json& row : all.at(kind == "rows" ? "reference rows" : kind))
+      if (of.empty() || kind != "scenarios" || load_scenario(row.at("id")).environment == suites.front().environment)
+        found.insert(row.at("id"));
+  return {found.begin(), found.end()};
+}
+
 }  // namespace
 
 Json reference_rows() {
@@ -92,18 +136,28 @@ Json reference_rows() {
 void add_list(CLI::App& app, int& exit) {
   struct ListArguments {
     bool json = false;
+    std::string kind, of;
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand(
       "list", "List methods, engines, environments, suites and scenarios, and plugins that were refused");
-  verb->footer("Example: lgabench list --plugin-path my/build");
+  verb->add_option("KIND", arguments->kind,
+                   fmt::format("Only the words of one kind, a line each: {}", fmt::join(kinds, ", ")))
+      ->type_name("KIND")
+      ->check(one_of("kind", {kinds.begin(), kinds.end()}));
+  verb->add_option("--of", arguments->of, "With KIND: those that a run of this suite takes; layouts also of a scenario")
+      ->type_name("SUITE");
+  verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");
   add_plugin_path(*verb, arguments->directories);
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
     const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
-    if (arguments->json)
+    if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
+    if (!arguments->kind.empty())
+      to_stdout("{}\n", fmt::join(words(arguments->kind, arguments->of, all), "\n"));
+    else if (arguments->json)
       to_stdout("{}\n", all.dump(2));
     else
       print_list(all);

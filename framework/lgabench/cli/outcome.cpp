@@ -6,6 +6,7 @@
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/writers.hpp>
 
 namespace lgabench::cli {
@@ -46,11 +47,11 @@ void print_tables(const report::Report& report) {
 void print_report(const fs::path& run, bool json) {
   const report::Report report = report::write_report(run);
   if (json) {
-    to_stdout("{}", read_file(run / "summary.json"));
+    to_stdout("{}", read_file(run / report_file::summary));
     return;
   }
   print_tables(report);
-  to_stdout("\nreport: {}\n", (run / "report.html").string());
+  to_stdout("\nreport: {}\n", (run / report_file::page).string());
 }
 
 }  // namespace lgabench::cli

@@ -66,23 +66,25 @@ std::string roff_footer(const std::string& footer, const char* heading) {
 
 // How a completion names the kinds of values that it knows: shell functions print the words of each.
 constexpr const char* word_functions =
-    "# Prints what a value may be, a word a line: ids as `lgabench list` shows them, or one of A|B|C.\n"
+    "# Prints what a value may be, a word a line: as `lgabench list` has them, or one of A|B|C. $2: the command's "
+    "first\n"
+    "# word, a suite or scenario that may take some of them alone.\n"
     "_lgabench_words() {\n"
     "  case $1 in\n"
     "    *'|'*) printf '%s\\n' \"$1\" | tr '|' '\\n' ;;\n"
-    "    METHOD*) _lgabench_ids methods ;;\n"
-    "    ENGINE*) _lgabench_ids engines ;;\n"
-    "    SUITE) _lgabench_ids suites ;;\n"
-    "    SCENARIO* | COMMAND) _lgabench_ids scenarios ;;\n"
-    "    NAME) _lgabench_ids . ;;\n"
-    "    LAYOUT*) printf '%s\\n' cells continuous released ;;\n"
-    "    SOURCE) printf '%s\\n' recorded gpt4_released gpt4_study claude claude_clutter openai ;;\n"
-    "    PRESET) printf '%s\\n' paper paper_text leaderboard smoke ;;\n"
+    "    METHOD*) _lgabench_list methods ;;\n"
+    "    ENGINE*) _lgabench_list engines ;;\n"
+    "    SUITE) _lgabench_list suites ;;\n"
+    "    SCENARIO* | COMMAND) _lgabench_list scenarios --of \"$2\" || _lgabench_list scenarios ;;\n"
+    "    NAME) local kind; for kind in methods rows engines environments suites scenarios; do _lgabench_list $kind; "
+    "done ;;\n"
+    "    LAYOUT*) _lgabench_list layouts --of \"$2\" || _lgabench_list layouts ;;\n"
+    "    SOURCE) _lgabench_list sources ;;\n"
+    "    KIND) _lgabench_list kinds ;;\n"
+    "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
     "  esac\n"
     "}\n"
-    "_lgabench_ids() {\n"
-    "  lgabench list 2>/dev/null | awk -v section=\"$1\" '/^[^ ]/ {on = $1 ~ section} /^  / && on {print $1}'\n"
-    "}\n";
+    "_lgabench_list() { lgabench list \"$@\" 2>/dev/null; }\n";
 
 std::string bash_quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
@@ -94,7 +96,7 @@ std::string zsh_action(const std::string& takes) {
     if (takes == directory) return "_files -/";
   for (const char* file : {"FILE", "PATH", "PROGRAM"})
     if (takes == file) return "_files";
-  const std::string words = fmt::format("${{(f)\"$(_lgabench_words '\\''{}'\\'')\"}}", takes);
+  const std::string words = fmt::format("${{(f)\"$(_lgabench_words '\\''{}'\\'' \"$words[2]\")\"}}", takes);
   return is_list(takes) ? fmt::format("_values -s , value {}", words) : fmt::format("compadd -- {}", words);
 }
 
@@ -172,10 +174,12 @@ std::string bash_completion(const CLI::App& app) {
          "    *,...)\n"
          "      local first=\n"
          "      [[ $now == *,* ]] && first=${now%,*},\n"
-         "      mapfile -t COMPREPLY < <(compgen -P \"$first\" -W \"$(_lgabench_words \"$takes\")\" -- "
+         "      mapfile -t COMPREPLY < <(compgen -P \"$first\" -W \"$(_lgabench_words \"$takes\" "
+         "\"${COMP_WORDS[2]}\")\" -- "
          "\"${now##*,}\")\n"
          "      ;;\n"
-         "    *) mapfile -t COMPREPLY < <(compgen -W \"$(_lgabench_words \"$takes\")\" -- \"$now\") ;;\n"
+         "    *) mapfile -t COMPREPLY < <(compgen -W \"$(_lgabench_words \"$takes\" \"${COMP_WORDS[2]}\")\" -- "
+         "\"$now\") ;;\n"
          "  esac\n"
          "}\n"
          "complete -F _lgabench lgabench\n";

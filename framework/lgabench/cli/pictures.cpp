@@ -1,7 +1,6 @@
 // lgabench-worker pictures: what report.html shows of test scenes, as a request on stdin lists them.
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <lgabench/cli/picture.hpp>
 #include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/learning/shown_input.hpp>
@@ -22,14 +22,6 @@
 
 namespace lgabench::cli {
 namespace {
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const auto* from = reinterpret_cast<const unsigned char*>(bytes.data());
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), from, static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(size));
-  return text;
-}
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {

@@ -105,7 +105,8 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
-  verb->add_option("--layout", arguments->layout, "How objects are placed; the scenario's first layout if not given")
+  verb->add_option("--layout", arguments->layout,
+                   "How objects are placed, of lgabench list layouts --of SCENARIO; the first of them if not given")
       ->check(one_of("layout", installed_layouts()));
   verb->add_option("--split", arguments->split, "Which of the separate sets of scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
@@ -119,12 +120,11 @@ void add_render(CLI::App& app, int&) {
   verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
-  const std::string layouts = fmt::format("{}", fmt::join(installed_layouts(), "|"));
   arrange(*verb, "What is drawn",
           {{"--gallery", "objects|textures|scenes|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
-           {"--layout", layouts.c_str()},
+           {"--layout", "LAYOUT"},
            {"--split", "train|dev|test"},
            {"--arm", "ARM"},
            {"--truth", "released|printed"},

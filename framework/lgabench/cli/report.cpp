@@ -8,6 +8,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -80,7 +81,7 @@ int report_all(const std::vector<std::string>& directories, const std::string& i
   for (const std::string& directory : directories) {
     if (!is_run(directory)) continue;
     reports.push_back(report::write_report(directory));
-    to_stderr("{}\n", (fs::path(directory) / "report.html").string());
+    to_stderr("{}\n", (fs::path(directory) / report_file::page).string());
   }
   if (reports.empty()) expect_run(directories.front());  // says which there are
   const fs::path first = reports.front().run.directory.lexically_normal(),
@@ -187,10 +188,10 @@ void add_report(CLI::App& app, int& exit) {
       for (const report::Grid* grid : report.document.grids())
         to_stdout("% {}\n{}\n", grid->caption, report::latex(*grid));
     else if (options->format == "md")
-      to_stdout("{}", read_file(run / "report.md"));
+      to_stdout("{}", read_file(run / report_file::markdown));
     else
       to_stdout("{}", read_file(run / ("summary." + options->format)));
-    to_stderr("{}\n", (run / "report.html").string());
+    to_stderr("{}\n", (run / report_file::page).string());
     exit = exit_of(report.run, ok);
   });
 }

@@ -104,8 +104,8 @@ Json participant_hashes(const std::vector<Participant>& participants) {
 
 // The server's model that --answers openai asks, and how; none for other answers, which need no server. `answers` is
 // what cells say of it.
-std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers, Json& about) {
-  if (a.answers != "openai") {
+std::optional<LiveModel> live_model(const RunArguments& a, AnswerSource& answers, Json& about) {
+  if (!std::holds_alternative<LiveAnswers>(answers)) {
     if (!a.model.empty() || !a.cassette.empty() || a.max_queries >= 0 || !a.request.empty() ||
         a.reply_timeout_s != OpenAiOptions().timeout_s || a.concurrency != LiveModel().concurrency)
       throw InputError(
@@ -117,7 +117,7 @@ std::optional<LiveModel> live_model(const RunArguments& a, std::string& answers,
     throw InputError("--answers openai: expected --model MODEL and --cassette FILE too");
   const Cassette readable(a.cassette);
   const std::string model = to_text(asked_model(a.model, a.request));
-  answers = live_prefix + model;
+  answers = LiveAnswers{model};
   about = {{"model", model}, {"provider", provider(openai_from_environment())}, {"prompt", PromptTemplate().version()}};
   return LiveModel{a.cassette, true, a.max_queries, a.reply_timeout_s, a.concurrency};
 }
@@ -142,16 +142,15 @@ PlannedRun plan_run(RunArguments a) {
   for (std::string& word : a.methods) word = with_python_method(word, a.python, catalogue);
   const Suite suite = load_suite(a.suite);
   const Design design = design_of(a, suite);
-  Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
+  Variation variation{read_answer_source(a.answers), options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan& plan = planned.plan;
   plan.live = live_model(a, variation.answers, plan.live_about);
-  if (const std::string file = cassette_of(a.answers); !file.empty()) {
-    CassetteAnswers cassette = check_cassette(file, design.scenarios);
-    variation.answers = cassette.answers;
-    plan.answers.push_back(std::move(cassette.file));
-  } else if (!plan.live && a.answers != no_answers) {
-    check_recorded(a.answers, design.scenarios);
+  if (auto* cassette = std::get_if<CassetteAnswers>(&variation.answers)) {
+    plan.answers.push_back(check_cassette(cassette->file, design.scenarios));
+    cassette->file = fs::path(plan.answers.back().name).stem();
+  } else if (const auto* recorded = std::get_if<RecordedAnswers>(&variation.answers)) {
+    check_recorded(*recorded, design.scenarios);
   }
   if (a.rehearsal && a.humans.empty()) throw InputError("--rehearsal: expected --humans DIR with it");
   if (!a.humans.empty())
@@ -164,7 +163,7 @@ PlannedRun plan_run(RunArguments a) {
   plan.request = to_json(design);
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
-                       {"answers", variation.answers},
+                       {"answers", to_string(variation.answers)},
                        {"truth", a.truth},
                        {"participants", participant_hashes(variation.participants)},
                        {"set", variation.options},
@@ -193,12 +192,13 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
     verb.add_option(name, words, help)->delimiter(',')->take_all();
   };
   verb.add_option("suite", a.suite, "A suite's id, or a .json file of one")->required();
-  verb.add_option("--preset", a.preset,
-                  "A setting of the suite: paper (the suite's own), paper_text, leaderboard, smoke");
+  verb.add_option(
+      "--preset", a.preset,
+      "A setting of the suite, of those that `lgabench list presets --of SUITE` prints; paper: the suite's own");
   list("--methods", a.methods, "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE");
   list("--engines", a.engines, "Engines, by plugin id");
   list("--scenarios", a.scenarios, "Scenarios");
-  list("--layout", a.layouts, "cells, continuous or released; several with commas");
+  list("--layout", a.layouts, "Ways to place objects: lgabench list layouts --of SUITE; several with commas");
   list("--demos", a.demonstrations, "Numbers of demonstrations of each seen command: 10,20");
   list("--seeds", a.seeds, "Training seeds: 0,1,2 or 0:3");
   verb.add_option("--episodes", a.episodes, "Test scenes of each arm");
@@ -225,13 +225,12 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                   "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the "
                   "preset's options, but not a row's own; may be given again")
       ->take_all();
-  verb.add_option(
-          "--answers", a.answers,
-          "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
-          "gpt4_released, gpt4_study, claude, claude_clutter: only that source; cassette:FILE: a server's replies, as "
-          "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
-          "methods that ask no language model")
-      ->check([](const std::string& word) { return answers_complaint(word, {no_answers}); })
+  verb.add_option("--answers", a.answers,
+                  "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
+                  "another word of lgabench list sources: only that source; cassette:FILE: a server's replies, as "
+                  "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
+                  "methods that ask no language model")
+      ->check([](const std::string& word) { return answers_complaint(word, true); })
       ->capture_default_str();
   verb.add_option("--model", a.model, "With --answers openai: the server's model");
   verb.add_option("--cassette", a.cassette,

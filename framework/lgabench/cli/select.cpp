@@ -89,8 +89,10 @@ std::string kept_model(const Cassette& cassette, const std::string& name) {
 
 Answerer make_answerer(const SelectArguments& a) {
   Answerer answerer;
-  const bool live = a.answers == "openai";
-  const std::string file = live ? a.cassette : cassette_of(a.answers);
+  const AnswerSource source = read_answer_source(a.answers);
+  const bool live = std::holds_alternative<LiveAnswers>(source);
+  const auto* kept = std::get_if<CassetteAnswers>(&source);
+  const std::string file = live ? a.cassette : kept ? kept->file : "";
   if (live && file.empty()) throw InputError("--answers openai: expected --cassette FILE too");
   if (!live && !a.cassette.empty()) throw InputError("--cassette: expected --answers openai with it");
   if (file.empty() && !a.model.empty())
@@ -227,11 +229,11 @@ void add_select(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("select", worker_summary("select"));
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
   verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
-  verb->add_option("--answers", arguments->answers,
-                   "recorded: the scenario's own; gpt4_released, gpt4_study, claude, claude_clutter: only that source; "
-                   "openai: ask a "
-                   "server now; cassette:FILE: a server's recorded replies")
-      ->check([](const std::string& word) { return answers_complaint(word); })
+  verb->add_option(
+          "--answers", arguments->answers,
+          "recorded: the scenario's own; another word of lgabench list sources: only that source; openai: ask a "
+          "server now; cassette:FILE: a server's recorded replies")
+      ->check([](const std::string& word) { return answers_complaint(word, false); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
                    "The true distribution to compare with, where released and printed differ")

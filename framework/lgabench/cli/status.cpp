@@ -22,7 +22,7 @@ struct Part {
   std::size_t cells = 0, done = 0, failed = 0, playing = 0;
   bool running = false;  // somebody writes into it
 
-  std::size_t missing() const { return cells - std::min(cells, done + failed); }
+  std::size_t missing() const { return cells - std::min(cells, done + failed + playing); }
   bool finished() const { return done >= cells; }
 };
 

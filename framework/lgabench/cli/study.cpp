@@ -16,6 +16,7 @@
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/writers.hpp>
 #include <lgabench/study/rehearse.hpp>
 #include <lgabench/study/report.hpp>
@@ -151,7 +152,7 @@ int rehearse(const StudyArguments& a) {
 
 int report_study(const StudyArguments& a) {
   to_stdout("{}", report::terminal(study::write_report(a.path), a.path));
-  to_stderr("{}\n", (a.path / "report.html").string());
+  to_stderr("{}\n", (a.path / report_file::page).string());
   return ok;
 }
 

@@ -249,7 +249,7 @@ int verify(const VerifyArguments& a) {
     plan.request = {{"suite", cells.front().cell.suite}, {"preset", ""}};
     plan.command = "lgabench verify";
     plan.answers = kept_answers(a.run);
-    if (is_live(cells.front().cell.answers)) {
+    if (std::holds_alternative<LiveAnswers>(cells.front().cell.answers)) {
       const std::optional<AnswerFile> replies = kept_replies(a.run);
       if (!replies)
         throw InputError(fmt::format(

@@ -1,29 +1,26 @@
 // A temporary directory.
 #pragma once
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <string>
 
-#include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/tree.hpp>
 
 namespace lgabench {
 
-/// A directory lgabench-NAME-XXXXXX among the system's temporary ones, which is gone when this is.
-struct Scratch {
-  fs::path path;
-  explicit Scratch(const std::string& name) {
-    std::string pattern = (fs::temp_directory_path() / ("lgabench-" + name + "-XXXXXX")).string();
-    if (!::mkdtemp(pattern.data())) throw InputError(fmt::format("{}: {}", pattern, std::strerror(errno)));
-    path = pattern;
-  }
-  ~Scratch() { remove_tree(path); }
+/// A directory lgabench-NAME.XXXXXX among the system's temporary ones, which is gone when this is. What a killed
+/// process left of that name goes when the next one is made: a directory is somebody's as long as its lock is held.
+class Scratch {
+ public:
+  /// @throws InputError where none can be made.
+  explicit Scratch(const std::string& name);
+  ~Scratch();
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
+
+  fs::path path;
+
+ private:
+  int lock_ = -1;
 };
 
 }  // namespace lgabench

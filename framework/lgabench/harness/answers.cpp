@@ -71,7 +71,7 @@ void drop_other_replies(const std::string& but, const fs::path& run) {
     if (file.path.extension() == ".jsonl" && file.name != but) fs::remove(file.path);
 }
 
-CassetteAnswers check_cassette(const fs::path& file, const std::vector<std::string>& scenarios) {
+AnswerFile check_cassette(const fs::path& file, const std::vector<std::string>& scenarios) {
   if (!fs::exists(file)) throw InputError(file.string() + ": cannot be read: no such cassette");
   Cassette cassette(file);
   const std::string model = cassette.only_model();
@@ -81,15 +81,14 @@ CassetteAnswers check_cassette(const fs::path& file, const std::vector<std::stri
     for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c)
       select_features(scenario.command(c), scenario.space, lm);
   }
-  const std::string hash = sha256_file(file);
-  return {cassette_prefix + hash, {hash + ".jsonl", file, {{"model", model}}}};
+  return {sha256_file(file) + ".jsonl", file, {{"model", model}}};
 }
 
-void check_recorded(const std::string& answers, const std::vector<std::string>& scenarios) {
+void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios) {
   std::vector<std::string> lacking, known;
   for (const std::string& id : scenarios) {
     const Scenario scenario = load_scenario(id);
-    const RecordedLanguageModel lm(scenario, recorded_source(scenario, answers));
+    const RecordedLanguageModel lm(scenario, recorded_source(scenario, answers.source));
     const auto knows = [&](const ScenarioCommand& c) { return lm.knows({c.utterance, scenario.task}); };
     if (std::all_of(scenario.commands.begin(), scenario.commands.end(), knows)) continue;
     lacking.push_back(id);
@@ -99,7 +98,7 @@ void check_recorded(const std::string& answers, const std::vector<std::string>& 
     throw InputError(fmt::format(
         "--answers {}: expected answers for {}; there are those for: {}. Others: --answers cassette:FILE or "
         "openai (docs/language-models.md); with methods that ask no language model: --answers {}",
-        answers, fmt::join(lacking, ", "), fmt::join(known, " | "), no_answers));
+        answers.source, fmt::join(lacking, ", "), fmt::join(known, " | "), to_string(NoAnswers())));
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {

@@ -8,6 +8,7 @@
 
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/record/answer_source.hpp>
 
 namespace lgabench {
 
@@ -23,14 +24,9 @@ std::vector<AnswerFile> kept_answers(const std::filesystem::path& run);
 /// Writes what is not there yet. @throws InputError for a file that is not what its name says.
 void keep_answers(const std::vector<AnswerFile>& files, const std::filesystem::path& run);
 
-/// Cell::answers of cells that read a cassette, and the file that they are in.
-struct CassetteAnswers {
-  std::string answers;
-  AnswerFile file;
-};
 /// @throws InputError where the cassette does not hold the replies of exactly one model to every command of the
 /// scenarios: names the first that is missing, and the command line that asks it.
-CassetteAnswers check_cassette(const std::filesystem::path& cassette, const std::vector<std::string>& scenarios);
+AnswerFile check_cassette(const std::filesystem::path& cassette, const std::vector<std::string>& scenarios);
 
 /// The replies that a run with a live model keeps, if it does; of several, left by one that was killed, the longest.
 std::optional<AnswerFile> kept_replies(const std::filesystem::path& run);
@@ -44,7 +40,7 @@ void drop_other_replies(const std::string& but, const std::filesystem::path& run
 
 /// @throws InputError where `answers` (recorded, or one of recorded_sources()) has none for a command of the scenarios:
 /// names those scenarios.
-void check_recorded(const std::string& answers, const std::vector<std::string>& scenarios);
+void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios);
 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant. A file of a rehearsal is refused unless `rehearsal`, which marks all of them.

@@ -33,11 +33,6 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
-// Training seeds of cells that play different test scenes: all, or 0 alone where all play the same.
-std::vector<std::uint64_t> scene_sets(const Design& design) {
-  return design.test_scenes == "per_seed" ? design.seeds : std::vector<std::uint64_t>{0};
-}
-
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string>& there = layouts_of(scenario);
@@ -49,7 +44,7 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
 
 }  // namespace
 
-Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const std::string& answers) {
+Cell unplayed_cell(const Suite& suite, const Design& grid, const Scenario& scenario, const AnswerSource& answers) {
   Cell cell;
   cell.suite = suite.id;
   cell.environment = suite.environment;
@@ -124,7 +119,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
           }
         for (const char* row : references)
           if (!learns(reference(row)))
-            for (const std::uint64_t seed : scene_sets(design)) add(reference(row), 0, seed);
+            for (const std::uint64_t seed : scene_sets(design.test_scenes, design.seeds)) add(reference(row), 0, seed);
       }
     }
   }

@@ -13,9 +13,9 @@ namespace lgabench {
 
 /// What is not part of the design.
 struct Variation {
-  std::string answers = "recorded";  // as Cell::answers
-  Json options = Json::object();     // as Design::options, before which they go
-  bool references = true;            // add the reference rows
+  AnswerSource answers;
+  Json options = Json::object();  // as Design::options, before which they go
+  bool references = true;         // add the reference rows
   Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
@@ -23,7 +23,7 @@ struct Variation {
 /// A suite's scenario: its own arms, then those that the suite adds. @throws InputError for one of another environment.
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth);
 /// A cell of the design without its layout, engine, method, demonstrations and training seed.
-Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const std::string& answers);
+Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers);
 
 /// Whether the row has a cell for every number of demonstrations and training seed. A reference row that learns nothing
 /// has one, with no demonstrations, for each set of test scenes.

@@ -201,7 +201,7 @@ void expect_one_python(const Candidate& here, std::map<std::string, std::pair<Js
 
 bool asks_live(const Part& part) {
   const Json answers = part.record().request.value("answers", Json());
-  return answers.is_string() && is_live(answers.get<std::string>());
+  return answers.is_string() && std::holds_alternative<LiveAnswers>(read_answer_source(answers));
 }
 
 // The part that keeps every reply, where parts asked a model live, on one cassette; else the first.

@@ -105,8 +105,8 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
                                      path.string(), difference(there, run)));
     }
     // What was half-written when a run was killed goes. run.json comes before all else: it makes the directory a run.
-    for (const fs::path& directory : {path, path / "answers", path / "figures", path / "tables"})
-      remove_temporaries(directory);
+    remove_temporaries(path);
+    for (const char* name : run_directories) remove_temporaries(path / name);
     if (!is_run(path) || (existing == Existing::resume && there.programs() != run.programs()))
       write_run_record(path, run);
     make_directory(path / "cells");

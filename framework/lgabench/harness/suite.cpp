@@ -85,11 +85,7 @@ Design apply(const JsonReader& overrides, Design design) {
   if (overrides.has("episodes")) design.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
   if (overrides.has("scene_seed"))
     design.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
-  if (overrides.has("test_scenes")) {
-    design.test_scenes = overrides.at("test_scenes").string();
-    if (design.test_scenes != "shared" && design.test_scenes != "per_seed")
-      overrides.at("test_scenes").fail("shared or per_seed");
-  }
+  if (overrides.has("test_scenes")) design.test_scenes = read_test_scenes(overrides.at("test_scenes"));
   if (overrides.has("options")) {
     design.options = options_of(overrides.at("options"), design.methods);
     design.options_place = overrides.at("options").place();

@@ -6,6 +6,7 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/record/test_scenes.hpp>
 
 namespace lgabench {
 
@@ -13,13 +14,13 @@ namespace lgabench {
 /// gives some of them and keeps the rest.
 struct Design {
   std::vector<std::string> scenarios, layouts, engines;
-  std::vector<std::string> methods;    // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
-  std::vector<int> demonstrations;     // clean demonstrations a policy learns from
-  std::vector<std::uint64_t> seeds;    // training seeds
-  int episodes = 0;                    // test scenes of each arm
-  std::uint64_t scene_seed = 0;        // of the test scenes
-  bool smoke = false;                  // stamped as not for the leaderboard
-  std::string test_scenes = "shared";  // by every training seed; or per_seed: each seed plays its own
+  std::vector<std::string> methods;  // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
+  std::vector<int> demonstrations;   // clean demonstrations a policy learns from
+  std::vector<std::uint64_t> seeds;  // training seeds
+  int episodes = 0;                  // test scenes of each arm
+  std::uint64_t scene_seed = 0;      // of the test scenes
+  bool smoke = false;                // stamped as not for the leaderboard
+  TestScenes test_scenes = TestScenes::shared;
   /// Method id, or "*" for each method that has the framework's option of that name -> option -> value.
   Json options = Json::object();
   std::string options_place = "/options";  // in the suite's file, for messages; no member

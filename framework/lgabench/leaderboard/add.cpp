@@ -20,12 +20,7 @@ namespace {
 using report::CellResult;
 using report::RunResults;
 
-// A cell as the report reads it, and its configuration.
-struct Found {
-  const CellResult* result = nullptr;
-  Cell cell;
-};
-using Row = std::map<Place, Found>;
+using Row = std::map<Place, const CellResult*>;
 using Rows = std::map<std::pair<std::string, std::string>, Row>;  // by the row's name and the engine
 
 // Reasons, those that hold for many cells counted.
@@ -55,9 +50,8 @@ Rows rows_of(const RunResults& run, const std::vector<std::string>& wanted) {
   for (const CellResult& result : run.cells) {
     names.insert(result.method);
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), result.method) == wanted.end()) continue;
-    Found found{&result, recorded_cell(run.directory / "cells" / result.key)};
-    const Place place{result.scenario, result.layout, result.demonstrations, found.cell.training_seed};
-    rows[{result.method, result.engine}][place] = std::move(found);
+    const Place place{result.scenario, result.layout, result.demonstrations, result.configuration.training_seed};
+    rows[{result.method, result.engine}][place] = &result;
   }
   for (const std::string& name : wanted)
     if (names.count(name) == 0)
@@ -80,24 +74,24 @@ std::string other_setting(const Json& cell, const Json& expected) {
 
 // SHA-256 of what a cell's answers are: of the cassette, or of the files that it names.
 std::string answers_hash(const fs::path& run, const Installed& installed, const Cell& cell, Reasons& reasons) {
-  if (is_live(cell.answers)) {
+  if (std::holds_alternative<LiveAnswers>(cell.answers)) {
     const std::optional<AnswerFile> replies = kept_replies(run);
     if (!replies) {
-      reasons.add(cell.answers + ": a live model's answers without their cassette (answers/ of the run)");
+      reasons.add(to_string(cell.answers) + ": a live model's answers without their cassette (answers/ of the run)");
       return "";
     }
     return sha256_file(replies->path);
   }
-  if (const std::string cassette = cassette_of(cell.answers); !cassette.empty()) {
-    if (!fs::exists(run / "answers" / (cassette + ".jsonl")))
-      reasons.add(cell.answers + ": the cassette is not in answers/ of the run");
-    return cassette;
+  if (const auto* cassette = std::get_if<CassetteAnswers>(&cell.answers)) {
+    if (!fs::exists(run / "answers" / (cassette->file + ".jsonl")))
+      reasons.add(to_string(cell.answers) + ": the cassette is not in answers/ of the run");
+    return cassette->file;
   }
   std::set<std::string> lines;
-  if (cell.answers != no_answers)
+  if (const auto* recorded = std::get_if<RecordedAnswers>(&cell.answers))
     for (const Setting::Scenario& s : installed.setting.scenarios) {
       const Scenario scenario = suite_scenario(installed.suite, s.id, Truth::released);
-      const std::string source = recorded_source(scenario, cell.answers, cell.method.asks == "edit");
+      const std::string source = recorded_source(scenario, recorded->source, cell.method.asks == "edit");
       lines.insert(source + " " + sha256_file(data_directory() / "answers" / (source + ".json")));
     }
   return sha256(fmt::format("{}", fmt::join(lines, "\n")));
@@ -137,7 +131,7 @@ Json evidence_of(const RunResults& run, const Identity& identity, const Json& da
 }
 
 Entry entry_of(const RunResults& run, const Installed& installed, const Row& row, const Json& about, Reasons& reasons) {
-  const Cell& first = row.begin()->second.cell;
+  const Cell& first = row.begin()->second->configuration;
   Entry entry;
   entry.setting = installed.setting;
   entry.about = about;
@@ -160,10 +154,11 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Row& row
     }
     Json expected = to_json(cell);
     expected["method"]["name"] = first.method.name;
-    const std::string title = found->second.cell.title();
-    if (const std::string reason = other_setting(to_json(found->second.cell), expected); !reason.empty()) {
+    const CellResult& result = *found->second;
+    const std::string title = result.configuration.title();
+    if (const std::string reason = other_setting(to_json(result.configuration), expected); !reason.empty()) {
       reasons.of_cell(reason, title);
-    } else if (const CellResult& result = *found->second.result; result.failed && result.fault != "plugin") {
+    } else if (result.failed && result.fault != "plugin") {
       reasons.add(fmt::format("failed by the {}, not by the method: {}: {}", result.fault, title, result.reason));
     } else {
       entry.cells.push_back(played_cell(result, run.directory / "cells" / result.key, key(cell), entry));

@@ -94,7 +94,7 @@ void expect_same_scenes(const std::vector<Entry>& entries, Checked& checked) {
     for (const Entry* entry : table)
       for (const PlayedCell& cell : entry->cells) {
         if (cell.scenes.empty()) continue;
-        const std::uint64_t set = entry->setting.test_scenes == "per_seed" ? cell.place.seed : 0;
+        const std::uint64_t set = scene_set(entry->setting.test_scenes, cell.place.seed);
         const auto& [first, by] =
             scenes.try_emplace({cell.place.scenario, cell.place.layout, set}, cell.scenes, entry).first->second;
         if (first == cell.scenes) continue;
@@ -106,7 +106,7 @@ void expect_same_scenes(const std::vector<Entry>& entries, Checked& checked) {
 }
 
 void expect_cassette(const fs::path& board, const Entry& entry, Checked& checked) {
-  if (cassette_of(entry.identity.answers).empty() && !is_live(entry.identity.answers)) return;
+  if (!has_cassette(entry.identity.answers)) return;
   const fs::path file = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
   if (!fs::exists(file) || sha256_file(file) != entry.identity.answers_sha256)
     checked.problems.push_back(

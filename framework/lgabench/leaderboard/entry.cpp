@@ -14,7 +14,7 @@ Json to_json(const Identity& identity) {
             {"kind", identity.row.kind},
             {"version", identity.row.version},
             {"options", identity.row.options},
-            {"answers", {{"source", identity.answers}, {"sha256", identity.answers_sha256}}},
+            {"answers", {{"source", to_string(identity.answers)}, {"sha256", identity.answers_sha256}}},
             {"engine", {{"id", identity.engine}, {"version", identity.engine_version}}},
             {"preset", identity.preset_sha256},
             {"scene_seed", identity.scene_seed}};
@@ -37,9 +37,9 @@ int PlayedCell::episodes() const {
 }
 
 int PlayedCell::successes() const {
-  std::ptrdiff_t n = 0;
-  for (const auto& arm : outcomes) n += std::count(arm.second.begin(), arm.second.end(), success_letter);
-  return static_cast<int>(n);
+  int n = 0;
+  for (const auto& arm : outcomes) n += lgabench::successes(arm.second);
+  return n;
 }
 
 Json to_json(const PlayedCell& cell) {

@@ -8,14 +8,15 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/leaderboard/setting.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
-#include <lgabench/record/episode.hpp>
+#include <lgabench/record/outcome.hpp>
 
 namespace lgabench::leaderboard {
 
 /// What an entry is, whoever computed it: two with the same parts are one entry.
 struct Identity {
-  Competitor row;                       // its name is its id
-  std::string answers, answers_sha256;  // as Cell::answers; hash of what they are
+  Competitor row;  // its name is its id
+  AnswerSource answers;
+  std::string answers_sha256;  // of what they are
   std::string engine, engine_version;
   std::string preset_sha256;  // hash(setting)
   std::uint64_t scene_seed = 0;
@@ -42,8 +43,6 @@ struct PlayedCell {
   int episodes() const;
   int successes() const;
 };
-constexpr char failed_cell_letter = '!';
-constexpr std::size_t most_failure_words = 26;  // a letter for each
 Json to_json(const PlayedCell& cell);
 
 /// How many cells a replay plays, unless the entry has fewer: 30 find 10 % falsified ones in 96 of 100 cases.

@@ -46,7 +46,7 @@ Identity read_identity(const JsonReader& reader) {
   const JsonReader answers = reader.at("answers"), engine = reader.at("engine");
   answers.only({"source", "sha256"});
   engine.only({"id", "version"});
-  identity.answers = answers.at("source").string();
+  identity.answers = read_answer_source(answers.at("source").string());
   expect_sha256(answers.at("sha256"));
   identity.answers_sha256 = answers.at("sha256").string();
   identity.engine = engine.at("id").string();
@@ -83,13 +83,11 @@ PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
     const std::string text = letters.string();
     if (text.size() != static_cast<std::size_t>(entry.setting.episodes))
       letters.fail(fmt::format("{} letters, one an episode", entry.setting.episodes));
-    for (const char c : text) {
-      const int failure = c >= 'a' && c <= 'z' ? c - 'a' : c >= 'A' && c <= 'Z' ? c - 'A' : -1;
-      const bool known = cell.failed.empty() ? c == success_letter ||
-                                                   (failure >= 0 && failure < static_cast<int>(entry.failures.size()))
-                                             : c == failed_cell_letter;
-      if (!known) letters.fail(cell.failed.empty() ? "\".\", or the letter of a failure" : "\"!\" of a failed cell");
-    }
+    for (const char c : text)
+      if (!cell.failed.empty() && c != failed_cell_letter)
+        letters.fail("\"!\" of a failed cell");
+      else if (cell.failed.empty() && !read_entry_letter(c, entry.failures))
+        letters.fail("\".\", or the letter of a failure");
     cell.outcomes[arm] = text;
   }
   const auto phis = entry.phi.find(cell.place.scenario);

@@ -110,7 +110,7 @@ std::string csv_of(const Suites& suites) {
                             display_name(table.names[i]),
                             identity.row.version,
                             identity.engine,
-                            identity.answers,
+                            to_string(identity.answers),
                             n,
                             when_all(s.rank ? std::to_string(*s.rank) : ""),
                             number(success),

@@ -25,15 +25,6 @@ Json selections_of(const CellResult& result) {
   return selects ? all : Json();
 }
 
-std::string letters(const CellResult& result, const std::string& arm, const std::vector<std::string>& words) {
-  std::string text;
-  for (const Episode& e : result.episodes.at(arm)) {
-    const char letter = outcome_letter(e, words);
-    text += e.attribution == "abstraction" ? static_cast<char>(letter - 'a' + 'A') : letter;
-  }
-  return text;
-}
-
 }  // namespace
 
 PlayedCell played_cell(const CellResult& result, const fs::path& directory, const std::string& key, Entry& entry) {
@@ -53,8 +44,11 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
   }
   std::string scenes, results;
   for (const std::string& arm : result.arms) {
-    for (const Episode& e : result.episodes.at(arm)) scenes += e.scene;
-    cell.outcomes[arm] = letters(result, arm, entry.failures);
+    std::string& letters = cell.outcomes[arm];
+    for (const Episode& e : result.episodes.at(arm)) {
+      scenes += e.scene;
+      letters += entry_letter(e, entry.failures);
+    }
   }
   for (const char* file : result_files) results += sha256_file(directory / file);
   cell.scenes = sha256(scenes);

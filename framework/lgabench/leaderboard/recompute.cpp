@@ -41,9 +41,9 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.program = options.program;
   plan.pool = options.pool;
   const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
-  if (is_live(entry.identity.answers))
+  if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
     plan.live.emplace(LiveModel{cassette, false, -1});
-  else if (!cassette_of(entry.identity.answers).empty())
+  else if (has_cassette(entry.identity.answers))
     plan.answers.push_back({cassette.filename(), cassette, Json::object()});
   return plan;
 }
@@ -76,7 +76,7 @@ report::CellAgreement compared(const PlayedCell& before, const PlayedCell& now, 
   cell.episodes = before.episodes();
   for (const auto& [arm, letters] : before.outcomes)
     for (std::size_t i = 0; i < letters.size(); ++i) {
-      const bool there = letters[i] == success_letter, here = now.outcomes.at(arm).at(i) == success_letter;
+      const bool there = is_success(letters[i]), here = is_success(now.outcomes.at(arm).at(i));
       cell.only_recorded += there && !here;
       cell.only_recomputed += here && !there;
     }
@@ -122,8 +122,7 @@ Json played_fresh(const Entry& entry, const std::vector<std::size_t>& chosen, co
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     keys.push_back(entry.cells[chosen[i]].key);
     Json& cell = successes.emplace_back(Json::object());
-    for (const auto& [arm, letters] : now[i].outcomes)
-      cell[arm] = std::count(letters.begin(), letters.end(), success_letter);
+    for (const auto& [arm, letters] : now[i].outcomes) cell[arm] = lgabench::successes(letters);
     episodes += now[i].episodes();
   }
   Json line{{"kind", "fresh"}, {"cells", keys},        {"bit_identical", 0},

@@ -36,7 +36,7 @@ const Setting::Scenario& Setting::scenario(const std::string& id) const {
 
 std::vector<Place> Setting::places(bool learns) const {
   std::vector<Place> all;
-  const std::vector<std::uint64_t> sets = test_scenes == "per_seed" ? seeds : std::vector<std::uint64_t>{0};
+  const std::vector<std::uint64_t> sets = scene_sets(test_scenes, seeds);
   for (const Scenario& scenario : scenarios)
     for (const std::string& layout : layouts) {
       for (const int n : learns ? demonstrations : std::vector<int>{0})
@@ -74,9 +74,7 @@ Setting read_setting(const JsonReader& reader) {
   for (const JsonReader& seed : reader.at("seeds").elements())
     setting.seeds.push_back(static_cast<std::uint64_t>(seed.integer(0, largest_seed)));
   setting.episodes = static_cast<int>(reader.at("episodes").integer(1, most_episodes));
-  setting.test_scenes = reader.at("test_scenes").string();
-  if (setting.test_scenes != "shared" && setting.test_scenes != "per_seed")
-    reader.at("test_scenes").fail("shared or per_seed");
+  setting.test_scenes = read_test_scenes(reader.at("test_scenes"));
   setting.scene_seed = static_cast<std::uint64_t>(reader.at("scene_seed").integer(0, largest_seed));
   for (const char* list : {"scenarios", "layouts", "demonstrations", "seeds"})
     if (reader.at(list).json().empty()) reader.at(list).fail("at least one value");
@@ -127,7 +125,7 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
 }
 
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const std::string& answers) {
+                               const AnswerSource& answers) {
   std::vector<Cell> cells;
   Cell cell;
   for (const Place& place : installed.setting.places(learns(row))) {

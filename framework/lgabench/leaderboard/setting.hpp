@@ -38,7 +38,7 @@ struct Setting {
   std::vector<int> demonstrations;
   std::vector<std::uint64_t> seeds;  // training seeds
   int episodes = 0;                  // of each arm
-  std::string test_scenes;           // as Design::test_scenes
+  TestScenes test_scenes = TestScenes::shared;
   std::uint64_t scene_seed = 0;
 
   /// "q1-leaderboard"
@@ -48,7 +48,7 @@ struct Setting {
   /// A row's cells: those of a row that learns, or of a reference row that does not (harness/expand.hpp).
   std::vector<Place> places(bool learns) const;
   /// Whether all training seeds play the same scenes.
-  bool shared_scenes() const { return test_scenes == "shared" || seeds.size() == 1; }
+  bool shared_scenes() const { return test_scenes == TestScenes::shared || seeds.size() == 1; }
 };
 
 Json to_json(const Setting& setting);
@@ -69,6 +69,6 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
 
 /// The cells of a row, in the order of places(). Their keys are those of a run of this row alone.
 std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row, const std::string& engine,
-                               const std::string& answers);
+                               const AnswerSource& answers);
 
 }  // namespace lgabench::leaderboard

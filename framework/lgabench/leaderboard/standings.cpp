@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -14,9 +13,7 @@
 namespace lgabench::leaderboard {
 namespace {
 
-double mean(const std::vector<double>& values) {
-  return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
+using report::mean;
 
 // An entry's rates on the table's test scenes: of each scenario and layout, training seed and scene the share of
 // successes over arms and numbers of demonstrations.
@@ -27,7 +24,7 @@ std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
     std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
     for (const auto& arm : cell.outcomes)
       for (std::size_t i = 0; i < scenes.size(); ++i)
-        scenes[i] += (arm.second[i] == success_letter) / static_cast<double>(cell.outcomes.size());
+        scenes[i] += is_success(arm.second[i]) / static_cast<double>(cell.outcomes.size());
     by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
   }
   std::vector<std::vector<std::vector<double>>> rates;
@@ -58,9 +55,7 @@ void add_rates(Standing& standing) {
     by_scenario[cell.place.scenario].push_back(rate);
     at[cell.place.demonstrations][cell.place.scenario].push_back(rate);
     for (const auto& [arm, letters] : cell.outcomes)
-      in_arm[arm][cell.place.scenario].push_back(
-          static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)) /
-          static_cast<double>(letters.size()));
+      in_arm[arm][cell.place.scenario].push_back(successes(letters) / static_cast<double>(letters.size()));
   }
   const auto over_scenarios = [](const std::map<std::string, std::vector<double>>& scenarios) {
     std::vector<double> means;
@@ -113,7 +108,7 @@ void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamp
     }
     const std::vector<double> adjusted = report::holm(p);
     int rank = 1;
-    for (std::size_t k = 0; k < adjusted.size(); ++k) rank += better[k] && adjusted[k] <= .05;
+    for (std::size_t k = 0; k < adjusted.size(); ++k) rank += better[k] && adjusted[k] <= report::alpha;
     all[i].rank = rank;
   }
 }

@@ -1,11 +1,11 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/base64.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/leaderboard/verification.hpp>
@@ -64,8 +64,9 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (times[names[i]] > 1) {
       const Identity& identity = all[i].entry->identity;
-      names[i] += fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
-                              identity.answers.substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
+      names[i] +=
+          fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
+                      to_string(identity.answers).substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
     }
   return names;
 }
@@ -182,15 +183,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   return grid;
 }
 
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
-}
-
 // Successes of all cells, in the order of places, arms and episodes, eight to a byte, the first in its highest bit.
 std::string success_bits(const Entry& entry) {
   std::string bytes;
@@ -199,7 +191,7 @@ std::string success_bits(const Entry& entry) {
     for (const std::string& arm : entry.setting.scenario(cell.place.scenario).arms)
       for (const char letter : cell.outcomes.at(arm)) {
         if (bit % 8 == 0) bytes.push_back('\0');
-        if (letter == success_letter) bytes.back() = static_cast<char>(bytes.back() | (0x80 >> bit % 8));
+        if (is_success(letter)) bytes.back() = static_cast<char>(bytes.back() | (0x80 >> bit % 8));
         ++bit;
       }
   return base64(bytes);
@@ -210,9 +202,8 @@ std::string command_of(const Entry& entry) {
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
-  const bool cassette = identity.answers.rfind("cassette:", 0) == 0 || is_live(identity.answers);
-  words.insert(words.end(), {"--answers", cassette ? fmt::format("cassette:answers/{}.jsonl", identity.answers_sha256)
-                                                   : identity.answers});
+  const AnswerSource kept = CassetteAnswers{fmt::format("answers/{}.jsonl", identity.answers_sha256)};
+  words.insert(words.end(), {"--answers", to_string(has_cassette(identity.answers) ? kept : identity.answers)});
   return shell_line(words);
 }
 
@@ -233,7 +224,8 @@ std::string what_was_played(const Setting& setting) {
       "{} scenarios, {} demonstrations, {} training seeds, {} test scenes of each arm and {}; scene seed {}, preset "
       "{}.",
       setting.scenarios.size(), fmt::join(setting.demonstrations, ", "), setting.seeds.size(), setting.episodes,
-      setting.test_scenes == "per_seed" ? "training seed" : "scenario", setting.scene_seed, hash(setting).substr(0, 8));
+      setting.test_scenes == TestScenes::per_seed ? "training seed" : "scenario", setting.scene_seed,
+      hash(setting).substr(0, 8));
 }
 
 std::string rank_text(const Standing& standing) { return standing.rank ? std::to_string(*standing.rank) : "–"; }
@@ -280,11 +272,12 @@ std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board)
   grid.align = "lrlll";
   for (std::size_t i = 0; i < table.waiting.size(); ++i) {
     const Standing& s = table.waiting[i];
-    grid.rows.push_back({{},
-                         {TableCell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
-                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
-                          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
-                         false});
+    grid.rows.push_back(
+        {{},
+         {TableCell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
+          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
+          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
+         false});
   }
   return grid;
 }
@@ -341,7 +334,7 @@ Json suite_data(const std::vector<NamedTable>& tables) {
            {"place", entry.place().string()},
            {"learns", learns(entry.identity.row)},
            {"version", entry.identity.row.version},
-           {"answers", entry.identity.answers},
+           {"answers", to_string(entry.identity.answers)},
            {"command", command_of(entry)},
            {"authors", entry.about.at("authors")},
            {"license", entry.about.at("license")},

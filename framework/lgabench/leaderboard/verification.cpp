@@ -143,7 +143,7 @@ std::vector<std::size_t> fresh_cells(const Entry& entry, const std::string& nonc
     return static_cast<std::size_t>(std::stoull(sha256(nonce + what).substr(0, 8), nullptr, 16)) % count;
   };
   const int n = learning ? setting.demonstrations[pick("demonstrations", setting.demonstrations.size())] : 0;
-  const bool seeds = learning || setting.test_scenes == "per_seed";
+  const bool seeds = learning || setting.test_scenes == TestScenes::per_seed;
   const std::uint64_t seed = seeds ? setting.seeds[pick("seed", setting.seeds.size())] : 0;
   std::vector<std::size_t> chosen;
   for (std::size_t i = 0; i < entry.cells.size(); ++i)
@@ -171,8 +171,7 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
     for (const auto& [arm, counts] : fresh->second) {
       const std::string& letters = cell.outcomes.at(arm);
       const auto share = [](double won, double of) { return std::pair(won / of, (won + 1) / (of + 2)); };
-      const auto before = share(static_cast<double>(std::count(letters.begin(), letters.end(), success_letter)),
-                                static_cast<double>(letters.size()));
+      const auto before = share(successes(letters), static_cast<double>(letters.size()));
       const auto now = share(counts.first, counts.second);
       const double variance = before.second * (1 - before.second) / (static_cast<double>(letters.size()) + 2) +
                               now.second * (1 - now.second) / (counts.second + 2.);

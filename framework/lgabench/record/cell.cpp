@@ -33,7 +33,7 @@ std::string Cell::title() const {
 }
 
 std::optional<std::uint64_t> Cell::scenes_of_seed() const {
-  return test_scenes == "per_seed" ? std::optional(training_seed) : std::nullopt;
+  return test_scenes == TestScenes::per_seed ? std::optional(training_seed) : std::nullopt;
 }
 
 Json to_json(const Cell& cell) {
@@ -53,7 +53,7 @@ Json to_json(const Cell& cell) {
             {"scene_seed", cell.scene_seed},
             {"test_scenes", cell.test_scenes},
             {"episodes", cell.episodes},
-            {"answers", cell.answers},
+            {"answers", to_string(cell.answers)},
             {"data", cell.data},
             {"smoke", cell.smoke}};
   if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
@@ -79,16 +79,15 @@ Cell read_cell(const Json& json, const std::string& file) {
   cell.engine = reader.at("engine").string();
   cell.method = {method.at("kind").string(), method.at("id").string(), method.at("name").string(),
                  method.at("version").string(), method.at("options").json()};
+  if (!cell.method.options.is_object()) method.at("options").fail("an object");
   if (method.has("asks")) cell.method.asks = method.at("asks").string();
   if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = seed_at(reader.at("training_seed"));
   cell.scene_seed = seed_at(reader.at("scene_seed"));
-  if (reader.has("test_scenes")) cell.test_scenes = reader.at("test_scenes").string();
-  if (cell.test_scenes != "shared" && cell.test_scenes != "per_seed")
-    reader.at("test_scenes").fail("shared or per_seed");
+  if (reader.has("test_scenes")) cell.test_scenes = read_test_scenes(reader.at("test_scenes"));
   cell.episodes = static_cast<int>(reader.at("episodes").integer(1, most));
-  cell.answers = reader.at("answers").string();
+  cell.answers = read_answer_source(reader.at("answers").string());
   if (reader.has("participant")) {
     const JsonReader participant = reader.at("participant");
     participant.only({"id", "sha256", "rehearsal"});
@@ -113,16 +112,14 @@ double recorded_seconds(const fs::path& directory) {
 
 std::string key(const Cell& cell) { return sha256(canonical(to_json(cell))).substr(0, 16); }
 
-Json data_hashes(const Scenario& scenario, const std::string& answers) {
+Json data_hashes(const Scenario& scenario, const AnswerSource& answers) {
   const fs::path data = data_directory();
   Json hashes{{"feature_space", sha256_file(data / "spaces" / (scenario.space.id + ".json"))},
               {"answers", folder_hash(data / "answers")},
               {"embeddings", folder_hash(data / "embeddings")}};
   if (const fs::path own = data / scenario.environment; fs::is_directory(own)) hashes["environment"] = folder_hash(own);
-  if (is_live(answers)) hashes["prompt"] = PromptTemplate().version();
+  if (std::holds_alternative<LiveAnswers>(answers)) hashes["prompt"] = PromptTemplate().version();
   return hashes;
 }
-
-bool is_live(const std::string& answers) { return answers.rfind(live_prefix, 0) == 0; }
 
 }  // namespace lgabench

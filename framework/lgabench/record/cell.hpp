@@ -9,6 +9,8 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/record/answer_source.hpp>
+#include <lgabench/record/test_scenes.hpp>
 
 namespace lgabench {
 
@@ -30,10 +32,6 @@ struct CellParticipant {
   bool rehearsal = false;  // no person's answers
 };
 
-/// What Cell::answers begins with where a server's model is asked while cells run; its name follows.
-constexpr const char* live_prefix = "openai:";
-bool is_live(const std::string& answers);
-
 /// All that a cell's results depend on, besides the programs themselves.
 struct Cell {
   std::string suite, environment, layout, engine;
@@ -41,10 +39,9 @@ struct Cell {
   Competitor method;
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
-  std::string test_scenes = "shared";  // as Design::test_scenes
+  TestScenes test_scenes = TestScenes::shared;
   int episodes = 0;
-  // recorded, one of recorded_sources(), "cassette:" and its SHA-256, or "openai:" and the model that is asked live
-  std::string answers;
+  AnswerSource answers;
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
@@ -71,7 +68,7 @@ double recorded_seconds(const std::filesystem::path& directory);
 std::string key(const Cell& cell);
 
 /// SHA-256 of what the data directory holds for this scenario: feature space, answers, sentence embeddings; where a
-/// model is asked live (see `answers` of Cell) the prompt too.
-Json data_hashes(const Scenario& scenario, const std::string& answers);
+/// model is asked live the prompt too.
+Json data_hashes(const Scenario& scenario, const AnswerSource& answers);
 
 }  // namespace lgabench

@@ -46,9 +46,4 @@ Episode read_episode(const JsonReader& reader) {
   return e;
 }
 
-char outcome_letter(const Episode& episode, const std::vector<std::string>& words) {
-  if (episode.success()) return success_letter;
-  return static_cast<char>('a' + (std::find(words.begin(), words.end(), episode.failure) - words.begin()));
-}
-
 }  // namespace lgabench

@@ -32,8 +32,4 @@ Json to_json(const Episode& episode);
 /// @throws InputError
 Episode read_episode(const JsonReader& reader);
 
-/// Outcomes as text, a letter an episode: this for success, else 'a' and on, as failures stand in `words`.
-constexpr char success_letter = '.';
-char outcome_letter(const Episode& episode, const std::vector<std::string>& words);
-
 }  // namespace lgabench

@@ -35,8 +35,8 @@ std::vector<std::string> read_cell_keys(const JsonReader& run) {
 }
 
 void expect_plain_run(const fs::path& run) {
-  for (const fs::path& directory : {run, run / "cells", run / "answers", run / "figures", run / "tables"})
-    expect_plain_entries(directory);
+  for (const fs::path& directory : {run, run / "cells"}) expect_plain_entries(directory);
+  for (const char* name : run_directories) expect_plain_entries(run / name);
 }
 
 }  // namespace lgabench

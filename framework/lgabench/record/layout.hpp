@@ -24,10 +24,29 @@ inline constexpr std::array cell_files{cell_file::configuration, cell_file::sele
 /// Those that hold no clock: the cell's results, bit by bit, of the configuration.
 inline constexpr std::array result_files{cell_file::selections, cell_file::training, cell_file::episodes};
 
+/// Names of what `report` writes beside run.json.
+namespace report_file {
+inline constexpr const char *summary = "summary.json", *summary_table = "summary.csv", *claims = "claims.json",
+                            *episodes = "episodes.csv", *markdown = "report.md", *page = "report.html",
+                            *figures = "figures", *tables = "tables";
+}  // namespace report_file
+/// Those that any document has, a study's among them.
+inline constexpr std::array document_entries{report_file::markdown, report_file::page, report_file::figures,
+                                             report_file::tables};
 /// What `run` and `report` write into a run's directory, and `run --fresh` deletes.
-inline constexpr std::array run_entries{"cells",       "answers",      "summary.json", "summary.csv",
-                                        "claims.json", "report.md",    "report.html",  "figures",
-                                        "tables",      "episodes.csv", "run.json"};
+inline constexpr std::array run_entries{"cells",
+                                        "answers",
+                                        report_file::summary,
+                                        report_file::summary_table,
+                                        report_file::claims,
+                                        report_file::markdown,
+                                        report_file::page,
+                                        report_file::figures,
+                                        report_file::tables,
+                                        report_file::episodes,
+                                        "run.json"};
+/// Its directories, but for the cells.
+inline constexpr std::array run_directories{"answers", report_file::figures, report_file::tables};
 
 /// Expects a line of training.jsonl: epoch, steps, loss, and curves, whose values lie within 1e100 of 0, so that means
 /// over cells are finite. The line's writer and its readers ask here. @throws InputError

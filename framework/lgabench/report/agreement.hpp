@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/statistics.hpp>
 
 namespace lgabench::report {
 
@@ -37,7 +38,7 @@ struct PooledAgreement {
   int cells = 0, only_recorded = 0, only_recomputed = 0;
   double p_holm = 1;  // McNemar's exact test, Holm's p over the rows and all rows
 
-  bool differs() const { return p_holm <= 0.05; }
+  bool differs() const { return p_holm <= alpha; }
 };
 
 /// Share of episodes that may end otherwise where the same bytes are not owed, as on another processor.

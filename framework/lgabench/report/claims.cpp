@@ -13,8 +13,6 @@
 namespace lgabench::report {
 namespace {
 
-constexpr double refuse_up_to = 0.05;
-
 // Both tests of a difference are judged in the same way, each on its own.
 constexpr std::array tests{&ClaimedDifference::these, &ClaimedDifference::alike};
 using Test = Tested ClaimedDifference::*;
@@ -39,7 +37,7 @@ void judge_orderings(std::vector<ClaimedDifference>& family) {
       Tested& t = d.*test;
       if (!t.change) continue;
       t.p_holm = adjusted[tested++];
-      const bool beyond_chance = t.p_holm <= refuse_up_to;
+      const bool beyond_chance = t.p_holm <= alpha;
       t.verdict = beyond_chance && t.change->interval.low > 0    ? Verdict::held
                   : beyond_chance && t.change->interval.high < 0 ? Verdict::reversed
                                                                  : Verdict::undecided;

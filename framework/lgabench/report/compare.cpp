@@ -16,8 +16,6 @@
 namespace lgabench::report {
 namespace {
 
-constexpr double refuse_up_to = 0.05;
-
 struct CellPair {
   const CellResult *a, *b;
   std::vector<std::string> arms{};  // in which both played the same scenes
@@ -131,7 +129,7 @@ std::vector<ComparedRow> compare_rows(const std::vector<CellPair>& pairs) {
     row.cells = draft.policies.policies();
     const std::vector<double> adjusted = holm(draft.p);
     for (std::size_t i = 0; i < adjusted.size(); ++i)
-      if (adjusted[i] <= refuse_up_to) ++(draft.direction[i] < 0 ? row.cells_worse : row.cells_better);
+      if (adjusted[i] <= alpha) ++(draft.direction[i] < 0 ? row.cells_worse : row.cells_better);
     p.push_back(row.change.p);
     rows.push_back(std::move(row));
   }
@@ -175,8 +173,8 @@ std::vector<ComparedTime> compare_times(const std::vector<CellPair>& pairs) {
 
 }  // namespace
 
-bool ComparedRow::worse() const { return p_holm <= refuse_up_to && change.interval.high < 0; }
-bool ComparedRow::better() const { return p_holm <= refuse_up_to && change.interval.low > 0; }
+bool ComparedRow::worse() const { return p_holm <= alpha && change.interval.high < 0; }
+bool ComparedRow::better() const { return p_holm <= alpha && change.interval.low > 0; }
 
 std::string verdict(const RunComparison& comparison) {
   std::vector<std::string> worse, better;

@@ -18,7 +18,7 @@ struct ComparedRow {
   Change change;      // B minus A
   double p_holm = 1;  // over all rows of the comparison
   int scenarios = 0;
-  PolicyPair total;  // over all pairs of cells; first is A
+  EpisodePairs total;  // over all pairs of cells; first is A
   // Pairs of cells, and those of them where B is worse or better by McNemar's exact test, Holm's p within the row.
   int cells = 0, cells_worse = 0, cells_better = 0;
 

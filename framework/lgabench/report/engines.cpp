@@ -18,28 +18,21 @@ auto place(const CellResult& c) {
 // Scenes and actions that were counted already: methods that select alike act alike.
 using Seen = std::set<std::pair<std::string, std::vector<double>>>;
 
-void count(const Episode& a, const Episode& b, AgreementRow& row) {
-  ++row.episodes;
-  row.won_first += a.success();
-  row.won_second += b.success();
-  row.agreed += a.success() == b.success();
-}
-
-void pair_episodes(const CellResult& a, const CellResult& b, EngineAgreement& out, AgreementRow& row, AgreementRow& all,
-                   Seen& seen) {
+void pair_cells(const CellResult& a, const CellResult& b, EngineAgreement& out, AgreementRow& row, AgreementRow& all,
+                Seen& seen) {
   for (const std::string& arm : a.arms) {
     const auto found = b.episodes.find(arm);
     if (found == b.episodes.end()) continue;
     const std::vector<Episode>&first = a.episodes.at(arm), &second = found->second;
     for (std::size_t i = 0; i < std::min(first.size(), second.size()); ++i) {
-      if (first[i].scene != second[i].scene || first[i].action.empty()) continue;
-      if (first[i].action != second[i].action) {
+      if (first[i].scene != second[i].scene || (first[i].action.empty() && second[i].action.empty())) continue;
+      if (!same_action(first[i], second[i])) {
         ++row.other_actions;
         continue;
       }
-      count(first[i], second[i], row);
+      row.same.add(first[i], second[i]);
       if (!seen.emplace(first[i].scene, first[i].action).second) continue;
-      count(first[i], second[i], all);
+      all.same.add(first[i], second[i]);
       if (first[i].success() != second[i].success()) out.disagreements.push_back({&a, arm, i, second[i].failure});
     }
   }
@@ -61,12 +54,12 @@ EngineAgreement compare(const RunResults& run, const std::string& layout, const 
     if (other == others.end()) continue;
     AgreementRow& row = rows[{cell.is_reference(), display_rank(cell.method), cell.method}];
     row.method = cell.method;
-    pair_episodes(cell, *other->second, out, row, all, seen);
+    pair_cells(cell, *other->second, out, row, all, seen);
   }
   for (auto& [key, row] : rows) out.rows.push_back(row);
   if (!rows.empty()) out.rows.push_back(all);
   for (AgreementRow& row : out.rows)
-    if (row.episodes > 0) row.interval = wilson(row.agreed, row.episodes);
+    if (row.same.episodes > 0) row.interval = wilson(row.same.agreed(), row.same.episodes);
   return out;
 }
 
@@ -94,13 +87,13 @@ Json to_json(const std::vector<EngineAgreement>& agreements) {
     Json rows = Json::array(), differing = Json::array();
     for (const AgreementRow& r : a.rows)
       rows.push_back({{"method", r.method.empty() ? Json() : Json(r.method)},
-                      {"episodes", r.episodes},
+                      {"episodes", r.same.episodes},
                       {"other_actions", r.other_actions},
-                      {"won_first", r.won_first},
-                      {"won_second", r.won_second},
-                      {"agreed", r.agreed},
-                      {"low", r.episodes > 0 ? Json(r.interval.low) : Json()},
-                      {"high", r.episodes > 0 ? Json(r.interval.high) : Json()}});
+                      {"won_first", r.same.won_first},
+                      {"won_second", r.same.won_second},
+                      {"agreed", r.same.agreed()},
+                      {"low", r.same.episodes > 0 ? Json(r.interval.low) : Json()},
+                      {"high", r.same.episodes > 0 ? Json(r.interval.high) : Json()}});
     for (const Disagreement& d : a.disagreements)
       differing.push_back({{"cell", d.cell->key},
                            {"scenario", d.cell->scenario},

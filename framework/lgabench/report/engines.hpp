@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/report/results.hpp>
-#include <lgabench/report/statistics.hpp>
+#include <lgabench/report/pairs.hpp>
 
 namespace lgabench::report {
 
@@ -20,10 +19,9 @@ struct Disagreement {
 
 struct AgreementRow {
   std::string method;     // a row's name; "" for all of them
-  int episodes = 0;       // of a scene that both engines played with the same action, bit for bit
+  EpisodePairs same;      // of scenes that both engines played with the same action, bit for bit
   int other_actions = 0;  // with another one: the policy was trained on what the other engine showed
-  int won_first = 0, won_second = 0, agreed = 0;  // of `episodes`
-  Interval interval;                              // Wilson's, 95 %, of agreed / episodes
+  Interval interval;      // Wilson's, 95 %, of same.agreed() / same.episodes
 };
 
 /// Two engines of one layout.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -18,7 +19,7 @@ TableCell linked(const Report& report, const fs::path& place) {
   TableCell cell(named.filename().string());
   cell.link = (fs::absolute(named).lexically_normal().lexically_relative(
                    fs::absolute(place.empty() ? "." : place).lexically_normal()) /
-               "report.html")
+               report_file::page)
                   .generic_string();
   return cell;
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/record/outcome.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
 
@@ -82,7 +83,7 @@ Json page_data(const Material& material) {
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Episode& e = all[i];
         outcomes += outcome_letter(e, words);
-        blamed += e.attribution.empty() ? '.' : e.attribution == "perception" ? 's' : e.attribution.front();
+        blamed += attribution_letter(e);
         hashes.push_back(e.scene);
         given.push_back(e.command);
         if (!e.action.empty() && pictures.scenes.count(e.scene) != 0)

@@ -8,6 +8,47 @@
 
 namespace lgabench::report {
 
+bool same_action(const Episode& first, const Episode& second) {
+  return !first.action.empty() && first.action == second.action;
+}
+
+void EpisodePairs::add(const Episode& a, const Episode& b) {
+  ++episodes;
+  won_first += a.success();
+  won_second += b.success();
+  only_first += a.success() && !b.success();
+  only_second += b.success() && !a.success();
+  same_actions = same_actions && same_action(a, b);
+}
+
+void EpisodePairs::add(const EpisodePairs& others) {
+  episodes += others.episodes;
+  won_first += others.won_first;
+  won_second += others.won_second;
+  only_first += others.only_first;
+  only_second += others.only_second;
+  same_actions = same_actions && others.same_actions;
+}
+
+std::vector<double> PolicyPair::differences() const {
+  std::vector<double> all = second;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] -= first[i];
+  return all;
+}
+
+std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second) {
+  const auto same_command = [](const Episode& a, const Episode& b) { return a.command == b.command; };
+  if (!std::equal(first.begin(), first.end(), second.begin(), second.end(), same_command)) return {};
+  PolicyPair pair;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    pair.add(first[i], second[i]);
+    pair.scenes.push_back(second[i].scene);
+    pair.first.push_back(first[i].success() ? 1 : 0);
+    pair.second.push_back(second[i].success() ? 1 : 0);
+  }
+  return pair;
+}
+
 std::string why_unpaired(const CellResult& first, const CellResult& second, const std::string& arm) {
   const std::vector<Episode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
   if (a.size() != b.size()) return fmt::format("{} and {} episodes", a.size(), b.size());
@@ -20,23 +61,10 @@ std::string why_unpaired(const CellResult& first, const CellResult& second, cons
 }
 
 PolicyPair pair_policies(const CellResult& first, const CellResult& second, const std::string& arm) {
-  const std::vector<Episode>&a = first.episodes.at(arm), &b = second.episodes.at(arm);
   if (const std::string why = why_unpaired(first, second, arm); !why.empty())
     throw InputError(
         fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, why));
-  PolicyPair pair;
-  pair.episodes = static_cast<int>(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    pair.won_first += a[i].success() ? 1 : 0;
-    pair.won_second += b[i].success() ? 1 : 0;
-    pair.only_first += a[i].success() && !b[i].success() ? 1 : 0;
-    pair.only_second += b[i].success() && !a[i].success() ? 1 : 0;
-    pair.same_actions = pair.same_actions && a[i].action == b[i].action;
-    pair.scenes.push_back(a[i].scene);
-    pair.first.push_back(a[i].success() ? 1 : 0);
-    pair.second.push_back(b[i].success() ? 1 : 0);
-  }
-  return pair;
+  return pair_episodes(first.episodes.at(arm), second.episodes.at(arm)).value();
 }
 
 void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const std::string& participant) {
@@ -44,17 +72,10 @@ void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const s
   if (row == rows_.end()) row = rows_.insert(rows_.end(), Scenario{scenario, {}, {}, {}});
   row->first.add(participant, pair.scenes, pair.first);
   row->second.add(participant, pair.scenes, pair.second);
-  std::vector<double> differences = pair.second;
-  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= pair.first[i];
-  row->differences.add(participant, pair.scenes, std::move(differences));
+  row->differences.add(participant, pair.scenes, pair.differences());
   if (!participant.empty()) participants_.insert(participant);
   ++policies_;
-  total_.episodes += pair.episodes;
-  total_.won_first += pair.won_first;
-  total_.won_second += pair.won_second;
-  total_.only_first += pair.only_first;
-  total_.only_second += pair.only_second;
-  total_.same_actions = total_.same_actions && pair.same_actions;
+  total_.add(pair);
 }
 
 Samples PairedRow::samples(Outcomes Scenario::*which) const {

@@ -1,5 +1,6 @@
-// Policies that played the same scenes, paired episode by episode.
+// Policies that played the same scenes, or one policy in two arms or on two engines, paired episode by episode.
 #pragma once
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,15 +11,31 @@
 
 namespace lgabench::report {
 
-/// Two policies on the scenes of one arm.
-struct PolicyPair {
+/// Whether both acted, and alike, bit for bit: two episodes without an action tell nothing of each other.
+bool same_action(const Episode& first, const Episode& second);
+
+/// Pairs of episodes, counted.
+struct EpisodePairs {
   int episodes = 0, won_first = 0, won_second = 0;
-  int only_first = 0, only_second = 0;  // scenes in which one alone succeeded
-  bool same_actions = true;             // in every scene the same, bit for bit
-  // Each episode's scene, by its hash, and who succeeded, 1 or 0.
+  int only_first = 0, only_second = 0;  // those in which one alone succeeded
+  bool same_actions = true;             // same_action() in each
+
+  void add(const Episode& first, const Episode& second);
+  void add(const EpisodePairs& others);
+  int agreed() const { return episodes - only_first - only_second; }
+};
+
+/// Two policies on the scenes of one arm, or one in two arms.
+struct PolicyPair : EpisodePairs {
+  // Each of the second's episodes: its scene, by its hash, and who succeeded, 1 or 0.
   std::vector<std::string> scenes;
   std::vector<double> first, second;
+
+  /// Second minus first, in each episode.
+  std::vector<double> differences() const;
 };
+/// None unless they are as many, with the same commands in the same order: those of two arms have other scenes.
+std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second);
 
 /// Why the two did not play the same scenes with the same commands in the arm, in one line; empty if they did. @pre
 /// both cells finished and have the arm
@@ -33,7 +50,7 @@ class PairedRow {
  public:
   void add(const std::string& scenario, const PolicyPair& pair, const std::string& participant = "");
 
-  const PolicyPair& total() const { return total_; }  // counts over all pairs
+  const EpisodePairs& total() const { return total_; }  // counts over all pairs
   int scenarios() const { return static_cast<int>(rows_.size()); }
   int policies() const { return policies_; }
   int participants() const { return static_cast<int>(participants_.size()); }
@@ -57,7 +74,7 @@ class PairedRow {
   std::vector<Scenario> rows_;
   std::set<std::string> participants_;
   int policies_ = 0;
-  PolicyPair total_;
+  EpisodePairs total_;
 };
 
 /// "+0.10 [-0.03, +0.23]"

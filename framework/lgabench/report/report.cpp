@@ -4,6 +4,7 @@
 #include <set>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/report/index.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -44,10 +45,10 @@ Report write_report(const fs::path& run) {
   const Summary& summary = report.summary;
   Json values = to_json(summary);
   if (!report.agreements.empty()) values["engine_agreement"] = to_json(report.agreements);
-  write_file(run / "summary.json", canonical(values) + "\n");
-  write_file(run / "summary.csv", to_csv(summary));
-  write_file(run / "episodes.csv", episodes_csv(report.run));
-  write_file(run / "claims.json", canonical(to_json(summary.suite, report.claims)) + "\n");
+  write_file(run / report_file::summary, canonical(values) + "\n");
+  write_file(run / report_file::summary_table, to_csv(summary));
+  write_file(run / report_file::episodes, episodes_csv(report.run));
+  write_file(run / report_file::claims, canonical(to_json(summary.suite, report.claims)) + "\n");
 
   const PaperValues paper = paper_values(summary.suite);
   const Pictures pictures = drawing.get();
@@ -72,18 +73,18 @@ void write_document(const fs::path& directory, const Document& document, const J
   Names figures, tables;
   for (const Chart* chart : document.charts()) {
     figures.insert(chart->file);
-    write_file(directory / "figures" / (chart->file + ".svg"), svg(*chart, true) + "\n");
-    write_file(directory / "figures" / (chart->file + ".pdf"), pdf(*chart));
+    write_file(directory / report_file::figures / (chart->file + ".svg"), svg(*chart, true) + "\n");
+    write_file(directory / report_file::figures / (chart->file + ".pdf"), pdf(*chart));
   }
   for (const Grid* grid : document.grids()) {
     tables.insert(grid->name);
-    write_file(directory / "tables" / (grid->name + ".tex"), latex(*grid));
-    write_file(directory / "tables" / (grid->name + ".csv"), csv(*grid));
+    write_file(directory / report_file::tables / (grid->name + ".tex"), latex(*grid));
+    write_file(directory / report_file::tables / (grid->name + ".csv"), csv(*grid));
   }
-  remove_others(directory / "figures", {".svg", ".pdf"}, figures);
-  remove_others(directory / "tables", {".tex", ".csv"}, tables);
-  write_file(directory / "report.md", markdown(document));
-  write_file(directory / "report.html", html(document, data));
+  remove_others(directory / report_file::figures, {".svg", ".pdf"}, figures);
+  remove_others(directory / report_file::tables, {".tex", ".csv"}, tables);
+  write_file(directory / report_file::markdown, markdown(document));
+  write_file(directory / report_file::page, html(document, data));
 }
 
 Document write_index(const std::vector<Report>& reports, const fs::path& file) {

@@ -27,11 +27,10 @@ std::string pictures_note(const Pictures& pictures) {
 std::set<std::string> sources(const Summary& summary) {
   std::set<std::string> lines;
   for (const PhiOfRow& of : distinct_phi(summary)) {
-    const Json& phi = of.row->phi.at(of.command);
-    const std::string provenance = phi.at("provenance"), words = provenance_words(provenance),
-                      source = phi.at("source");
-    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? provenance : words,
-                             source.empty() ? "" : ", " + source));
+    const PhiOfCommand& phi = of.row->phi[of.command];
+    const std::string words = provenance_words(phi.provenance);
+    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? phi.provenance : words,
+                             phi.source.empty() ? "" : ", " + phi.source));
   }
   return lines;
 }

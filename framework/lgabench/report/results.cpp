@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -18,8 +18,6 @@
 
 namespace lgabench::report {
 namespace {
-
-constexpr long long most = std::numeric_limits<int>::max();
 
 // A name or a message as tables, pages and terminals may show it: it comes from a plugin, or from somebody else's run.
 std::string shown(const JsonReader& text) { return one_line(text.string()); }
@@ -86,39 +84,35 @@ void read_selections(const fs::path& file, CellResult& cell) {
   }
 }
 
-void read_configuration(const fs::path& file, CellResult& cell) {
-  const Json json = read_json(file, Links::refused);
-  const JsonReader reader(json, file.string());
-  const JsonReader scenario = reader.at("scenario"), method = reader.at("method");
-  cell.scenario = shown(scenario.at("id"));
-  if (scenario.has("feature_space")) cell.space = shown(scenario.at("feature_space"));
+void read_configuration(const fs::path& directory, CellResult& result) {
+  const lgabench::Cell& cell = result.configuration = recorded_cell(directory);
+  const JsonReader scenario(*cell.scenario, (directory / cell_file::configuration).string(), "/scenario");
+  result.scenario = shown(scenario.at("id"));
+  if (scenario.has("feature_space")) result.space = shown(scenario.at("feature_space"));
   for (const JsonReader& command : scenario.at("commands").elements()) {
-    cell.commands.push_back({shown(command.at("utterance")),
-                             !command.has("seen") || command.at("seen").boolean(),
-                             command.has("truth") ? command.at("truth").json() : Json::object(),
-                             Json(),
-                             {}});
-    if (!cell.commands.back().truth.is_object()) command.at("truth").fail("an object");
+    result.commands.push_back({shown(command.at("utterance")),
+                               !command.has("seen") || command.at("seen").boolean(),
+                               command.has("truth") ? command.at("truth").json() : Json::object(),
+                               Json(),
+                               {}});
+    if (!result.commands.back().truth.is_object()) command.at("truth").fail("an object");
   }
-  cell.demonstrated_commands = static_cast<int>(
-      std::count_if(cell.commands.begin(), cell.commands.end(), [](const CommandResult& c) { return c.seen; }));
-  for (const JsonReader& arm : scenario.at("tests").elements()) cell.arms.push_back(shown(arm.at("arm")));
-  if (reader.has("environment")) cell.environment = shown(reader.at("environment"));
-  cell.layout = shown(reader.at("layout"));
-  cell.engine = shown(reader.at("engine"));
-  cell.method = shown(method.at("name"));
-  cell.kind = method.at("kind").string();
-  if (method.has("asks")) cell.asks = method.at("asks").string();
-  cell.id = method.at("id").string();
-  cell.options = method.at("options").json();
-  if (!cell.options.is_object()) method.at("options").fail("an object");
-  cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
-  cell.training_seed = reader.at("training_seed").integer(0, std::numeric_limits<long long>::max());
-  if (reader.has("participant")) {
-    cell.participant = shown(reader.at("participant").at("id"));
-    cell.rehearsal = reader.at("participant").has("rehearsal") && reader.at("participant").at("rehearsal").boolean();
-  }
-  cell.episodes_per_arm = static_cast<int>(reader.at("episodes").integer(1, most));
+  result.demonstrated_commands = static_cast<int>(
+      std::count_if(result.commands.begin(), result.commands.end(), [](const CommandResult& c) { return c.seen; }));
+  for (const JsonReader& arm : scenario.at("tests").elements()) result.arms.push_back(shown(arm.at("arm")));
+  result.environment = one_line(cell.environment);
+  result.layout = one_line(cell.layout);
+  result.engine = one_line(cell.engine);
+  result.method = one_line(cell.method.name);
+  result.kind = cell.method.kind;
+  result.asks = cell.method.asks;
+  result.id = cell.method.id;
+  result.options = cell.method.options;
+  result.demonstrations = cell.demonstrations;
+  result.training_seed = static_cast<long long>(cell.training_seed);
+  if (cell.participant) result.participant = one_line(cell.participant->id);
+  result.rehearsal = cell.participant && cell.participant->rehearsal;
+  result.episodes_per_arm = cell.episodes;
 }
 
 }  // namespace
@@ -138,7 +132,7 @@ CellResult read_cell(const fs::path& directory) {
   cell.key = directory.filename().string();
   expect_plain_entries(directory);
   const CellStatus status = read_cell_status(directory);
-  read_configuration(directory / cell_file::configuration, cell);
+  read_configuration(directory, cell);
   if (status.failed) {
     cell.failed = true;
     cell.fault = status.fault;
@@ -167,7 +161,7 @@ std::optional<CellResult> failed_cell(const fs::path& directory, const std::stri
   CellResult cell;
   cell.key = directory.filename().string();
   try {
-    read_configuration(directory / cell_file::configuration, cell);
+    read_configuration(directory, cell);
   } catch (const InputError&) {
     return {};
   }
@@ -208,6 +202,15 @@ RunResults read_run(const fs::path& run) {
       played.push_back(key);
   std::vector<std::optional<CellResult>> cells(played.size());
   std::vector<std::string> refused(played.size());
+  std::mutex mutex;
+  // One copy of each scenario, which has more bytes than all else that a report keeps of a cell.
+  std::vector<std::shared_ptr<const Json>> scenarios;
+  const auto share = [&](std::shared_ptr<const Json>& scenario) {
+    const std::lock_guard lock(mutex);
+    const auto same =
+        std::find_if(scenarios.begin(), scenarios.end(), [&](const auto& one) { return *one == *scenario; });
+    scenario = same == scenarios.end() ? scenarios.emplace_back(scenario) : *same;
+  };
   in_parallel(played.size(), [&](std::size_t i) {
     const fs::path directory = run / "cells" / played[i];
     try {
@@ -216,6 +219,7 @@ RunResults read_run(const fs::path& run) {
       refused[i] = one_line(e.what());
       cells[i] = failed_cell(directory, refused[i]);
     }
+    if (cells[i]) share(cells[i]->configuration.scenario);
   });
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (cells[i]) results.cells.push_back(std::move(*cells[i]));

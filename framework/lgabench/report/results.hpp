@@ -9,6 +9,7 @@
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/record/cell.hpp>
 #include <lgabench/record/episode.hpp>
 #include <lgabench/record/run_record.hpp>
 
@@ -28,6 +29,7 @@ struct CommandResult {
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
+  lgabench::Cell configuration;                             // whole; below, its texts in one line
   std::string key, scenario, layout, engine, method, kind;  // method: its row's name; kind: method or reference
   std::string environment;                                  // whose scenario it is; may be one that is not installed
   std::string space;                                        // the scenario's feature space

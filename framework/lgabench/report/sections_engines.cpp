@@ -25,14 +25,15 @@ Grid agreement_grid(const Material& material, const EngineAgreement& a, const st
       return Span::number(fixed(value, digits), fmt::format("{}/rows/{}/{}", place, k, member));
     };
     Spans share{Span::number("–")};
-    if (row.episodes > 0)
-      share = {Span::number(fixed(static_cast<double>(row.agreed) / row.episodes, 3) + " ["),
+    if (row.same.episodes > 0)
+      share = {Span::number(fixed(static_cast<double>(row.same.agreed()) / row.same.episodes, 3) + " ["),
                number("low", row.interval.low, 3), Span::number(", "), number("high", row.interval.high, 3),
                Span::number("]")};
-    grid.rows.push_back({{},
-                         {row.method.empty() ? TableCell("all, an action once a scene") : named(material, row.method),
-                          number("episodes", row.episodes, 0), number("other_actions", row.other_actions, 0),
-                          rate(row.won_first, row.episodes), rate(row.won_second, row.episodes), share}});
+    grid.rows.push_back(
+        {{},
+         {row.method.empty() ? TableCell("all, an action once a scene") : named(material, row.method),
+          number("episodes", row.same.episodes, 0), number("other_actions", row.other_actions, 0),
+          rate(row.same.won_first, row.same.episodes), rate(row.same.won_second, row.same.episodes), share}});
   }
   return grid;
 }

@@ -19,12 +19,9 @@ std::string words(std::string word) {
 }
 
 // A number of a φ̂, or "–" where there is none; without digits, a count or a mean of counts.
-Span phi_number(const Row& row, const std::string& member, int digits) {
-  const Json& phi = row.phi;
-  const Json::json_pointer place(member);
-  if (!phi.contains(place) || !phi.at(place).is_number()) return Span::number("–");
-  const double value = phi.at(place);
-  return Span::number(digits ? fixed(value, digits) : fmt::format("{:.4g}", value), place_of(row, "phi" + member));
+Span phi_number(const Row& row, const std::string& place, std::optional<double> value, int digits) {
+  if (!value) return Span::number("–");
+  return Span::number(digits ? fixed(*value, digits) : fmt::format("{:.4g}", *value), place_of(row, "phi" + place));
 }
 
 // A chip for each name; too many are counted.
@@ -136,26 +133,24 @@ Section phi(const Material& material) {
   List wordings;
   for (const PhiOfRow& of : distinct_phi(material.summary)) {
     const Row& row = *of.row;
-    const Json& one = row.phi.at(of.command);
-    const std::string place = fmt::format("/{}/", of.command), utterance = one.at("utterance"),
-                      source = one.at("source"), asked_as = one.at("asked_as");
-    for (const auto& set : one.at("quality").items()) {
-      const std::string& about = set.key();
-      std::vector<TableCell> cells{command_text(utterance, one.at("seen"), tell), named(material, row.method), about,
-                                   provenance_words(one.at("provenance")), source};
-      for (const char* group : {"object_types", "textures"}) {
+    const PhiOfCommand& phi = row.phi[of.command];
+    const std::string place = fmt::format("/{}/", of.command);
+    for (const auto& [about, set] : phi.quality) {
+      std::vector<TableCell> cells{command_text(phi.utterance, phi.seen, tell), named(material, row.method), about,
+                                   provenance_words(phi.provenance), phi.source};
+      for (const auto& [group, names] : {std::pair("object_types", &set.object_types), {"textures", &set.textures}}) {
         const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
-        cells.emplace_back(phi_number(row, numbers + "precision", 2));
-        cells.emplace_back(phi_number(row, numbers + "recall", 2));
-        cells.emplace_back(
-            Spans{phi_number(row, numbers + "size", 0), " of ", phi_number(row, numbers + "true_size", 0)});
+        cells.emplace_back(phi_number(row, numbers + "precision", names->precision, 2));
+        cells.emplace_back(phi_number(row, numbers + "recall", names->recall, 2));
+        cells.emplace_back(Spans{phi_number(row, numbers + "size", names->size, 0), " of ",
+                                 phi_number(row, numbers + "true_size", names->true_size, 0)});
       }
-      cells.emplace_back(phi_number(row, place + "lm_queries", 0));
-      cells.emplace_back(phi_number(row, place + "human_seconds", 0));
+      cells.emplace_back(phi_number(row, place + "lm_queries", phi.lm_queries, 0));
+      cells.emplace_back(phi_number(row, place + "human_seconds", phi.human_seconds, 0));
       grid.rows.push_back({row.scenario, std::move(cells)});
     }
-    const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, source, asked_as);
-    if (worded_otherwise(asked_as, utterance)) known.insert(wording);
+    const std::string wording = fmt::format("{}, of {}: “{}”", row.scenario, phi.source, phi.asked_as);
+    if (worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
   }
   if (grid.rows.empty()) return section;
   if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add(on_page, std::move(in_words));

@@ -75,7 +75,7 @@ std::vector<std::string> settings(const RunResults& run) {
   if (!run.record.preset.empty()) lines.push_back("preset " + run.record.preset);
   for (const std::string& line : options_beside_defaults(run.record.settings))
     lines.push_back("beside the plugins' defaults, " + line);
-  if (run.record.request.value("test_scenes", Json()) == "per_seed")
+  if (run.record.request.value("test_scenes", Json()) == TestScenes::per_seed)
     lines.emplace_back("each training seed plays test scenes of its own");
   for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;

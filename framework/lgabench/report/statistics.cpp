@@ -10,7 +10,7 @@
 namespace lgabench::report {
 namespace {
 
-constexpr double z = 1.959963984540054;  // standard normal quantile at .975
+constexpr double z = z_95;
 
 // Probability that, of the ranks 1..n with random signs, the positive ones sum to `sum` at most.
 double signed_rank_tail(std::size_t n, std::size_t sum) {

@@ -5,6 +5,9 @@
 
 namespace lgabench::report {
 
+constexpr double alpha = .05;               // of every test: refused are p up to it
+constexpr double z_95 = 1.959963984540054;  // standard normal quantile at .975
+
 /// @pre there is a value
 double mean(const std::vector<double>& values);
 
@@ -33,7 +36,7 @@ struct Change {
   double p = 1;
 };
 
-/// p values adjusted for having tested them all, in the order given (Holm 1979): refuse those up to .05.
+/// p values adjusted for having tested them all, in the order given (Holm 1979): refuse those up to alpha.
 std::vector<double> holm(const std::vector<double>& p);
 
 /// Two-sided p of Wilcoxon's signed-rank test that differences are symmetric about 0 (Wilcoxon 1945). Zeros are left

@@ -10,6 +10,7 @@
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/names.hpp>
+#include <lgabench/report/pairs.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -17,36 +18,12 @@ namespace {
 // What one cell, a training seed (of one participant), adds to a row: its episodes on one arm.
 struct SeedResult {
   std::string participant;
-  int episodes = 0, successes = 0;
-  std::vector<std::string> scenes;  // of each episode
-  std::vector<double> won;          // 1 or 0
-  // Beside the first arm, scene by scene:
-  bool paired = false;             // the arms give the same commands
-  std::vector<double> difference;  // won here minus won there
-  bool same_actions = false;
+  std::vector<std::string> scenes;   // of each episode
+  std::vector<double> won;           // 1 or 0
+  std::optional<PolicyPair> paired;  // with the first arm's; none where the arms give other commands
 };
 
 using Episodes = std::vector<Episode>;
-
-SeedResult played(const Episodes& episodes) {
-  SeedResult seed;
-  seed.episodes = static_cast<int>(episodes.size());
-  for (const Episode& e : episodes) {
-    seed.scenes.push_back(e.scene);
-    seed.won.push_back(e.success() ? 1 : 0);
-    seed.successes += e.success() ? 1 : 0;
-  }
-  return seed;
-}
-
-void pair(SeedResult& seed, const Episodes& first, const Episodes& here) {
-  seed.paired = seed.same_actions = first.size() == here.size();
-  for (std::size_t i = 0; seed.paired && i < here.size(); ++i) {
-    seed.paired = first[i].command == here[i].command;
-    seed.difference.push_back((here[i].success() ? 1 : 0) - (first[i].success() ? 1 : 0));
-    seed.same_actions = seed.same_actions && !here[i].action.empty() && first[i].action == here[i].action;
-  }
-}
 
 // A row in the making: what each scenario's seeds add to it.
 struct Draft {
@@ -59,27 +36,16 @@ void add_new(std::vector<std::string>& all, const std::string& one) {
   if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
 }
 
-// Mean over the numbers at `path` in each of `all`, the number itself where all agree; null without one.
-Json mean_at(const std::vector<Json>& all, const Json::json_pointer& path) {
-  Json first;
-  bool agree = true;
-  double sum = 0;
-  int n = 0;
-  for (const Json& one : all) {
-    if (!one.contains(path) || !one.at(path).is_number()) continue;
-    const Json& value = one.at(path);
-    if (n++ == 0) first = value;
-    agree = agree && value == first;
-    sum += value.get<double>();
-  }
-  return agree ? first : Json(sum / n);
+std::optional<double> mean_cost(const std::vector<Json>& selections, const char* member) {
+  std::vector<std::optional<double>> all;
+  for (const Json& one : selections) all.emplace_back(one.at("cost").at(member).get<double>());
+  return mean_of(all);
 }
 
-// The different texts at `path`, joined.
-std::string words_at(const std::vector<Json>& all, const Json::json_pointer& path) {
+// The different texts of that member, joined.
+std::string words_of(const std::vector<Json>& selections, const char* member) {
   std::set<std::string> words;
-  for (const Json& one : all)
-    if (one.contains(path) && one.at(path).is_string()) words.insert(one.at(path).get<std::string>());
+  for (const Json& one : selections) words.insert(one.at(member).get<std::string>());
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
@@ -91,15 +57,15 @@ std::string source_of(const std::vector<Json>& selections) {
       const std::string source = one.value("source", "");
       people[source.substr(0, source.rfind("participant "))].insert(source);
     }
-  if (people.empty()) return words_at(selections, "/source"_json_pointer);
+  if (people.empty()) return words_of(selections, "source");
   std::vector<std::string> words;
   for (const auto& [before, sources] : people)
     words.push_back(sources.size() == 1 ? *sources.begin() : fmt::format("{}{} participants", before, sources.size()));
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// Provenance, cost and quality of a row's Selections for one command; null if none of its cells selects.
-Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
+// A row's Selections for one command; none if none of its cells selects.
+std::optional<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
   std::vector<Json> selections;
   std::vector<Quality> qualities;
   for (const CellResult* cell : cells)
@@ -107,26 +73,27 @@ Json phi_of(const std::vector<const CellResult*>& cells, std::size_t command) {
       selections.push_back(cell->commands[command].selection);
       qualities.push_back(cell->commands[command].quality);
     }
-  if (selections.empty()) return nullptr;
-  return {{"utterance", cells.front()->commands[command].utterance},
-          {"seen", cells.front()->commands[command].seen},
-          {"provenance", words_at(selections, "/provenance"_json_pointer)},
-          {"source", source_of(selections)},
-          {"asked_as", words_at(selections, "/asked_as"_json_pointer)},
-          {"lm_queries", mean_at(selections, "/cost/lm_queries"_json_pointer)},
-          {"human_seconds", mean_at(selections, "/cost/human_seconds"_json_pointer)},
-          {"quality", to_json(mean_quality(qualities))}};
+  if (selections.empty()) return {};
+  const CommandResult& first = cells.front()->commands[command];
+  return PhiOfCommand{first.utterance,
+                      first.seen,
+                      words_of(selections, "provenance"),
+                      source_of(selections),
+                      words_of(selections, "asked_as"),
+                      mean_cost(selections, "lm_queries"),
+                      mean_cost(selections, "human_seconds"),
+                      mean_quality(qualities)};
 }
 
-// The same for every command that the arm gives; null if no method selects.
-Json phi_of(const std::vector<const CellResult*>& cells, const std::string& arm) {
+// The same for every command that the arm gives.
+std::vector<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, const std::string& arm) {
   std::set<std::size_t> given;
   for (const CellResult* cell : cells)
     if (!cell->failed)
       for (const Episode& e : cell->episodes.at(arm)) given.insert(e.command);
-  Json all;
+  std::vector<PhiOfCommand> all;
   for (const std::size_t command : given)
-    if (Json phi = phi_of(cells, command); !phi.is_null()) all.push_back(std::move(phi));
+    if (auto phi = phi_of(cells, command)) all.push_back(std::move(*phi));
   return all;
 }
 
@@ -142,7 +109,7 @@ void estimate(Draft& draft, const std::string& first_arm) {
   for (const auto& seeds : draft.scenarios)
     for (const SeedResult& seed : seeds) {
       all_paired = all_paired && seed.paired;
-      same_actions = same_actions && seed.same_actions;
+      same_actions = same_actions && seed.paired && seed.paired->same_actions;
     }
   Row& row = draft.row;
   const bool shifts = row.arm != first_arm && all_paired;
@@ -151,7 +118,7 @@ void estimate(Draft& draft, const std::string& first_arm) {
     Outcomes won, difference;
     for (const SeedResult& seed : seeds) {
       won.add(seed.participant, seed.scenes, seed.won);
-      if (shifts) difference.add(seed.participant, seed.scenes, seed.difference);
+      if (shifts) difference.add(seed.participant, seed.scenes, seed.paired->differences());
     }
     rates.push_back(won.sample());
     if (shifts) differences.push_back(difference.sample());
@@ -187,21 +154,22 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
       continue;
     }
     const Episodes& episodes = cell->episodes.at(arm);
-    SeedResult result = played(episodes);
-    result.participant = cell->participant;
+    SeedResult result{cell->participant, {}, {}, {}};
     if (!cell->participant.empty()) draft.participants.insert(cell->participant);
     seeds.insert(cell->training_seed);
     if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
-      pair(result, control->second, episodes);
+      result.paired = pair_episodes(control->second, episodes);
     for (const Episode& e : episodes) {
+      result.scenes.push_back(e.scene);
+      result.won.push_back(e.success() ? 1 : 0);
+      row.successes += e.success() ? 1 : 0;
       if (!e.success()) ++row.failures[e.failure];
       if (!e.attribution.empty()) ++row.attribution[e.attribution];
       row.inputs_told += e.input_seen ? 1 : 0;
       row.inputs_seen += e.input_seen.value_or(false) ? 1 : 0;
     }
-    row.episodes += result.episodes;
-    row.successes += result.successes;
-    results.push_back(result);
+    row.episodes += static_cast<int>(episodes.size());
+    results.push_back(std::move(result));
   }
   row.seeds = static_cast<int>(seeds.size());
   row.participants = static_cast<int>(draft.participants.size());
@@ -217,7 +185,7 @@ Row mean_row(const std::vector<const Draft*>& drafts, std::size_t scenarios, con
   Draft mean;
   Row& row = mean.row = drafts.front()->row;
   row.scenario = mean_scenario;
-  row.phi = nullptr;
+  row.phi.clear();
   row.seeds = row.scenes = row.episodes = row.successes = row.inputs_told = row.inputs_seen = row.n_error = 0;
   row.failures.clear();
   row.attribution = Row().attribution;

@@ -22,6 +22,16 @@ struct Shift {
   bool same_actions = false;  // every policy acted in every scene exactly as in its pair
 };
 
+/// What a row's cells selected for one command. Words: the different ones, joined by "; "; numbers: means over cells.
+struct PhiOfCommand {
+  std::string utterance;
+  bool seen = true;  // trained on; the others are tested only
+  std::string provenance, source, asked_as;
+  std::optional<double> lm_queries, human_seconds;
+  Quality quality;
+};
+Json to_json(const PhiOfCommand& phi);
+
 /// What a method did in one arm at one number of demonstrations, in one scenario or on the mean over all of them.
 struct Row {
   std::size_t index = 0;  // among summary.json's rows
@@ -38,7 +48,7 @@ struct Row {
   int inputs_told = 0, inputs_seen = 0;  // episodes whose policy told whether its input stood in training; where it did
   int n_error = 0;                       // episodes not played: the engine or the host failed
   std::vector<std::string> marks;
-  Json phi;  // a list: provenance, cost, quality of what was selected for each of the arm's commands; null in mean rows
+  std::vector<PhiOfCommand> phi;  // of each of the arm's commands for which a cell selected; none in mean rows
 
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }

@@ -16,7 +16,24 @@ Json shift_json(const std::optional<Shift>& shift) {
           {"same_actions", shift->same_actions}};
 }
 
+Json phi_json(const std::vector<PhiOfCommand>& phi) {
+  Json all;  // null where nothing was selected
+  for (const PhiOfCommand& one : phi) all.push_back(to_json(one));
+  return all;
+}
+
 }  // namespace
+
+Json to_json(const PhiOfCommand& phi) {
+  return {{"utterance", phi.utterance},
+          {"seen", phi.seen},
+          {"provenance", phi.provenance},
+          {"source", phi.source},
+          {"asked_as", phi.asked_as},
+          {"lm_queries", phi.lm_queries ? count_json(*phi.lm_queries) : Json()},
+          {"human_seconds", phi.human_seconds ? Json(*phi.human_seconds) : Json()},
+          {"quality", to_json(phi.quality)}};
+}
 
 Json to_json(const Summary& summary) {
   Json rows = Json::array(), failed = Json::array();
@@ -43,7 +60,7 @@ Json to_json(const Summary& summary) {
                       {"inputs_seen", row.seen_share() ? Json(*row.seen_share()) : Json()},
                       {"n_error", row.n_error},
                       {"marks", row.marks},
-                      {"phi", row.phi}});
+                      {"phi", phi_json(row.phi)}});
   for (const CellResult& cell : summary.failed)
     failed.push_back({{"cell", cell.key}, {"fault", cell.fault}, {"reason", cell.reason}});
   Json nearness = Json::array();

@@ -84,11 +84,11 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     for (const Row& row : table.rows) {
       marked.insert(row.marks.begin(), row.marks.end());
       if (acts_the_same(row)) same_as.insert(row.shift->against);
-      for (const Json& phi : row.phi) {
-        const std::string provenance = phi.at("provenance");
-        if (provenance == "truth" || provenance == "simulated_edit") people[row.method] = provenance_words(provenance);
-        if (provenance == "cassette") models.insert(phi.at("source").get<std::string>());
-        if (provenance == "live") live.insert(phi.at("source").get<std::string>());
+      for (const PhiOfCommand& phi : row.phi) {
+        if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
+          people[row.method] = provenance_words(phi.provenance);
+        if (phi.provenance == "cassette") models.insert(phi.source);
+        if (phi.provenance == "live") live.insert(phi.source);
       }
       if (row.is_mean() && row.participants > 0)
         people[row.method] = fmt::format("{} participant{}{}{}", row.participants, row.participants == 1 ? "" : "s",
@@ -176,7 +176,7 @@ std::vector<PhiOfRow> distinct_phi(const Summary& summary) {
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows)
       for (std::size_t i = 0; i < row.phi.size(); ++i)
-        if (shown.insert(row.scenario + '\n' + row.method + '\n' + canonical(row.phi[i])).second)
+        if (shown.insert(row.scenario + '\n' + row.method + '\n' + canonical(to_json(row.phi[i]))).second)
           all.push_back({&row, i});
   return all;
 }

@@ -13,6 +13,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/version.hpp>
+#include <lgabench/record/layout.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 namespace lgabench::study {
@@ -45,8 +46,8 @@ fs::path export_of(const fs::path& directory, int slot) {
 // Deletes what is of one person: their export, a report, whose numbers they are part of (study report makes it anew)
 // and, last, as a restart finds them by these, their events.
 void forget(const fs::path& directory, const std::string& id, int slot) {
-  for (const char* made : {"trials.csv", "results.json", "report.md", "report.html", "figures", "tables"})
-    fs::remove_all(directory / made);
+  for (const char* made : document_entries) fs::remove_all(directory / made);
+  for (const char* made : {"trials.csv", "results.json"}) fs::remove(directory / made);
   fs::remove(export_of(directory, slot));
   fs::remove(events_of(directory, id));
 }

@@ -1,0 +1,55 @@
+#include <lgabench/record/answer_source.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/abstraction/recorded.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr std::string_view cassette = "cassette:", live = "openai", live_model = "openai:", none = "none";
+
+}  // namespace
+
+std::string to_string(const AnswerSource& source) {
+  struct Word {
+    std::string operator()(const RecordedAnswers& recorded) const { return recorded.source; }
+    std::string operator()(const CassetteAnswers& kept) const { return std::string(cassette) + kept.file; }
+    std::string operator()(const LiveAnswers& asked) const {
+      return asked.model.empty() ? std::string(live) : std::string(live_model) + asked.model;
+    }
+    std::string operator()(const NoAnswers&) const { return std::string(none); }
+  };
+  return std::visit(Word(), source);
+}
+
+AnswerSource read_answer_source(const std::string& word) {
+  const auto after = [&word](std::string_view prefix) {
+    return word.rfind(prefix, 0) == 0 ? word.substr(prefix.size()) : "";
+  };
+  if (word == none) return NoAnswers();
+  if (word == live) return LiveAnswers();
+  if (const std::string model = after(live_model); !model.empty()) return LiveAnswers{model};
+  if (const std::string file = after(cassette); !file.empty()) return CassetteAnswers{file};
+  return RecordedAnswers{word};
+}
+
+std::vector<std::string> answer_words(bool with_none) {
+  std::vector<std::string> words = recorded_sources();
+  words.insert(words.begin(), RecordedAnswers().source);
+  words.emplace_back(live);
+  if (with_none) words.emplace_back(none);
+  return words;
+}
+
+std::string answers_complaint(const std::string& word, bool with_none) {
+  const std::vector<std::string> words = answer_words(with_none);
+  if (std::holds_alternative<CassetteAnswers>(read_answer_source(word)) ||
+      std::find(words.begin(), words.end(), word) != words.end())
+    return "";
+  return fmt::format("expected {} or cassette:FILE, got {}", fmt::join(words, ", "), word);
+}
+
+}  // namespace lgabench
