@@ -14,6 +14,7 @@
 #include <lgabench/core/flush_denormals.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/cloning_method.hpp>
+#include <lgabench/learning/cloning_options.hpp>
 #include <lgabench/learning/network.hpp>
 #include <lgabench/learning/training.hpp>
 #include <lgabench/plugin/loader.hpp>
@@ -681,6 +682,48 @@ TEST(Policies, OfHeatMapsSeeAllInputs) {
 
 TEST(Policies, OfAnUnknownNameAreRefused) {
   EXPECT_THROW(learn({{Picture::mask}}, demonstrations(1), 1, 0, {{"policy", "oracle"}}), InputError);
+}
+
+// A value that only looks like one was taken for the default.
+TEST(CloningOptions, OfAnUnknownValueAreRefusedByName) {
+  const auto refused = [](const char* option, const char* value) {
+    Json options{{"epochs", 1}, {"batch_size", 10}, {"learning_rate", .001}, {"batches", "drawn"}};
+    options[option] = value;
+    return message_of<InputError>([&] {
+      read_cloning_options(options);
+      read_picture_option(options);
+    });
+  };
+  EXPECT_SAYS(refused("batches", "sorted"), "options: /batches: expected one of drawn, shuffled");
+  EXPECT_SAYS(refused("instances", "last"), "options: /instances: expected one of all, first");
+  EXPECT_SAYS(refused("mask", "inverted"), "options: /mask: expected one of binary, signed");
+  EXPECT_SAYS(refused("picture", "grey"), "options: /picture: expected one of none, rgb");
+  EXPECT_SAYS(refused("policy", "oracle"), "options: /policy: expected one of regression, centroid, heat_map");
+}
+
+// What descriptors offer is what is read, and the defaults are the same: a descriptor that lacks an option is read as
+// one that has it.
+TEST(CloningOptions, AreThoseOfTheDescriptors) {
+  const Json offered =
+      parse_json("{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}", "options");
+  Json usual;
+  for (const auto& [name, option] : offered.items()) usual[name] = option.at("default");
+  for (const auto& [name, option] : offered.items())
+    for (const Json& value : option.value("values", Json::array())) {
+      Json options = usual;
+      options[name] = value;
+      EXPECT_NO_THROW({
+        read_cloning_options(options);
+        read_picture_option(options);
+        read_network_options(options);
+      }) << name
+         << " " << value;
+    }
+  const CloningOptions all = read_cloning_options(usual), none;
+  EXPECT_EQ(all.instances, none.instances);
+  EXPECT_EQ(all.signed_mask, none.signed_mask);
+  EXPECT_EQ(all.policy, none.policy);
+  EXPECT_FALSE(read_picture_option(usual));
 }
 
 TEST(Policies, OfAnyObjectDoNotSeeTheTypeThatIsLeftOut) {

@@ -67,54 +67,35 @@ class CloningPolicy : public Policy {
   Samples input_;
 };
 
-// A method, not of this library, may lack an option.
-std::string option(const Services& services, const char* name, const char* usual) {
-  const JsonReader options(services.options, "options");
-  return options.has(name) ? options.at(name).string() : usual;
-}
-
 PictureSize picture_size(const std::vector<Demonstration>& demonstrations) {
   for (const Demonstration& demonstration : demonstrations)
     for (const Step& step : demonstration.steps) return step.observation.size;
   throw MethodError("training: expected at least one demonstration, got none");
 }
 
-TrainingOptions training_options(const Services& services) {
-  const JsonReader options(services.options, "options");
-  TrainingOptions training;
-  training.epochs = static_cast<int>(options.at("epochs").integer(1, 1'000'000));
-  training.batch_size = static_cast<int>(options.at("batch_size").integer(1, 1'000'000));
-  training.learning_rate = options.at("learning_rate").number();
-  training.batches =
-      named<Batches>(options.at("batches"), {{"drawn", Batches::drawn}, {"shuffled", Batches::shuffled}});
-  return training;
-}
-
 }  // namespace
 
 PolicyInputs CloningMethod::inputs(const Json& options) const {
   PolicyInputs inputs{{PolicyInputs::Picture::mask}};
-  if (options.value("picture", "none") == "rgb") inputs.pictures.push_back(PolicyInputs::Picture::rgb);
+  if (read_picture_option(options)) inputs.pictures.push_back(PolicyInputs::Picture::rgb);
   return inputs;
 }
 
 Samples CloningMethod::training_rows(Samples clean, const Services&) const { return clean; }
 
 std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const Services& services) const {
-  return make_learner(option(services, "policy", "regression"), shape, {services.options, "options"}, services.seed);
+  return make_learner(read_cloning_options(services.options).policy, shape, services.options, services.seed);
 }
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
-  const TrainingOptions options = training_options(services);
+  const CloningOptions options = read_cloning_options(services.options);
   PolicyInputs seen = inputs(services.options);
-  if (option(services, "instances", "all") == "first") seen.instances = Instances::first;
-  if (option(services, "mask", "binary") == "signed") seen.signed_mask = true;
-  Featurizer featurizer(
-      inputs_of(option(services, "policy", "regression"), std::move(seen), picture_size(demonstrations)),
-      services.actions);
+  if (options.instances == Instances::first) seen.instances = options.instances;
+  if (options.signed_mask) seen.signed_mask = true;
+  Featurizer featurizer(inputs_of(options.policy, std::move(seen), picture_size(demonstrations)), services.actions);
   const Samples samples = training_rows(featurizer.samples(demonstrations), services);
   std::unique_ptr<Learner> trained = learner(samples.shape, services);
-  train(*trained, samples, options, services.seed, services.log);
+  train(*trained, samples, options.training, services.seed, services.log);
   return std::make_unique<CloningPolicy>(std::move(featurizer), std::move(trained), samples);
 }
 

@@ -20,7 +20,7 @@
   R"("help": "each batch drawn with replacement, or each sample once per pass",)"                       \
   R"("source": "drawn: released code"})"
 
-/// Those of one that trains the paper's network, which reads all of them.
+/// Options of a method that trains the paper's network.
 #define LGABENCH_CLONING_OPTIONS                                                                                  \
   LGABENCH_TRAINING_OPTIONS                                                                                       \
   R"(,"loss": {"framework": true, "default": "norm", "values": ["norm", "squared"],)"                             \
@@ -30,31 +30,39 @@
   R"(with an action's numbers scaled to their bounds",)"                                                          \
   R"("source": "text: paper, appendix; released: released code; spot: the notebook released for section 6"})"
 
-/// One more, of methods that see the goal mask alone unless it is asked for: options as in Services say whether the
-/// picture has a tower beside the mask's.
+/// The option of a method that sees the goal mask alone, or the picture beside it.
 #define LGABENCH_PICTURE_OPTION                                                     \
   R"("picture": {"framework": true, "default": "none", "values": ["none", "rgb"],)" \
   R"("help": "seen beside the goal mask", "source": "rgb: paper, appendix"})"
 
-/// Those of a method whose policy sees a goal mask, beside the former.
-#define LGABENCH_MASK_OPTIONS                                                                                    \
-  R"("instances": {"framework": true, "default": "all", "values": ["all", "first"], )"                           \
-  R"("help": "if several visible instances match one role: all are in the mask, or the first, row by row",)"     \
-  R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'"},)"           \
-  R"("mask": {"framework": true, "default": "binary", "values": ["binary", "signed"], )"                         \
-  R"("help": "1 on all that matters; signed: -1 on what is to be avoided and is not the target",)"               \
-  R"("source": "signed: paper, footnote on cost maps", "needs": {"signed": {"policy": ["regression"]}}},)"       \
-  R"("policy": {"framework": true, "default": "regression", "values": ["regression", "centroid", "heat_map"], )" \
-  R"("help": "regression: the network; heat_map: one that keeps spatial positions; centroid: no training, the )" \
-  R"(middle of the target. The latter two see target and avoid set apart, and ignore options of the training",)" \
-  R"("source": "regression: paper; the others: not the paper's"})"
+/// Options of a method whose policy sees a goal mask.
+#define LGABENCH_MASK_OPTIONS LGABENCH_MASK_OPTIONS_WITH("", R"(, "needs": {"signed": {"policy": ["regression"]}})", "")
 
-/// Those of a method whose policy sees none, in their place: it says why it lacks them.
-#define LGABENCH_NO_MASK_OPTIONS                                                                     \
-  R"("policy": {"framework": true, "default": "regression", "values": ["regression", "heat_map"], )" \
-  R"("help": "regression: the network; heat_map: one that keeps spatial positions, and )"            \
-  R"(ignores options of the training. centroid needs a goal mask, which this method lacks",)"        \
-  R"("source": "regression: paper; heat_map: not the paper's"})"
+/// Likewise, for a method that sees one with some of its options alone: the members that `instances`, `mask` and
+/// `policy` have beside these, each as ", " and JSON or "".
+#define LGABENCH_MASK_OPTIONS_WITH(of_instances, of_mask, of_policy)                                              \
+  R"("instances": {"framework": true, "default": "all", "values": ["all", "first"], )"                            \
+  R"("help": "if several visible instances match one role: all are in the mask, or the first, row by row",)"      \
+  R"("source": "all: docs/protocol.md; first: paper, section 3.2, 'an unambiguous abstract state'")" of_instances \
+  R"(}, "mask": {"framework": true, "default": "binary", "values": ["binary", "signed"], )"                       \
+  R"("help": "1 on all that matters; signed: -1 on what is to be avoided and is not the target",)"                \
+  R"("source": "signed: paper, footnote on cost maps")" of_mask R"(}, )" LGABENCH_POLICY_OPTION_(                 \
+      R"("regression", "centroid", "heat_map")",                                                                  \
+      "centroid: no training, the middle of the target. The latter two see target and avoid set apart, and "      \
+      "ignore options of the training",                                                                           \
+      of_policy)
+
+/// In place of LGABENCH_MASK_OPTIONS, for a method without a goal mask.
+#define LGABENCH_NO_MASK_OPTIONS                                                                        \
+  LGABENCH_POLICY_OPTION_(R"("regression", "heat_map")",                                                \
+                          "it ignores options of the training. centroid needs a goal mask, which this " \
+                          "method lacks",                                                               \
+                          "")
+
+#define LGABENCH_POLICY_OPTION_(values, help, more)                                           \
+  R"("policy": {"framework": true, "default": "regression", "values": [)" values              \
+  R"(], "help": "regression: the network; heat_map: one that keeps spatial positions; )" help \
+  R"(", "source": "regression: paper; the others: not the paper's")" more "}"
 
 namespace lgabench {
 

@@ -12,17 +12,8 @@ namespace {
 
 using Picture = PolicyInputs::Picture;
 
-Architecture architecture_of(const JsonReader& network) {
-  return named<Architecture>(network, {{"text", Architecture::text},
-                                       {"released", Architecture::released},
-                                       {"plain", Architecture::plain},
-                                       {"spot", Architecture::plain}});
-}
-
-std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& options, std::uint64_t seed) {
-  const Architecture architecture = architecture_of(options.at("network"));
-  const bool spot = options.at("network").string() == "spot";
-  const Loss loss = named<Loss>(options.at("loss"), {{"norm", Loss::norm}, {"squared", Loss::squared}});
+std::unique_ptr<Learner> regression(const SampleShape& rows, const Json& options, std::uint64_t seed) {
+  const auto [architecture, spot, loss] = read_network_options(options);
   NetworkShape shape{{}, rows.text, architecture, static_cast<int>(rows.actions.size()), spot};
   for (const SampleShape::Picture& picture : rows.pictures) {
     if (!(picture.size == input_size)) throw InputError("inputs: expected pictures of 36 x 72 for policy=regression");
@@ -32,12 +23,6 @@ std::unique_ptr<Learner> regression(const SampleShape& rows, const JsonReader& o
   if (spot) return std::make_unique<ScaledLearner>(std::move(network), rows.actions);
   return network;
 }
-
-std::unique_ptr<Learner> centroid(const SampleShape& rows, const JsonReader&, std::uint64_t) {
-  return std::make_unique<CentroidRule>(rows);
-}
-
-PolicyInputs as_they_are(PolicyInputs inputs, PictureSize) { return inputs; }
 
 // The first mask alone, as it is seen.
 PolicyInputs one_mask(PolicyInputs inputs, PictureSize native) {
@@ -51,10 +36,6 @@ PolicyInputs one_mask(PolicyInputs inputs, PictureSize native) {
   return inputs;
 }
 
-std::unique_ptr<Learner> heat_map(const SampleShape& rows, const JsonReader&, std::uint64_t seed) {
-  return std::make_unique<HeatMap>(rows, seed);
-}
-
 // All of them, at the sizes that it sees.
 PolicyInputs places(PolicyInputs inputs, PictureSize native) {
   if (inputs.pictures.empty()) throw InputError("options: /policy: heat_map needs a picture among the inputs");
@@ -64,27 +45,31 @@ PolicyInputs places(PolicyInputs inputs, PictureSize native) {
   return inputs;
 }
 
-struct Choice {
-  PolicyInputs (*inputs)(PolicyInputs, PictureSize native);
-  std::unique_ptr<Learner> (*make)(const SampleShape&, const JsonReader& options, std::uint64_t seed);
-};
-
-Choice choice(const std::string& policy) {
-  static const std::vector<std::pair<std::string, Choice>> choices{
-      {"regression", {as_they_are, regression}}, {"centroid", {one_mask, centroid}}, {"heat_map", {places, heat_map}}};
-  const Json name = policy;
-  return named(JsonReader(name, "options", "/policy"), choices);
-}
-
 }  // namespace
 
-PolicyInputs inputs_of(const std::string& policy, PolicyInputs inputs, PictureSize native) {
-  return choice(policy).inputs(std::move(inputs), native);
+PolicyInputs inputs_of(PolicyKind policy, PolicyInputs inputs, PictureSize native) {
+  switch (policy) {
+    case PolicyKind::centroid:
+      return one_mask(std::move(inputs), native);
+    case PolicyKind::heat_map:
+      return places(std::move(inputs), native);
+    case PolicyKind::regression:
+      break;
+  }
+  return inputs;
 }
 
-std::unique_ptr<Learner> make_learner(const std::string& policy, const SampleShape& shape, const JsonReader& options,
+std::unique_ptr<Learner> make_learner(PolicyKind policy, const SampleShape& shape, const Json& options,
                                       std::uint64_t seed) {
-  return choice(policy).make(shape, options, seed);
+  switch (policy) {
+    case PolicyKind::centroid:
+      return std::make_unique<CentroidRule>(shape);
+    case PolicyKind::heat_map:
+      return std::make_unique<HeatMap>(shape, seed);
+    case PolicyKind::regression:
+      break;
+  }
+  return regression(shape, options, seed);
 }
 
 }  // namespace lgabench

@@ -56,7 +56,7 @@ ShownInput shown_input(const JsonReader& input, const Observation& observation, 
                        const ActionSpace& actions) {
   const PolicyInputs offered = inputs_from(input);
   const std::string policy = input.at("policy").string();
-  PolicyInputs read = inputs_of(policy, offered, observation.size);
+  PolicyInputs read = inputs_of(read_policy_kind(input.at("policy")), offered, observation.size);
   ShownInput shown;
   for (const Picture picture : offered.pictures)
     if (std::find(read.pictures.begin(), read.pictures.end(), picture) == read.pictures.end())

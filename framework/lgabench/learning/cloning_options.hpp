@@ -1,0 +1,40 @@
+// What the framework's options say of a cloning method, read once. Private to learning/.
+#pragma once
+#include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/core/json.hpp>
+#include <lgabench/learning/learner.hpp>
+#include <lgabench/learning/loss.hpp>
+#include <lgabench/learning/network_shape.hpp>
+
+namespace lgabench {
+
+/// What is trained, where a method has no learner of its own.
+enum class PolicyKind { regression, centroid, heat_map };
+
+/// Those of cloning_method.hpp that every cloning method is trained by. What a descriptor lacks has the value that is
+/// here.
+struct CloningOptions {
+  TrainingOptions training;
+  Instances instances = Instances::all;
+  bool signed_mask = false;
+  PolicyKind policy = PolicyKind::regression;
+};
+
+/// Those of the paper's network. A learner of a method's own does not read them, and its descriptor may have others of
+/// these names.
+struct NetworkOptions {
+  Architecture architecture;
+  bool spot;  // the notebook's: a linear layer of 1000, actions scaled to their bounds
+  Loss loss;
+};
+
+/// `options` as in Services. @throws InputError naming the option: a value that is none of those above is never taken
+/// for a default, LGABENCH_TRAINING_OPTIONS cannot be lacking.
+CloningOptions read_cloning_options(const Json& options);
+PolicyKind read_policy_kind(const JsonReader& option);
+/// Likewise, `picture`: whether the picture is seen beside the goal mask. CloningMethod::inputs() alone asks.
+bool read_picture_option(const Json& options);
+/// Likewise; none can be lacking.
+NetworkOptions read_network_options(const Json& options);
+
+}  // namespace lgabench
