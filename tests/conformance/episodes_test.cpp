@@ -39,7 +39,7 @@ TEST_P(AnyTask, BeginsAlikeOnEveryEngine) {
       const Observation here = environment().reset(scene), there = other->reset(scene);
       EXPECT_EQ(here.rgb, there.rgb) << plugin.id;
       EXPECT_EQ(here.ids, there.ids) << plugin.id;
-      EXPECT_EQ(recorded(two_poses(), environment().expert_action()), recorded(two_poses(), other->expert_action()))
+      EXPECT_EQ(as_stored(two_poses(), environment().expert_action()), as_stored(two_poses(), other->expert_action()))
           << plugin.id;
     }
   }
@@ -48,7 +48,7 @@ TEST_P(AnyTask, BeginsAlikeOnEveryEngine) {
 TEST_P(AnyTask, DependsOnItsSceneAlone) {
   const auto same = [](const Episode& a, const Episode& b) {
     return a.first.rgb == b.first.rgb && a.first.ids == b.first.ids &&
-           recorded(two_poses(), a.action) == recorded(two_poses(), b.action) &&
+           as_stored(two_poses(), a.action) == as_stored(two_poses(), b.action) &&
            a.result.observation.rgb == b.result.observation.rgb && a.result.failure == b.result.failure &&
            a.result.observation.ids == b.result.observation.ids;
   };

@@ -1,8 +1,8 @@
-// What a method's process says, as the worker reads it: HostedMethod's replies and Asked's questions.
+// What a method's process says, as the worker reads it: HostedMethod's replies and AnswerLedger's questions.
 #include <lgabench/abstraction/human.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/environments.hpp>
-#include <lgabench/host/asked.hpp>
+#include <lgabench/host/answer_ledger.hpp>
 #include <lgabench/host/messages.hpp>
 
 #include "frames.hpp"
@@ -26,7 +26,7 @@ struct Answering {
   Services services{model, human, options, 0, log, actions, declared_truth(scenario.commands, "truth"), {}};
 };
 
-void read(const Frame& frame, Asked& asked, Channel& channel) {
+void read(const Frame& frame, AnswerLedger& asked, Channel& channel) {
   const JsonReader reader(frame.header, "frame");
   const std::string type = frame.type();
   if (type == "needs") {
@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Frame& frame : fuzz::frames_of(fuzz::text_of(data, size))) host.send(frame.header, frame.payload);
   }
   Channel worker = fuzz::channel_of(std::move(ours));
-  Asked asked(answering.scenario.space, answering.services);
+  AnswerLedger asked(answering.scenario.space, answering.services);
   try {
     while (const std::optional<Frame> frame = worker.receive()) read(*frame, asked, worker);
   } catch (const InputError&) {

@@ -68,7 +68,7 @@ class Rule {
     for (int row = 0; row < samples.rows; ++row) {
       const auto& [roles, label] = given[static_cast<std::size_t>(row)];
       shrink_mask(roles, native_size, native_size, samples.picture(0, row));
-      const Action values = recorded(tabletop::two_poses(), label);
+      const Action values = as_stored(tabletop::two_poses(), label);
       std::copy(values.begin(), values.end(), samples.labels.begin() + row * std::ptrdiff_t{12});
     }
     return samples;

@@ -367,9 +367,9 @@ using tabletop::TwoPoses;
 
 TEST(Action, IsRecordedWithOneSignOfEachQuaternion) {
   const TwoPoses action{{{.3, -.2}, {0, 0, .6, -.8}}, {{.5, .3}, {0, 0, 0, 1}}};
-  const Action kept = recorded(two_poses(), action);
+  const Action kept = as_stored(two_poses(), action);
   EXPECT_EQ(kept, (Action{.3f, -.2f, 0, 0, -.6f, .8f, .5f, .3f, 0, 0, 0, 1}));
-  EXPECT_EQ(recorded(two_poses(), kept), kept);
+  EXPECT_EQ(as_stored(two_poses(), kept), kept);
 }
 
 TEST(Action, ExecutableClipsAndNormalises) {
@@ -410,7 +410,7 @@ TEST(Action, OfAnotherSpaceIsDataAsWell) {
       {{"u", "", 0, 1}, {"v", "", 0, 1}, {"cos", "", -1, 1}, {"sin", "", -1, 1}, {"x", "m", 0, 4}}, {{2, 3}}, {{1, 0}}};
   const Action action{.25, 1.5, -3, 4, 9};
   EXPECT_EQ(executable(plan, action), (Action{.25, 1, -.6, .8, 4}));
-  EXPECT_EQ(recorded(plan, action), action) << "an angle has no other sign";
+  EXPECT_EQ(as_stored(plan, action), action) << "an angle has no other sign";
   const Vec2 at = in_picture(plan, plan.places[0], action, {480, 640});
   EXPECT_EQ(at.x, 160);
   EXPECT_EQ(at.y, 480);

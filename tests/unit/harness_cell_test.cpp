@@ -66,7 +66,7 @@ TEST_F(Play, TheFirstStepIsTheOraclesOnTheUntouchedScene) {
     const Demonstration& d = all[static_cast<std::size_t>(i)];
     EXPECT_EQ(d.steps.front().observation.rgb, seen.rgb);
     EXPECT_EQ(d.steps.front().observation.ids, seen.ids);
-    EXPECT_EQ(d.steps.front().label, recorded(environment->action_space(), environment->expert_action()));
+    EXPECT_EQ(d.steps.front().label, as_stored(environment->action_space(), environment->expert_action()));
     EXPECT_TRUE(environment->step(d.steps.front().label).is_success) << "a label of a file's precision still succeeds";
   }
 }

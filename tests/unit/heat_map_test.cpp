@@ -25,7 +25,7 @@ struct Silent : TrainingLog {
 };
 
 void set_label(Samples& samples, int row, const TwoPoses& action) {
-  const Action values = recorded(tabletop::two_poses(), action);
+  const Action values = as_stored(tabletop::two_poses(), action);
   std::copy(values.begin(), values.end(), samples.labels.begin() + row * std::ptrdiff_t{12});
 }
 

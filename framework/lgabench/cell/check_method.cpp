@@ -271,7 +271,7 @@ class MethodCheck {
     const ActionSpace& space = bench.environment->action_space();
     executable(space, move.action);
     std::string text;
-    for (const double value : recorded(space, move.action)) text += fmt::format("{:a} ", value);
+    for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
     return text;
   }
 

@@ -41,9 +41,9 @@ Action disturbed(const ActionSpace& space, Action action, double sigma, RandomSt
   return action;
 }
 
-// As it is after a file: fresh and cached demonstrations must train the same policy.
+// Rounded as the file rounds it, so that fresh and cached demonstrations train the same policy.
 Action label(const Environment& environment) {
-  return recorded(environment.action_space(), environment.expert_action());
+  return as_stored(environment.action_space(), environment.expert_action());
 }
 
 // The state that a noisy execution of the oracle's action leads to, labelled; false where it is to be dropped.

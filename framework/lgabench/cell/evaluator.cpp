@@ -35,7 +35,7 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   try {
     const Move move = actor(environment, scene, observation);
     episode.failure = environment.step(move.action).failure;  // refuses one that is not executable()
-    episode.action = recorded(environment.action_space(), move.action);
+    episode.action = as_stored(environment.action_space(), move.action);
     episode.input_seen = move.input_seen;
   } catch (const MethodError& e) {
     to_stderr("episode {} of {}: {}\n", scene.index, scene.arm, e.what());

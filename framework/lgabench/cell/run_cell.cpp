@@ -87,34 +87,36 @@ DemonstrationCache demonstration_cache(const CellJob& job) {
   return {job.cache, builds, fmt::format("lgabench/{}-{}-v1", job.cell.environment, job.cell.engine)};
 }
 
-// What a row does with the scenes.
-enum class Row { learns, abstraction_empty, reference };
-Row row_of(const Method* method, const Selected& selected, const Scenario& scenario) {
-  if (!method) return Row::reference;
-  return selected.nothing_to_learn_from(scenario) ? Row::abstraction_empty : Row::learns;
+// What becomes of a cell.
+enum class Course { trains, nothing_selected, reference };
+Course course_of(const Method* method, const Selected& selected, const Scenario& scenario) {
+  if (!method) return Course::reference;
+  return selected.nothing_to_learn_from(scenario) ? Course::nothing_selected : Course::trains;
 }
 
-// What is shown. Where the layout can show nothing of what was selected, the row's abstraction is empty.
-std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, const Selected& selected, Row& row) {
-  if (row != Row::learns) return {};
+// What is shown. Where the layout can show nothing of what was selected, the abstraction is empty.
+std::vector<Scene> training_scenes(const Scenario& scenario, const Cell& cell, const Selected& selected,
+                                   Course& course) {
+  if (course != Course::trains) return {};
   try {
     return sample(scenario, cell.layout, selected, cell.training_seed, scenario.training_scenes(cell.demonstrations));
   } catch (const NothingToShow&) {
     Selected truth;  // throws again where the scenario is at fault
     truth.needs.targets = Needs::Targets::truth;
     sample(scenario, cell.layout, truth, cell.training_seed, scenario.training_scenes(1));
-    row = Row::abstraction_empty;
+    course = Course::nothing_selected;
     return {};
   }
 }
 
-std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Row row, const Selected& selected) {
+std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, Course course,
+                                   const Selected& selected) {
   std::vector<TestScene> scenes;
   for (const Arm& arm : scenario.tests) {
     const Perception perception = perception_of(scenario, arm, cell.scenes_of_seed());
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
-      const bool empty = row == Row::abstraction_empty || selected.nothing_for(scene.command);
+      const bool empty = course == Course::nothing_selected || selected.nothing_for(scene.command);
       scenes.push_back({std::move(scene), perception, empty});
     }
   }
@@ -199,11 +201,11 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
                     answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
-  Row row = row_of(method.get(), selected, scenario);
+  Course course = course_of(method.get(), selected, scenario);
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
   phases.begin("sample");
-  const std::vector<Scene> scenes = training_scenes(scenario, cell, selected, row);
+  const std::vector<Scene> scenes = training_scenes(scenario, cell, selected, course);
 
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
@@ -215,15 +217,15 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
-  if (row == Row::learns) policy = learn(*method, id, demonstrations, services, selected);
+  if (course == Course::trains) policy = learn(*method, id, demonstrations, services, selected);
   demonstrations.clear();
 
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
-  const std::vector<TestScene> tests = test_scenes(scenario, cell, row, selected);
-  const Actor actor = policy                  ? policy_actor(*policy, selected.instructions, id)
-                      : row == Row::reference ? reference_actor(id)
-                                              : Actor();
+  const std::vector<TestScene> tests = test_scenes(scenario, cell, course, selected);
+  const Actor actor = policy                        ? policy_actor(*policy, selected.instructions, id)
+                      : course == Course::reference ? reference_actor(id)
+                                                    : Actor();
   std::vector<Episode> episodes = evaluate(*environment, tests, actor, count);
   auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth

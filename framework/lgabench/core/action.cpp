@@ -74,7 +74,7 @@ Action executable(const ActionSpace& space, const Action& action) {
   return done;
 }
 
-Action recorded(const ActionSpace& space, const Action& action) {
+Action as_stored(const ActionSpace& space, const Action& action) {
   Action kept = action;
   for (const auto& rotation : space.rotations)
     if (rotation.size() == 4 && kept[rotation[3]] < 0)

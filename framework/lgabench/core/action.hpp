@@ -48,10 +48,10 @@ Action executable(const ActionSpace& space, const Action& action);
 
 /// As files, labels and learners have it: rounded to float, quaternions with w >= 0, since q and -q turn alike and a
 /// regression target must be unique. @pre as many numbers as the space has.
-Action recorded(const ActionSpace& space, const Action& action);
+Action as_stored(const ActionSpace& space, const Action& action);
 
 /// Where a place of the action lies in a picture: x its column, y its row, in pixels, 0 at the picture's corner; within
-/// the picture. @pre as for recorded().
+/// the picture. @pre as for as_stored().
 Vec2 in_picture(const ActionSpace& space, const PicturePlace& place, const Action& action, PictureSize picture);
 
 }  // namespace lgabench

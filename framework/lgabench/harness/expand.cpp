@@ -13,8 +13,8 @@ namespace {
 
 bool asks_people(const Competitor& method) { return method.asks == "specify" || method.asks == "edit"; }
 
-// Those whose answers the method is based on in this scenario; one that is nobody where it asks no people, or where the
-// truth stands in for them.
+// Those whose answers the method is based on in this scenario; a single nullopt where the method asks no one, or where
+// the truth stands in for people.
 using Answering = std::vector<std::optional<CellParticipant>>;
 Answering participants(const Competitor& method, const Scenario& scenario, const std::vector<Participant>& all) {
   if (all.empty() || !asks_people(method)) return {std::nullopt};

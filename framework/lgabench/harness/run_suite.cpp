@@ -180,8 +180,8 @@ void cut_log(const fs::path& log) {
                               all.substr(all.size() - most)));
 }
 
-// The worker's own word that the cell is done, if its files bear it out; else status.json and nothing more. Returns the
-// reason of a failure, or "".
+// Accepts the cell if its files match the worker's checksums; otherwise leaves only status.json and the log. Returns
+// the reason of a failure, or "".
 std::string settle(const Cell& cell, const WorkerEnd& end, const fs::path& scratch, const Json& build,
                    double timeout_s) {
   cut_log(scratch / cell_file::log);

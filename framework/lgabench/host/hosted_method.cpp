@@ -11,7 +11,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/host/asked.hpp>
+#include <lgabench/host/answer_ledger.hpp>
 #include <lgabench/host/host_process.hpp>
 #include <lgabench/host/messages.hpp>
 #include <lgabench/plugin/guarded.hpp>
@@ -207,27 +207,27 @@ Needs HostedMethod::needs(const Json&) const {
 }
 
 Selection HostedMethod::select(const Command& command, const FeatureSpace& space, Services& services) {
-  Asked asked(space, services);
-  const auto answer = [&asked](const Frame& frame, Channel& channel) { return asked.answer(frame, channel); };
+  AnswerLedger ledger(space, services);
+  const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
   try {
     const Frame frame = session_->call(
         {{"type", "select"}, {"command", protocol::to_json(command)}, {"space", protocol::to_json(space)}}, "selection",
         answer);
-    return asked.account(session_->read([&] {
+    return ledger.account(session_->read([&] {
       const JsonReader reader(frame.header, "selection");
       return protocol::read_selection(reader.at("selection"));
     }));
   } catch (const MethodError&) {
-    asked.rethrow();
+    ledger.rethrow();
     throw;
   }
 }
 
 std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const FeatureSpace none;
-  Asked asked(none, services);
+  AnswerLedger ledger(none, services);
   const auto answer = [&](const Frame& frame, Channel& channel) {
-    if (frame.type() != "log") return asked.answer(frame, channel);
+    if (frame.type() != "log") return ledger.answer(frame, channel);
     for (const auto& [epochs, steps, loss, curves] :
          protocol::read_or_malformed([&] { return protocol::read_log(frame); })) {
       for (const auto& [name, value] : curves) services.log.curve(name, value);
@@ -241,7 +241,7 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
   try {
     session_->call(request, "learned", answer, &packed.file);
   } catch (const MethodError&) {
-    asked.rethrow();
+    ledger.rethrow();
     throw;
   }
   return std::make_unique<HostedPolicy>(session_);

@@ -111,7 +111,7 @@ void CentroidRule::begin(const Samples& samples) { impl_->fit(samples); }
 const std::vector<float>& CentroidRule::predict(const Samples& samples) {
   impl_->outputs.clear();
   for (int row = 0; row < samples.rows; ++row) {
-    const Action action = recorded(impl_->shape.actions, impl_->act(impl_->mask_of(samples, row)));
+    const Action action = as_stored(impl_->shape.actions, impl_->act(impl_->mask_of(samples, row)));
     impl_->outputs.insert(impl_->outputs.end(), action.begin(), action.end());
   }
   return impl_->outputs;

@@ -261,7 +261,7 @@ const std::vector<float>& HeatMap::predict(const Samples& samples) {
   impl_->outputs.clear();
   for (int row = 0; row < samples.rows; ++row) {
     impl_->look(samples, row, impl_->seen);
-    const Action action = recorded(impl_->shape.actions, impl_->act());
+    const Action action = as_stored(impl_->shape.actions, impl_->act());
     impl_->outputs.insert(impl_->outputs.end(), action.begin(), action.end());
   }
   return impl_->outputs;

@@ -42,7 +42,7 @@ struct Samples {
   int rows;
   std::vector<std::vector<float>> pictures;  // of each picture rows x its rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
-  std::vector<float> labels;                 // rows x numbers of an action: recorded(), the oracle's
+  std::vector<float> labels;                 // rows x numbers of an action: as_stored(), the oracle's
 };
 
 /// The value that more than half of the rows have in picture number `which`, number by number; any where there is none.

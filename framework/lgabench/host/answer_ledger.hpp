@@ -10,10 +10,10 @@
 namespace lgabench {
 
 /// Answers the frames "ask" and "person" of one call with the host's services.
-class Asked {
+class AnswerLedger {
  public:
   /// Holds references.
-  Asked(const FeatureSpace& space, Services& services);
+  AnswerLedger(const FeatureSpace& space, Services& services);
 
   /// Answers on the channel; false for a frame that is no question. What an answer throws is kept, and told to the
   /// method, which may bear it. @throws InputError for a question that is malformed.

@@ -1,4 +1,4 @@
-#include <lgabench/host/asked.hpp>
+#include <lgabench/host/answer_ledger.hpp>
 
 #include <algorithm>
 #include <iterator>
@@ -36,10 +36,10 @@ Selection in_order(Selection selection, const FeatureSpace& space) {
 
 }  // namespace
 
-Asked::Asked(const FeatureSpace& space, Services& services)
+AnswerLedger::AnswerLedger(const FeatureSpace& space, Services& services)
     : space_(space), services_(services), before_(services.lm.cost()) {}
 
-bool Asked::answer(const Frame& frame, Channel& channel) {
+bool AnswerLedger::answer(const Frame& frame, Channel& channel) {
   const JsonReader reader(frame.header, "frame");
   if (frame.type() != "ask" && frame.type() != "person") return false;
   Json reply;
@@ -55,11 +55,11 @@ bool Asked::answer(const Frame& frame, Channel& channel) {
   return true;
 }
 
-void Asked::rethrow() const {
+void AnswerLedger::rethrow() const {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-Json Asked::answer_questions(const JsonReader& reader) {
+Json AnswerLedger::answer_questions(const JsonReader& reader) {
   const auto [command, space, questions] = protocol::read_or_malformed([&] {
     std::vector<Question> all;
     const Command asked = protocol::read_command(reader.at("command"));
@@ -86,7 +86,7 @@ Json Asked::answer_questions(const JsonReader& reader) {
           {"asked_as", model_.asked_as}, {"cost", protocol::to_json(lm.cost())}};
 }
 
-Json Asked::ask_person(const JsonReader& reader) {
+Json AnswerLedger::ask_person(const JsonReader& reader) {
   const auto [how, command, proposal] = protocol::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
     if (word != "specify" && word != "edit" && word != "truth") reader.at("how").fail("specify, edit or truth");
@@ -100,9 +100,9 @@ Json Asked::ask_person(const JsonReader& reader) {
   return {{"type", "person"}, {"selection", protocol::told(answered)}};
 }
 
-void Asked::keep(Selection answered) { answers_.push_back(in_order(std::move(answered), space_)); }
+void AnswerLedger::keep(Selection answered) { answers_.push_back(in_order(std::move(answered), space_)); }
 
-Selection Asked::account(Selection selection) const {
+Selection AnswerLedger::account(Selection selection) const {
   const Selection ordered = in_order(selection, space_);
   Selection from;
   std::string edited;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
-#include <lgabench/host/asked.hpp>
+#include <lgabench/host/answer_ledger.hpp>
 #include <lgabench/host/messages.hpp>
 
 #include "testing.hpp"
@@ -58,9 +58,9 @@ struct NoLog : TrainingLog {
   void epoch(int, long long, double) override {}
 };
 
-class AskedTest : public testing::Test {
+class AnswerLedgerTest : public testing::Test {
  protected:
-  AskedTest() {
+  AnswerLedgerTest() {
     int ends[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
     worker_ = std::make_unique<Channel>(Descriptor(ends[0]), [](short) {});
@@ -101,18 +101,18 @@ class AskedTest : public testing::Test {
   Json options_ = Json::object();
   ActionSpace actions_;
   Services services_{model_, person_, options_, 0, log_, actions_};
-  Asked asked_{space, services_};
+  AnswerLedger asked_{space, services_};
   std::unique_ptr<Channel> worker_, host_;
 };
 
-TEST_F(AskedTest, nobody_is_a_rule_or_nothing) {
+TEST_F(AnswerLedgerTest, nobody_is_a_rule_or_nothing) {
   EXPECT_EQ(account({{"heart"}, {"red"}}).provenance, Provenance::rule);
   EXPECT_EQ(account({{"heart"}, {"red"}}).source, "");
   EXPECT_EQ(account({{"heart"}, {"red"}}).cost.lm_queries, 0);
   EXPECT_EQ(account({}).provenance, Provenance::none);
 }
 
-TEST_F(AskedTest, a_model_and_what_it_cost) {
+TEST_F(AnswerLedgerTest, a_model_and_what_it_cost) {
   EXPECT_EQ(ask_all()["answers"], Json({true, false, false, true, false}));
   const Selection same = account({{"heart"}, {"red"}});
   EXPECT_EQ(same.provenance, Provenance::recorded);
@@ -124,7 +124,7 @@ TEST_F(AskedTest, a_model_and_what_it_cost) {
   EXPECT_EQ(account({}).provenance, Provenance::recorded);
 }
 
-TEST_F(AskedTest, a_person_after_the_model) {
+TEST_F(AnswerLedgerTest, a_person_after_the_model) {
   ask_all();
   person("edit", {{"heart"}, {"red"}});
   EXPECT_EQ(person_.proposed.provenance, Provenance::recorded);
@@ -138,13 +138,13 @@ TEST_F(AskedTest, a_person_after_the_model) {
   EXPECT_EQ(account({{"pan"}, {"red"}}).source, "p1, edited by the method");
 }
 
-TEST_F(AskedTest, an_answer_that_fails_is_why_the_call_failed) {
+TEST_F(AnswerLedgerTest, an_answer_that_fails_is_why_the_call_failed) {
   model_.refuses = true;
   EXPECT_EQ(ask_all()["type"], "refused");
   EXPECT_SAYS(message_of<MethodError>([this] { asked_.rethrow(); }), "no answer was recorded");
 }
 
-TEST_F(AskedTest, a_malformed_question_breaks_the_protocol) {
+TEST_F(AnswerLedgerTest, a_malformed_question_breaks_the_protocol) {
   EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "ask"}}); }), "expected");
   EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "person"}, {"how", "guess"}}); }), "specify, edit or truth");
   EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
