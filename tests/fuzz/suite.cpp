@@ -22,10 +22,10 @@ const Catalogue& catalogue() {
   return all;
 }
 
-bool few_cells(const Grid& grid) {
-  std::size_t cells = grid.scenarios.size() > 2 ? 0 : 1;  // a scenario's data take time to be hashed
-  for (const std::size_t factor :
-       {grid.layouts.size(), grid.engines.size(), grid.methods.size(), grid.seeds.size(), grid.demonstrations.size()})
+bool few_cells(const Design& design) {
+  std::size_t cells = design.scenarios.size() > 2 ? 0 : 1;  // a scenario's data take time to be hashed
+  for (const std::size_t factor : {design.layouts.size(), design.engines.size(), design.methods.size(),
+                                   design.seeds.size(), design.demonstrations.size()})
     cells = cells > 100 ? cells : cells * factor;
   return cells > 0 && cells <= 100;
 }
@@ -39,10 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::string> presets{""};
     for (const auto& preset : suite.presets.items()) presets.push_back(preset.key());
     for (const std::string& preset : presets) {
-      const Grid grid = preset_grid(suite, preset);
-      canonical(to_json(grid));
-      if (few_cells(grid))
-        for (const Cell& cell : expand(suite, grid, {}, catalogue())) key(read_cell(to_json(cell), "cell.json"));
+      const Design design = preset_design(suite, preset);
+      canonical(to_json(design));
+      if (few_cells(design))
+        for (const Cell& cell : expand(suite, design, {}, catalogue())) key(read_cell(to_json(cell), "cell.json"));
     }
   } catch (const InputError&) {
   } catch (const PluginError&) {

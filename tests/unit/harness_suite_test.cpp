@@ -30,7 +30,7 @@ PluginInfo plugin(const std::string& kind, const std::string& id) {
 }
 Catalogue catalogue() { return {{plugin("method", "a"), plugin("method", "b"), plugin("engine", "e")}, {}}; }
 
-Grid small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
+Design small_grid() { return {{"heart", "letter"}, {"cells"}, {"e"}, {"a", "b"}, {10, 20}, {0, 1, 2}, 5, 7, false}; }
 
 TEST(Expand, AsksThePeopleThatAMethodDeclares) {
   Catalogue known = catalogue();
@@ -57,26 +57,26 @@ TEST(Expand, AsksThePeopleThatAMethodDeclares) {
 
 TEST(Suite, q1) {
   const Suite suite = load_suite("q1");
-  EXPECT_EQ(suite.grid.scenarios.size(), 13u);
-  EXPECT_EQ(suite.grid.demonstrations, (std::vector<int>{10, 20, 30, 40, 50}));
-  const Grid smoke = preset_grid(suite, "smoke");
+  EXPECT_EQ(suite.design.scenarios.size(), 13u);
+  EXPECT_EQ(suite.design.demonstrations, (std::vector<int>{10, 20, 30, 40, 50}));
+  const Design smoke = preset_design(suite, "smoke");
   EXPECT_TRUE(smoke.smoke);
   EXPECT_EQ(smoke.scenarios, (std::vector<std::string>{"heart", "red_heart"}));
   EXPECT_EQ(smoke.demonstrations, std::vector<int>{20});
-  const Grid board = preset_grid(suite, "leaderboard");
+  const Design board = preset_design(suite, "leaderboard");
   EXPECT_FALSE(board.smoke);
   EXPECT_EQ(board.layouts, std::vector<std::string>{"continuous"});
   EXPECT_EQ(board.episodes, 100);
   EXPECT_EQ(board.seeds.size(), 3u);
   EXPECT_EQ(board.test_scenes, "per_seed");
-  EXPECT_EQ(board.options, suite.grid.options);
-  EXPECT_EQ(to_json(preset_grid(suite, "paper")), to_json(suite.grid)) << "the paper's setting is the suite's own";
+  EXPECT_EQ(board.options, suite.design.options);
+  EXPECT_EQ(to_json(preset_design(suite, "paper")), to_json(suite.design)) << "the paper's setting is the suite's own";
   EXPECT_EQ(board.demonstrations.size(), 5u) << "what a preset does not name it takes from the suite";
 }
 
 TEST(Suite, GridAsJsonReadsBack) {
   const Json json = to_json(small_grid());
-  EXPECT_EQ(to_json(apply(JsonReader(json, "test"), Grid{})), json);
+  EXPECT_EQ(to_json(apply(JsonReader(json, "test"), Design{})), json);
 }
 
 TEST(Cells, ExpandCrossesTheGrid) {
@@ -107,10 +107,10 @@ TEST(Cells, OfOneScenarioShareIt) {
 
 TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
   const Suite robustness = load_suite("robustness");
-  Grid grid = small_grid();
-  grid.scenarios = load_suite("q1").grid.scenarios;
-  EXPECT_EQ(grid.scenarios, robustness.grid.scenarios);
-  const auto cells = expand(robustness, grid, {}, catalogue());
+  Design design = small_grid();
+  design.scenarios = load_suite("q1").design.scenarios;
+  EXPECT_EQ(design.scenarios, robustness.design.scenarios);
+  const auto cells = expand(robustness, design, {}, catalogue());
   for (const Cell& cell : cells) {
     const Scenario s = read_scenario(*cell.scenario, "cell");
     ASSERT_EQ(s.tests.size(), 6u);
@@ -127,7 +127,7 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
   }
   Suite twice = robustness;
   twice.arms[1]["arm"] = "hard";
-  EXPECT_SAYS(message_of<InputError>([&] { expand(twice, grid, {}, catalogue()); }),
+  EXPECT_SAYS(message_of<InputError>([&] { expand(twice, design, {}, catalogue()); }),
               "/tests/2/arm: expected each arm once");
 }
 
@@ -156,16 +156,16 @@ TEST(Cells, OptionsAreCheckedBeforeAnythingRuns) {
   EXPECT_NO_THROW(with({{"a", {{"epochs", 5}}}}));
   EXPECT_SAYS(message_of<InputError>([&] { with({{"a", {{"epoks", 5}}}}); }), "epoks");
   EXPECT_SAYS(message_of<InputError>([&] { with({{"c", {{"epochs", 5}}}}); }), "--set c");
-  Grid grid = small_grid();
-  grid.methods = {"c"};
-  EXPECT_THROW(expand(suite, grid, {}, catalogue()), PluginError);
+  Design design = small_grid();
+  design.methods = {"c"};
+  EXPECT_THROW(expand(suite, design, {}, catalogue()), PluginError);
 }
 
-// Names of the rows that a grid's methods make, with the number of epochs of each.
+// Names of the rows that a design's methods make, with the number of epochs of each.
 std::vector<std::string> rows(const std::vector<std::string>& methods, const Json& settings = Json::object()) {
-  Grid grid{{"heart"}, {"cells"}, {"e"}, methods, {10}, {0}, 5, 7, false};
+  Design design{{"heart"}, {"cells"}, {"e"}, methods, {10}, {0}, 5, 7, false};
   std::vector<std::string> names;
-  for (const Cell& cell : expand(load_suite("q1"), grid, {"recorded", settings, false}, catalogue()))
+  for (const Cell& cell : expand(load_suite("q1"), design, {"recorded", settings, false}, catalogue()))
     names.push_back(cell.method.name + " " + canonical(cell.method.options.at("epochs")));
   return names;
 }
@@ -185,11 +185,11 @@ TEST(Variants, TakeSettingsOfTheirIdForWhatTheyDoNotSetThemselves) {
             (std::vector<std::string>{"a 9", "a+epochs=750 750", "a+loss=x 9", "b 750"}));
 }
 
-TEST(GridOptions, TheFirstGivenHolds) {
+TEST(DesignOptions, TheFirstGivenHolds) {
   const auto epochs = [](const std::string& method, const Json& settings, const Json& options) {
-    Grid grid{{"heart"}, {"cells"}, {"e"}, {method}, {10}, {0}, 5, 7, false};
-    grid.options = options;
-    return expand(load_suite("q1"), grid, {"recorded", settings, false}, catalogue())
+    Design design{{"heart"}, {"cells"}, {"e"}, {method}, {10}, {0}, 5, 7, false};
+    design.options = options;
+    return expand(load_suite("q1"), design, {"recorded", settings, false}, catalogue())
         .front()
         .method.options.at("epochs")
         .get<int>();
@@ -220,14 +220,14 @@ void expand_with(const Json& options) {
   Catalogue shipped = catalogue();
   shipped.plugins[0].options.erase("loss");
   const Suite own = load_suite((directory.path / "q1.json").string());
-  expand(own, preset_grid(own, "p"), {}, shipped);
+  expand(own, preset_design(own, "p"), {}, shipped);
 }
 
 std::string refusal_of_options(const Json& options) {
   return message_of<InputError>([&] { expand_with(options); });
 }
 
-TEST(GridOptions, AreRefusedWithTheirPlace) {
+TEST(DesignOptions, AreRefusedWithTheirPlace) {
   EXPECT_NO_THROW(expand_with({{"*", {{"loss", "squared"}}}, {"b", {{"rate", 1}}}})) << "a has no loss";
   EXPECT_SAYS(refusal_of_options({{"c", {{"epochs", 5}}}}),
               "q1.json: /presets/p/options: unknown member \"c\", expected one of: *, a, b");
@@ -248,12 +248,12 @@ Catalogue with_a_strangers(const std::string& id) {
   return known;
 }
 
-TEST(GridOptions, OfASuitesStarReachTheFrameworksOptionsAlone) {
+TEST(DesignOptions, OfASuitesStarReachTheFrameworksOptionsAlone) {
   Suite suite = load_suite("q1");
-  Grid grid{{"heart"}, {"cells"}, {"e"}, {"a", "mine"}, {10}, {0}, 5, 7, false};
-  grid.options = {{"*", {{"loss", "squared"}, {"epochs", 5}}}};
+  Design design{{"heart"}, {"cells"}, {"e"}, {"a", "mine"}, {10}, {0}, 5, 7, false};
+  design.options = {{"*", {{"loss", "squared"}, {"epochs", 5}}}};
   const auto cells_with = [&](const Json& settings) {
-    return expand(suite, grid, {"recorded", settings, false}, with_a_strangers("mine"));
+    return expand(suite, design, {"recorded", settings, false}, with_a_strangers("mine"));
   };
   const std::vector<Cell> cells = cells_with(Json::object());
   EXPECT_EQ(cells.at(0).method.options, Json({{"epochs", 5}, {"rate", .5}, {"loss", "squared"}}));
@@ -264,14 +264,14 @@ TEST(GridOptions, OfASuitesStarReachTheFrameworksOptionsAlone) {
               "--set: /*/loss: expected one of [\"huber\"]");
   EXPECT_EQ(cells_with({{"*", {{"loss", "huber"}}}}).at(0).method.options.at("loss"), "huber")
       << "the command line knows whom it speaks to";
-  grid.options = {{"mine", {{"loss", "squared"}}}};
+  design.options = {{"mine", {{"loss", "squared"}}}};
   EXPECT_SAYS(message_of<InputError>([&] { cells_with(Json::object()); }), "/options/mine/loss: expected one of");
 
   Catalogue strangers = with_a_strangers("mine");
   for (PluginInfo& info : strangers.plugins)
     if (info.id != "mine") info.options.erase("loss");
-  grid.options = {{"*", {{"loss", "huber"}}}};
-  EXPECT_SAYS(message_of<InputError>([&] { expand(suite, grid, {}, strangers); }),
+  design.options = {{"*", {{"loss", "huber"}}}};
+  EXPECT_SAYS(message_of<InputError>([&] { expand(suite, design, {}, strangers); }),
               "/options/*: unknown member \"loss\"");
 }
 
@@ -279,21 +279,21 @@ TEST(Layouts, ThatAScenarioLacksAreRefusedBeforeAnythingRuns) {
   for (const auto& [id, wrong, there] :
        {std::array{"mobile", "cells", "table"}, std::array{"q1", "table", "cells, continuous, released"}}) {
     const Suite suite = load_suite(id);
-    Grid grid = suite.grid;
-    grid.methods = {"a"}, grid.engines = {"e"}, grid.options = Json::object();
-    EXPECT_NO_THROW(expand(suite, grid, {}, catalogue()));
-    grid.layouts.push_back(wrong);
-    const std::string said = message_of<InputError>([&] { expand(suite, grid, {}, catalogue()); });
-    EXPECT_SAYS(said, fmt::format("scenario {} (", grid.scenarios.front()));
+    Design design = suite.design;
+    design.methods = {"a"}, design.engines = {"e"}, design.options = Json::object();
+    EXPECT_NO_THROW(expand(suite, design, {}, catalogue()));
+    design.layouts.push_back(wrong);
+    const std::string said = message_of<InputError>([&] { expand(suite, design, {}, catalogue()); });
+    EXPECT_SAYS(said, fmt::format("scenario {} (", design.scenarios.front()));
     EXPECT_SAYS(said, fmt::format("no layout \"{}\", expected one of: {}", wrong, there));
   }
 }
 
 TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
-  Grid grid = small_grid();
-  const std::vector<Cell> shared = expand(load_suite("q1"), grid, {}, catalogue());
-  grid.test_scenes = "per_seed";
-  const std::vector<Cell> own = expand(load_suite("q1"), grid, {}, catalogue());
+  Design design = small_grid();
+  const std::vector<Cell> shared = expand(load_suite("q1"), design, {}, catalogue());
+  design.test_scenes = "per_seed";
+  const std::vector<Cell> own = expand(load_suite("q1"), design, {}, catalogue());
   // 2 scenarios x (2 numbers x 3 seeds x (2 methods + constant action) + 3 seeds x (random object + oracle))
   EXPECT_EQ(own.size(), 2u * (2 * 3 * 3 + 3 * 2));
   EXPECT_EQ(shared.front().scenes_of_seed(), std::nullopt);
@@ -327,8 +327,8 @@ TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
 TEST(Variants, RefuseTheIdOfAReferenceRow) {
   Catalogue named = catalogue();
   named.plugins[0].id = "oracle";
-  const Grid grid{{"heart"}, {"cells"}, {"e"}, {"oracle"}, {10}, {0}, 5, 7, false};
-  EXPECT_SAYS(message_of<InputError>([&] { expand(load_suite("q1"), grid, {}, named); }),
+  const Design design{{"heart"}, {"cells"}, {"e"}, {"oracle"}, {10}, {0}, 5, 7, false};
+  EXPECT_SAYS(message_of<InputError>([&] { expand(load_suite("q1"), design, {}, named); }),
               "methods: \"oracle\" is a reference row; expected a method of another id");
 }
 
@@ -337,26 +337,26 @@ TEST(Variants, EveryShippedSuiteExpandsWithTheShippedPlugins) {
   for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"}) {
     const Suite suite = load_suite(id);
     if (id[0] != 'q' || id == "q1_long") {
-      EXPECT_EQ(suite.grid.scenarios, load_suite("q1").grid.scenarios) << id;
+      EXPECT_EQ(suite.design.scenarios, load_suite("q1").design.scenarios) << id;
     }
     for (const std::string preset : {"", "smoke", "paper", "paper_text", "leaderboard"}) {
-      Grid grid = preset_grid(suite, preset);
-      grid.engines = {engine_under_test().id};
-      const std::size_t seeds = grid.seeds.size(), sets = grid.test_scenes == "per_seed" ? seeds : 1;
-      const std::size_t each = grid.demonstrations.size() * seeds * (grid.methods.size() + 1) + 2 * sets;
-      EXPECT_EQ(expand(suite, grid, {}, shipped).size(), grid.scenarios.size() * each) << id << " " << preset;
+      Design design = preset_design(suite, preset);
+      design.engines = {engine_under_test().id};
+      const std::size_t seeds = design.seeds.size(), sets = design.test_scenes == "per_seed" ? seeds : 1;
+      const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * sets;
+      EXPECT_EQ(expand(suite, design, {}, shipped).size(), design.scenarios.size() * each) << id << " " << preset;
     }
   }
   const Suite mobile = load_suite("mobile");
   for (const std::string preset : {"", "smoke", "paper", "leaderboard"}) {
-    Grid grid = preset_grid(mobile, preset);
-    grid.engines = {engine_under_test().id};
-    EXPECT_EQ(grid.test_scenes, "per_seed") << "same_place is near each seed's own first demonstration";
-    const std::size_t seeds = grid.seeds.size();
-    const std::size_t each = grid.demonstrations.size() * seeds * (grid.methods.size() + 1) + 2 * seeds;
-    EXPECT_EQ(expand(mobile, grid, {}, shipped).size(), grid.scenarios.size() * each) << preset;
+    Design design = preset_design(mobile, preset);
+    design.engines = {engine_under_test().id};
+    EXPECT_EQ(design.test_scenes, "per_seed") << "same_place is near each seed's own first demonstration";
+    const std::size_t seeds = design.seeds.size();
+    const std::size_t each = design.demonstrations.size() * seeds * (design.methods.size() + 1) + 2 * seeds;
+    EXPECT_EQ(expand(mobile, design, {}, shipped).size(), design.scenarios.size() * each) << preset;
   }
-  Grid smoke = preset_grid(load_suite("factorial"), "smoke");
+  Design smoke = preset_design(load_suite("factorial"), "smoke");
   smoke.engines = {engine_under_test().id};
   std::set<std::string> pairs;
   for (const Cell& cell : expand(load_suite("factorial"), smoke, {}, shipped))
@@ -370,10 +370,10 @@ TEST(Variants, OfThePaperAndItsAppendixHaveTheirSettings) {
   const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
   for (const std::string id : {"factorial", "q1", "q1_long", "q2", "q3", "robustness"})
     for (const std::string preset : {"paper", "paper_text"}) {
-      Grid grid = preset_grid(load_suite(id), preset);
-      grid.engines = {engine_under_test().id};
-      EXPECT_EQ(grid.layouts, std::vector<std::string>{preset == "paper" ? "continuous" : "cells"}) << id;
-      for (const Cell& cell : expand(load_suite(id), grid, {}, shipped)) {
+      Design design = preset_design(load_suite(id), preset);
+      design.engines = {engine_under_test().id};
+      EXPECT_EQ(design.layouts, std::vector<std::string>{preset == "paper" ? "continuous" : "cells"}) << id;
+      for (const Cell& cell : expand(load_suite(id), design, {}, shipped)) {
         const Json& options = cell.method.options;
         if (cell.method.is_reference()) continue;
         EXPECT_EQ(options.at("network"), "text") << id << " " << preset << " " << cell.method.name;

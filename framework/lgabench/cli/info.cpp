@@ -73,7 +73,7 @@ void print(const Suite& suite) {
     for (const auto& [name, value] : members.items()) to_stdout("    {:<14}  {}\n", name, words_of(value));
   };
   to_stdout("  how many cells, and how long they take: lgabench run {} --dry-run\n  grid\n", suite.id);
-  print_members(to_json(suite.grid));
+  print_members(to_json(suite.design));
   for (const auto& [name, members] : suite.presets.items()) {
     to_stdout("  preset {}\n", name);
     print_members(members);
@@ -85,7 +85,7 @@ Json to_json(const Suite& suite) {
           {"id", suite.id},
           {"environment", suite.environment},
           {"file", suite.file},
-          {"grid", lgabench::to_json(suite.grid)},
+          {"grid", lgabench::to_json(suite.design)},
           {"presets", suite.presets}};
 }
 

@@ -59,8 +59,8 @@ std::string by_option(const std::string& complaint) {
   return complaint;
 }
 
-// The command line's part of the grid, checked by the same reader as a suite's file.
-Grid grid_of(const RunArguments& a, const Suite& suite) {
+// The command line's part of the design, checked by the same reader as a suite's file.
+Design design_of(const RunArguments& a, const Suite& suite) {
   Json overrides = Json::object();
   const auto give = [&overrides](const char* member, const Words& words) {
     if (!words.empty()) overrides[member] = words;
@@ -72,14 +72,14 @@ Grid grid_of(const RunArguments& a, const Suite& suite) {
   if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
   if (a.episodes) overrides["episodes"] = *a.episodes;
-  Grid grid = preset_grid(suite, a.preset);
+  Design design = preset_design(suite, a.preset);
   try {
-    grid = apply(JsonReader(overrides, command_line_place), grid);
+    design = apply(JsonReader(overrides, command_line_place), design);
   } catch (const InputError& e) {
     throw InputError(by_option(e.what()));
   }
-  grid.smoke |= a.limit != 0;
-  return grid;
+  design.smoke |= a.limit != 0;
+  return design;
 }
 
 // --set method.option=value, or *.option=value
@@ -140,27 +140,27 @@ PlannedRun plan_run(RunArguments a) {
   catalogue = scan_plugins(plugin_directories(a.plugin_path));
   for (std::string& word : a.methods) word = with_python_method(word, a.python, catalogue);
   const Suite suite = load_suite(a.suite);
-  const Grid grid = grid_of(a, suite);
+  const Design design = design_of(a, suite);
   Variation variation{a.answers, options_of(a.settings), !a.no_reference, read_truth(a.truth)};
 
   RunPlan& plan = planned.plan;
   plan.live = live_model(a, variation.answers, plan.live_about);
   if (const std::string file = cassette_of(a.answers); !file.empty()) {
-    CassetteAnswers cassette = check_cassette(file, grid.scenarios);
+    CassetteAnswers cassette = check_cassette(file, design.scenarios);
     variation.answers = cassette.answers;
     plan.answers.push_back(std::move(cassette.file));
   } else if (!plan.live && a.answers != no_answers) {
-    check_recorded(a.answers, grid.scenarios);
+    check_recorded(a.answers, design.scenarios);
   }
   if (a.rehearsal && a.humans.empty()) throw InputError("--rehearsal: expected --humans DIR with it");
   if (!a.humans.empty())
     for (AnswerFile& file : read_participants(a.humans, a.rehearsal, variation.participants))
       plan.answers.push_back(std::move(file));
   plan.shard = read_shard(a.shard);
-  plan.cells = expand(suite, grid, variation, catalogue);
+  plan.cells = expand(suite, design, variation, catalogue);
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
     plan.cells.resize(static_cast<std::size_t>(a.limit));
-  plan.request = to_json(grid);
+  plan.request = to_json(design);
   plan.request.update({{"suite", suite.id},
                        {"preset", a.preset},
                        {"answers", variation.answers},

@@ -133,7 +133,7 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
   const Truth truth = read_truth(arguments.truth);
   if (!arguments.suite.empty()) {
     std::vector<Asked> all;
-    for (const std::string& id : load_suite(arguments.suite).grid.scenarios)
+    for (const std::string& id : load_suite(arguments.suite).design.scenarios)
       for (Asked& asked : commands_of(load_scenario(id, truth))) all.push_back(std::move(asked));
     return all;
   }

@@ -76,19 +76,19 @@ std::string named(const PluginInfo& info, const Json& options, const Json& usual
 
 }  // namespace
 
-std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const Json& settings,
+std::vector<Competitor> competitors(const Suite& suite, const Design& design, const Json& settings,
                                     const Catalogue& catalogue) {
   std::vector<const PluginInfo*> infos;
   std::vector<Competitor> methods;
   std::map<std::string, Json> usual;                  // id -> options of its row without options of its own
   std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
-  for (const std::string& written : grid.methods) {
+  for (const std::string& written : design.methods) {
     const std::string id = row_words(written).front();
     if (id == "constant_action" || id == "random_object" || id == "oracle")  // tables find a row by its name
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));
   }
-  const Layer of_suite{grid.options, suite.file, grid.options_place, Layer::Reach::framework};
+  const Layer of_suite{design.options, suite.file, design.options_place, Layer::Reach::framework};
   const Layer of_command{settings, "--set", "", Layer::Reach::all};
   of_suite.check(infos, catalogue);
   of_command.check(infos, catalogue);
@@ -97,7 +97,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
     Json given = of_suite.of(info);
     given.update(of_command.of(info));
     usual[info.id] = check_options(info, JsonReader(given, info.id));
-    given.update(own_options(grid.methods[i]));
+    given.update(own_options(design.methods[i]));
     methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});
     for (const Competitor& other : methods)
       if (other.id == info.id)
@@ -110,12 +110,12 @@ std::vector<Competitor> competitors(const Suite& suite, const Grid& grid, const 
     for (std::size_t before = 0; before < i; ++before)
       if (methods[before].name == method.name)
         throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",
-                                     grid.methods[before], grid.methods[i], method.name));
+                                     design.methods[before], design.methods[i], method.name));
   }
   for (const auto& item : settings.items())
     if (item.key() != "*" && usual.count(item.key()) == 0)
       throw InputError(
-          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(grid.methods, ", ")));
+          fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(design.methods, ", ")));
   return methods;
 }
 

@@ -34,8 +34,8 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
 }
 
 // Training seeds of cells that play different test scenes: all, or 0 alone where all play the same.
-std::vector<std::uint64_t> scene_sets(const Grid& grid) {
-  return grid.test_scenes == "per_seed" ? grid.seeds : std::vector<std::uint64_t>{0};
+std::vector<std::uint64_t> scene_sets(const Design& design) {
+  return design.test_scenes == "per_seed" ? design.seeds : std::vector<std::uint64_t>{0};
 }
 
 // A suite's scenarios may be of several tasks, each with layouts of its own.
@@ -49,17 +49,17 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
 
 }  // namespace
 
-Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const std::string& answers) {
+Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const std::string& answers) {
   Cell cell;
   cell.suite = suite.id;
   cell.environment = suite.environment;
   cell.scenario = std::make_shared<const Json>(scenario.json);
-  cell.scene_seed = grid.scene_seed;
-  cell.test_scenes = grid.test_scenes;
-  cell.episodes = grid.episodes;
+  cell.scene_seed = design.scene_seed;
+  cell.test_scenes = design.test_scenes;
+  cell.episodes = design.episodes;
   cell.answers = answers;
   cell.data = data_hashes(scenario, cell.answers);
-  cell.smoke = grid.smoke;
+  cell.smoke = design.smoke;
   return cell;
 }
 
@@ -79,17 +79,18 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) 
 
 bool learns(const Competitor& row) { return !row.is_reference() || row.id == "constant_action"; }
 
-std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue) {
-  const std::vector<Competitor> methods = competitors(suite, grid, variation.options, catalogue);
-  for (const std::string& engine : grid.engines) catalogue.find("engine", engine);
+std::vector<Cell> expand(const Suite& suite, const Design& design, const Variation& variation,
+                         const Catalogue& catalogue) {
+  const std::vector<Competitor> methods = competitors(suite, design, variation.options, catalogue);
+  for (const std::string& engine : design.engines) catalogue.find("engine", engine);
   if (!variation.participants.empty() && std::none_of(methods.begin(), methods.end(), asks_people))
     throw InputError("--humans: expected a method that asks people, such as human or lga_hill; this run has none");
 
   std::vector<Cell> cells;
-  for (const std::string& id : grid.scenarios) {
+  for (const std::string& id : design.scenarios) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth);
-    expect_layouts(scenario, grid.layouts);
-    Cell cell = unplayed_cell(suite, grid, scenario, variation.answers);
+    expect_layouts(scenario, design.layouts);
+    Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
       cell.method = method;
       cell.demonstrations = demonstrations;
@@ -100,18 +101,18 @@ std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& 
       }
     };
     const auto reference = [](const char* row) { return Competitor{"reference", row, row, "1", Json::object()}; };
-    for (const std::string& layout : grid.layouts) {
-      for (const std::string& engine : grid.engines) {
+    for (const std::string& layout : design.layouts) {
+      for (const std::string& engine : design.engines) {
         cell.layout = layout;
         cell.engine = engine;
-        for (const int n : grid.demonstrations)
-          for (const std::uint64_t seed : grid.seeds) {
+        for (const int n : design.demonstrations)
+          for (const std::uint64_t seed : design.seeds) {
             for (const Competitor& method : methods) add(method, n, seed);
             if (variation.references) add(reference("constant_action"), n, seed);
           }
         if (variation.references)
           for (const char* row : {"random_object", "oracle"})
-            for (const std::uint64_t seed : scene_sets(grid)) add(reference(row), 0, seed);
+            for (const std::uint64_t seed : scene_sets(design)) add(reference(row), 0, seed);
       }
     }
   }

@@ -1,4 +1,4 @@
-// From a grid to the cells of a run.
+// From a design to the cells of a run.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,10 +11,10 @@
 
 namespace lgabench {
 
-/// What is not on the grid.
+/// What is not part of the design.
 struct Variation {
   std::string answers = "recorded";  // as Cell::answers
-  Json options = Json::object();     // as Grid::options, before which they go
+  Json options = Json::object();     // as Design::options, before which they go
   bool references = true;            // add the reference rows
   Truth truth = Truth::released;
   std::vector<Participant> participants{};  // none: the truth stands in for people
@@ -22,17 +22,18 @@ struct Variation {
 
 /// A suite's scenario: its own arms, then those that the suite adds. @throws InputError for one of another environment.
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth);
-/// A cell of the grid without its layout, engine, method, demonstrations and training seed.
-Cell unplayed_cell(const Suite& suite, const Grid& grid, const Scenario& scenario, const std::string& answers);
+/// A cell of the design without its layout, engine, method, demonstrations and training seed.
+Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const std::string& answers);
 
 /// Whether the row has a cell for every number of demonstrations and training seed. A reference row that learns nothing
 /// has one, with no demonstrations, for each set of test scenes.
 bool learns(const Competitor& row);
 
-/// Every cell of the grid: scenario by scenario, reference rows after the methods. With participants a cell of a
+/// Every cell of the design: scenario by scenario, reference rows after the methods. With participants a cell of a
 /// method that asks people for each one who specified, or edited, all commands of the scenario; none where nobody did.
 /// @throws as competitors(); PluginError for an unknown engine, InputError for a layout that a scenario lacks, for a
 /// method that no participant answered at all, and for participants whom no method asks.
-std::vector<Cell> expand(const Suite& suite, const Grid& grid, const Variation& variation, const Catalogue& catalogue);
+std::vector<Cell> expand(const Suite& suite, const Design& design, const Variation& variation,
+                         const Catalogue& catalogue);
 
 }  // namespace lgabench

@@ -62,40 +62,40 @@ Json options_of(const JsonReader& options, const std::vector<std::string>& metho
 
 }  // namespace
 
-Json to_json(const Grid& grid) {
-  return {{"scenarios", grid.scenarios}, {"layouts", grid.layouts},       {"engines", grid.engines},
-          {"methods", grid.methods},     {"seeds", grid.seeds},           {"demonstrations", grid.demonstrations},
-          {"episodes", grid.episodes},   {"scene_seed", grid.scene_seed}, {"test_scenes", grid.test_scenes},
-          {"smoke", grid.smoke},         {"options", grid.options}};
+Json to_json(const Design& design) {
+  return {{"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
+          {"methods", design.methods},     {"seeds", design.seeds},           {"demonstrations", design.demonstrations},
+          {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
+          {"smoke", design.smoke},         {"options", design.options}};
 }
 
-Grid apply(const JsonReader& overrides, Grid grid) {
+Design apply(const JsonReader& overrides, Design design) {
   overrides.only(grid_members);
-  if (overrides.has("scenarios")) grid.scenarios = names(overrides.at("scenarios"), "scenario", scenario_ids());
-  if (overrides.has("layouts")) grid.layouts = names(overrides.at("layouts"), "layout", installed_layouts());
-  if (overrides.has("engines")) grid.engines = names(overrides.at("engines"));
-  if (overrides.has("methods")) grid.methods = names(overrides.at("methods"));
+  if (overrides.has("scenarios")) design.scenarios = names(overrides.at("scenarios"), "scenario", scenario_ids());
+  if (overrides.has("layouts")) design.layouts = names(overrides.at("layouts"), "layout", installed_layouts());
+  if (overrides.has("engines")) design.engines = names(overrides.at("engines"));
+  if (overrides.has("methods")) design.methods = names(overrides.at("methods"));
   if (overrides.has("demonstrations"))
-    grid.demonstrations = distinct<int>(overrides.at("demonstrations"),
-                                        [](const JsonReader& n) { return static_cast<int>(n.integer(1, most)); });
+    design.demonstrations = distinct<int>(overrides.at("demonstrations"),
+                                          [](const JsonReader& n) { return static_cast<int>(n.integer(1, most)); });
   if (overrides.has("seeds"))
-    grid.seeds = distinct<std::uint64_t>(overrides.at("seeds"), [](const JsonReader& n) {
+    design.seeds = distinct<std::uint64_t>(overrides.at("seeds"), [](const JsonReader& n) {
       return static_cast<std::uint64_t>(n.integer(0, largest_seed));
     });
-  if (overrides.has("episodes")) grid.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
+  if (overrides.has("episodes")) design.episodes = static_cast<int>(overrides.at("episodes").integer(1, most));
   if (overrides.has("scene_seed"))
-    grid.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
+    design.scene_seed = static_cast<std::uint64_t>(overrides.at("scene_seed").integer(0, largest_seed));
   if (overrides.has("test_scenes")) {
-    grid.test_scenes = overrides.at("test_scenes").string();
-    if (grid.test_scenes != "shared" && grid.test_scenes != "per_seed")
+    design.test_scenes = overrides.at("test_scenes").string();
+    if (design.test_scenes != "shared" && design.test_scenes != "per_seed")
       overrides.at("test_scenes").fail("shared or per_seed");
   }
   if (overrides.has("options")) {
-    grid.options = options_of(overrides.at("options"), grid.methods);
-    grid.options_place = overrides.at("options").place();
+    design.options = options_of(overrides.at("options"), design.methods);
+    design.options_place = overrides.at("options").place();
   }
-  if (overrides.has("smoke")) grid.smoke = overrides.at("smoke").boolean();
-  return grid;
+  if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
+  return design;
 }
 
 Suite load_suite(const std::string& id) {
@@ -118,11 +118,11 @@ Suite load_suite(const std::string& id) {
   if (suite.id != file.stem().string())
     reader.at("id").fail(fmt::format("\"{}\", as the file is named", file.stem().string()));
   suite.environment = reader.at("environment").string();
-  Json own = Json::object();  // the suite's own grid: all of it must be there
+  Json own = Json::object();  // the suite's own design: all of it must be there
   for (const std::string& member : grid_members)
     if (reader.has(member) || std::count(may_be_absent.begin(), may_be_absent.end(), member) == 0)
       own[member] = reader.at(member).json();
-  suite.grid = apply(JsonReader(own, suite.file), Grid{});
+  suite.design = apply(JsonReader(own, suite.file), Design{});
   if (reader.has("arms"))
     for (const JsonReader& arm : reader.at("arms").elements()) {
       arm.at("arm").string();
@@ -130,7 +130,7 @@ Suite load_suite(const std::string& id) {
     }
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
-  for (const auto& preset : suite.presets.items()) preset_grid(suite, preset.key());
+  for (const auto& preset : suite.presets.items()) preset_design(suite, preset.key());
   return suite;
 }
 
@@ -141,20 +141,20 @@ const PluginInfo& usual_engine(const Catalogue& catalogue) {
   if (there.empty()) throw InputError("no engine is there (lgabench list)");
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list))
-    for (const std::string& id : load_suite(suite).grid.engines)
+    for (const std::string& id : load_suite(suite).design.engines)
       for (const PluginInfo* engine : there)
         if (engine->id == id) return *engine;
   return *there.front();
 }
 
-Grid preset_grid(const Suite& suite, const std::string& preset) {
-  if (preset.empty()) return suite.grid;
+Design preset_design(const Suite& suite, const std::string& preset) {
+  if (preset.empty()) return suite.design;
   if (!suite.presets.contains(preset)) {
     std::vector<std::string> known;
     for (const auto& item : suite.presets.items()) known.push_back(item.key());
     throw InputError(fmt::format("{}: {}", suite.file, none_named("preset", preset, known)));
   }
-  return apply(JsonReader(suite.presets[preset], suite.file, "/presets/" + preset), suite.grid);
+  return apply(JsonReader(suite.presets[preset], suite.file, "/presets/" + preset), suite.design);
 }
 
 }  // namespace lgabench

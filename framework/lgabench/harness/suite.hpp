@@ -11,7 +11,7 @@ namespace lgabench {
 
 /// What is crossed to make the cells of a run. As JSON the members have these names; a preset or the command line
 /// gives some of them and keeps the rest.
-struct Grid {
+struct Design {
   std::vector<std::string> scenarios, layouts, engines;
   std::vector<std::string> methods;    // a plugin's id, or one of its variants: "ID+OPTION=VALUE+OPTION=VALUE"
   std::vector<int> demonstrations;     // clean demonstrations a policy learns from
@@ -25,19 +25,19 @@ struct Grid {
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 
-Json to_json(const Grid& grid);
+Json to_json(const Design& design);
 
 /// `base` with the members that `overrides` gives, each checked.
 /// @throws InputError for an unknown member, scenario or layout, a list that is empty or names something twice, a
-/// number out of range, options of what is no method of the grid. Options themselves are checked by expand().
-Grid apply(const JsonReader& overrides, Grid base);
+/// number out of range, options of what is no method of the design. Options themselves are checked by expand().
+Design apply(const JsonReader& overrides, Design base);
 
 struct Suite {
   std::string id, environment;
-  Grid grid;
+  Design design;
   /// Arms that every scenario plays beside its own: each is the scenario's first arm with these members changed.
   Json arms = Json::array();
-  Json presets;      // name -> members of Grid
+  Json presets;      // name -> members of Design
   std::string file;  // for messages
 };
 
@@ -50,7 +50,7 @@ Suite load_suite(const std::string& id);
 /// that is there. @throws InputError where there is none.
 const PluginInfo& usual_engine(const Catalogue& catalogue);
 
-/// The grid of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
-Grid preset_grid(const Suite& suite, const std::string& preset);
+/// The design of a preset; of the suite itself where `preset` is empty. @throws InputError for an unknown preset.
+Design preset_design(const Suite& suite, const std::string& preset);
 
 }  // namespace lgabench

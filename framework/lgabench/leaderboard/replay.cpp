@@ -169,7 +169,7 @@ std::optional<Json> replay(const fs::path& board, const Entry& entry, const std:
   Installed installed = installed_as(entry, catalogue);
   const std::vector<std::size_t> chosen =
       options.fresh ? one_of_each(entry, nonce) : chosen_cells(entry, nonce, options.cells);
-  if (options.fresh) installed.grid.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
+  if (options.fresh) installed.design.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);
   const std::vector<Cell> all =
       cells_of_row(installed, entry.identity.row, entry.identity.engine, entry.identity.answers);
   std::vector<Cell> cells;
@@ -188,7 +188,7 @@ std::optional<Json> replay(const fs::path& board, const Entry& entry, const std:
                {"machine", run.machine},
                {"confinement", run.confinement}});
   if (options.fresh)
-    line.update({{"scene_seed", installed.grid.scene_seed},
+    line.update({{"scene_seed", installed.design.scene_seed},
                  {"demonstrations", entry.cells[chosen.front()].place.demonstrations},
                  {"training_seed", entry.cells[chosen.front()].place.seed}});
   return line;

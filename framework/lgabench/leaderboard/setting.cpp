@@ -92,7 +92,7 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
   if (fs::path(suite).has_extension())
     throw InputError(fmt::format("suite \"{}\": expected one that is installed, not a file", suite));
   Installed installed{load_suite(suite), {}, {}};
-  installed.grid = preset_grid(installed.suite, preset);
+  installed.design = preset_design(installed.suite, preset);
   if (preset.empty() || !installed.suite.presets.at(preset).contains("scene_seed")) {
     std::vector<std::string> boards;
     for (const auto& [name, members] : installed.suite.presets.items())
@@ -101,11 +101,12 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
                                  installed.suite.file, preset,
                                  boards.empty() ? "none" : fmt::format("{}", fmt::join(boards, ", "))));
   }
-  const Grid& grid = installed.grid;
+  const Design& design = installed.design;
   Setting& setting = installed.setting;
-  setting = {installed.suite.id, preset,         {}, grid.layouts, grid.demonstrations, grid.seeds, grid.episodes,
-             grid.test_scenes,   grid.scene_seed};
-  for (const std::string& id : grid.scenarios) {
+  setting = {
+      installed.suite.id, preset,           {}, design.layouts, design.demonstrations, design.seeds, design.episodes,
+      design.test_scenes, design.scene_seed};
+  for (const std::string& id : design.scenarios) {
     const Scenario scenario = suite_scenario(installed.suite, id, Truth::released);
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
@@ -121,7 +122,7 @@ std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row
   Cell cell;
   for (const Place& place : installed.setting.places(learns(row))) {
     if (cells.empty() || !(place.scenario == cells.back().scenario_id()))
-      cell = unplayed_cell(installed.suite, installed.grid,
+      cell = unplayed_cell(installed.suite, installed.design,
                            suite_scenario(installed.suite, place.scenario, Truth::released), answers);
     cell.layout = place.layout;
     cell.engine = engine;

@@ -38,7 +38,7 @@ struct Setting {
   std::vector<int> demonstrations;
   std::vector<std::uint64_t> seeds;  // training seeds
   int episodes = 0;                  // of each arm
-  std::string test_scenes;           // as Grid::test_scenes
+  std::string test_scenes;           // as Design::test_scenes
   std::uint64_t scene_seed = 0;
 
   /// "q1-leaderboard"
@@ -60,7 +60,7 @@ std::string hash(const Setting& setting);
 /// A suite's preset as this installation has it.
 struct Installed {
   Suite suite;
-  Grid grid;
+  Design design;
   Setting setting;
 };
 /// @throws InputError for a suite that is not installed, or a preset without a scene seed of its own: it is none of the

@@ -14,7 +14,6 @@
 namespace lgabench::leaderboard {
 namespace {
 
-using report::Cell;
 using report::Chart;
 using report::Charts;
 using report::display_name;
@@ -28,6 +27,7 @@ using report::reading;
 using report::Section;
 using report::Series;
 using report::Span;
+using report::TableCell;
 
 constexpr std::size_t scenarios_of_a_row = 1000;  // data-row: the standing's number times this, and its scenario's + 1
 constexpr std::size_t curves = 8;                 // more would hide each other
@@ -68,16 +68,16 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
   return names;
 }
 
-Cell rate_button(const std::string& text, double rate, std::size_t row) {
-  Cell cell(Span::number(text));
+TableCell rate_button(const std::string& text, double rate, std::size_t row) {
+  TableCell cell(Span::number(text));
   cell.rate = rate;
   cell.episodes = row;
   return cell;
 }
 
 // Success, its interval small beside it.
-Cell score_button(const Standing& s, std::size_t row) {
-  Cell cell = rate_button(fixed(s.score, score_digits), s.score, row);
+TableCell score_button(const Standing& s, std::size_t row) {
+  TableCell cell = rate_button(fixed(s.score, score_digits), s.score, row);
   if (s.below_random) cell.spans.push_back(below_random_mark());
   cell.spans.push_back(Span::number(interval_text(s), "", report::Emphasis::detail));
   return cell;
@@ -104,13 +104,13 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
     const bool reference = s.entry->identity.row.is_reference();
-    Cell name(Span(display_name(table.names[i])));
+    TableCell name(Span(display_name(table.names[i])));
     name.style = reference ? MethodStyle() : styles(table.names[i]);
     Grid::Row row{
         {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
     for (const int n : numbers) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
-      row.cells.emplace_back(at == s.at.end() ? Cell("") : Cell(Span::number(fixed(at->second))));
+      row.cells.emplace_back(at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
     }
     if (arms.size() > 1)
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
@@ -170,7 +170,7 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   grid.align = "l" + std::string(table.setting.scenarios.size(), 'r');
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
-    Grid::Row row{{}, {Cell(Span(display_name(table.names[i])))}, s.entry->identity.row.is_reference()};
+    Grid::Row row{{}, {TableCell(Span(display_name(table.names[i])))}, s.entry->identity.row.is_reference()};
     for (std::size_t k = 0; k < table.setting.scenarios.size(); ++k) {
       const double rate = s.in_scenario.at(table.setting.scenarios[k].id);
       row.cells.push_back(rate_button(fixed(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));

@@ -41,7 +41,7 @@ struct Cell {
   Competitor method;
   int demonstrations = 0;
   std::uint64_t training_seed = 0, scene_seed = 0;
-  std::string test_scenes = "shared";  // as Grid::test_scenes
+  std::string test_scenes = "shared";  // as Design::test_scenes
   int episodes = 0;
   // recorded, one of recorded_sources(), "cassette:" and its SHA-256, or "openai:" and the model that is asked live
   std::string answers;

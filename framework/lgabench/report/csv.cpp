@@ -43,7 +43,7 @@ std::string csv_text(const Json& value) {
 
 std::string csv(const Grid& grid) {
   std::string text;
-  const auto line = [&](const Cell& group, const std::vector<Cell>& cells) {
+  const auto line = [&](const TableCell& group, const std::vector<TableCell>& cells) {
     std::vector<std::string> values;
     if (!grid.group_head.empty()) values.push_back(group.text());
     for (std::size_t i = 0; i < cells.size(); ++i)

@@ -15,7 +15,7 @@ Span Span::link(std::string words, std::string url) {
   return span;
 }
 
-std::string Cell::text() const {
+std::string TableCell::text() const {
   std::string all;
   for (const Span& span : spans) all += span.text;
   return all;

@@ -52,12 +52,12 @@ struct BarPart {
   int count = 0;
 };
 
-struct Cell {
-  Cell() = default;
-  Cell(const char* words) : spans{words} {}
-  Cell(std::string words) : spans{Span(std::move(words))} {}
-  Cell(Span span) : spans{std::move(span)} {}
-  Cell(Spans all) : spans(std::move(all)) {}
+struct TableCell {
+  TableCell() = default;
+  TableCell(const char* words) : spans{words} {}
+  TableCell(std::string words) : spans{Span(std::move(words))} {}
+  TableCell(Span span) : spans{std::move(span)} {}
+  TableCell(Spans all) : spans(std::move(all)) {}
   std::string text() const;  // of the spans, as they are
 
   Spans spans;
@@ -75,13 +75,13 @@ struct Cell {
 /// (`group_head`) but in a terminal.
 struct Grid {
   struct Row {
-    Cell group;
-    std::vector<Cell> cells;
+    TableCell group;
+    std::vector<TableCell> cells;
     bool reference = false;  // set apart from the rows above
   };
   std::string name;  // of its files: letters, digits, "_" and "-"
   std::string caption, group_head;
-  std::vector<Cell> heads;
+  std::vector<TableCell> heads;
   std::string align;                  // of each column, the group's first: l or r, as in LaTeX
   std::optional<std::size_t> bars{};  // the head of a column of bars, which the page alone has
   std::vector<Row> rows;

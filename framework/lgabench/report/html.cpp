@@ -52,7 +52,7 @@ std::string bar_html(const std::vector<BarPart>& parts, int of) {
   return text + "</div>";
 }
 
-std::string cell_html(const Cell& cell) {
+std::string cell_html(const TableCell& cell) {
   if (cell.bar_of > 0) return bar_html(cell.bar, cell.bar_of);
   std::string text = spans_html(cell.spans);
   if (cell.episodes && cell.rate)
@@ -71,7 +71,7 @@ std::string cell_html(const Cell& cell) {
   return text;
 }
 
-bool is_published(const Cell& cell) {
+bool is_published(const TableCell& cell) {
   return !cell.spans.empty() && cell.spans.front().emphasis == Emphasis::published;
 }
 
@@ -88,7 +88,7 @@ std::vector<std::string> repeated(const Grid& grid) {
   std::vector<std::string> words(grid.heads.size());
   if (grid.rows.size() < 2) return words;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const Cell& first = grid.rows.front().cells[i];
+    const TableCell& first = grid.rows.front().cells[i];
     const bool plain = !first.style && !first.episodes && first.bar_of == 0 && !first.text().empty() &&
                        !grid.heads[i].text().empty() && !first.spans.front().numeric;
     if (plain && std::all_of(grid.rows.begin(), grid.rows.end(),
@@ -107,7 +107,7 @@ std::string grid_html(const Grid& grid) {
   for (const std::string& words : said)
     if (!words.empty()) caption += "; " + escaped(words);
   const auto shown = std::count(said.begin(), said.end(), "");
-  const auto head = [&heads](const Cell& cell) {
+  const auto head = [&heads](const TableCell& cell) {
     heads +=
         fmt::format("<th scope=col>{}{}</th>",
                     cell.bar.empty() ? "" : fmt::format("<span class=\"swatch {}\"></span>", cell.bar.front().kind),

@@ -12,10 +12,10 @@
 namespace lgabench::report {
 namespace {
 
-Cell linked(const Report& report, const fs::path& place) {
+TableCell linked(const Report& report, const fs::path& place) {
   const fs::path directory = report.run.directory.lexically_normal(),
                  named = directory.has_filename() ? directory : directory.parent_path();
-  Cell cell(named.filename().string());
+  TableCell cell(named.filename().string());
   cell.link = (fs::absolute(named).lexically_normal().lexically_relative(
                    fs::absolute(place.empty() ? "." : place).lexically_normal()) /
                "report.html")
@@ -75,7 +75,7 @@ Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
                      [](const Entry& a, const Entry& b) { return *a.row->success > *b.row->success; });
     for (const Entry& entry : entries) {
       const Row& row = *entry.row;
-      Cell method(Span(display_name(row.method), Emphasis::strong));
+      TableCell method(Span(display_name(row.method), Emphasis::strong));
       method.style = styles(row.method);
       grid.rows.push_back(
           {words,

@@ -45,7 +45,7 @@ std::string tex(const std::string& words) {
   return out;
 }
 
-std::string tex(const Cell& cell) {
+std::string tex(const TableCell& cell) {
   std::string out;
   for (const Span& span : cell.spans)
     out += span.emphasis == Emphasis::published ? "\\emph{" + tex(span.text) + "}" : tex(span.text);
@@ -57,7 +57,7 @@ std::string tex(const Cell& cell) {
 std::string latex(const Grid& grid) {
   std::string text = fmt::format("% {}\n% \\usepackage{{booktabs}}\n\\begin{{tabular}}{{{}}}\n\\toprule\n",
                                  one_line(grid.caption), grid.text_align());
-  const auto line = [&](const std::string& group, const std::vector<Cell>& cells) {
+  const auto line = [&](const std::string& group, const std::vector<TableCell>& cells) {
     std::string row = group;
     bool first = grid.group_head.empty();
     for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -38,7 +38,7 @@ std::string markdown_text(const Spans& spans) {
 std::string row_of(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
 
 std::string grid_text(const Grid& grid) {
-  const auto line = [&grid](const Cell& group, const std::vector<Cell>& cells) {
+  const auto line = [&grid](const TableCell& group, const std::vector<TableCell>& cells) {
     std::vector<std::string> texts;
     if (!grid.group_head.empty()) texts.push_back(markdown_text(group.spans));
     for (std::size_t i = 0; i < cells.size(); ++i)

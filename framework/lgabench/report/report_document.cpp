@@ -111,8 +111,8 @@ MethodStyles styles_of(const Summary& summary) {
   return MethodStyles(names);
 }
 
-Cell named(const Material& material, const std::string& method, Emphasis emphasis) {
-  Cell cell(Span(display_name(method), emphasis));
+TableCell named(const Material& material, const std::string& method, Emphasis emphasis) {
+  TableCell cell(Span(display_name(method), emphasis));
   cell.style = material.styles(method);
   return cell;
 }
@@ -121,7 +121,7 @@ std::string place_of(const Row& row, const std::string& member) {
   return fmt::format("/rows/{}/{}", row.index, member);
 }
 
-Cell count_cell(const Row& row, const std::string& member, int count) {
+TableCell count_cell(const Row& row, const std::string& member, int count) {
   return Span::number(std::to_string(count), place_of(row, member));
 }
 

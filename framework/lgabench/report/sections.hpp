@@ -11,11 +11,11 @@ namespace lgabench::report {
 // Cells.
 
 /// The method's name, with its mark.
-Cell named(const Material& material, const std::string& method, Emphasis emphasis = Emphasis::none);
+TableCell named(const Material& material, const std::string& method, Emphasis emphasis = Emphasis::none);
 /// The JSON pointer to a member of a row, e.g. "/rows/12/shift/low".
 std::string place_of(const Row& row, const std::string& member);
 /// A count of the row, with its place.
-Cell count_cell(const Row& row, const std::string& member, int count);
+TableCell count_cell(const Row& row, const std::string& member, int count);
 /// Letters, digits and dashes of an id, for a file's name.
 std::string slug(const std::string& text);
 

@@ -9,8 +9,8 @@
 namespace lgabench::report {
 namespace {
 
-Cell verdict_cell(Verdict verdict, const std::string& reason, bool rehearsal) {
-  Cell cell(Span(to_string(verdict), Emphasis::strong));
+TableCell verdict_cell(Verdict verdict, const std::string& reason, bool rehearsal) {
+  TableCell cell(Span(to_string(verdict), Emphasis::strong));
   if (rehearsal) cell.spans.emplace_back(fmt::format(" ({})", rehearsal_words));
   if (!reason.empty()) cell.spans.emplace_back(": " + reason);
   return cell;
@@ -24,21 +24,21 @@ struct Placed {
 };
 
 // The columns that say which difference a row is of.
-std::vector<Cell> place_cells(const MethodStyles& styles, const Placed& of) {
+std::vector<TableCell> place_cells(const MethodStyles& styles, const Placed& of) {
   const ClaimedDifference& d = of.difference;
-  Cell rows(display_name(d.above) + " − " + display_name(d.below));
+  TableCell rows(display_name(d.above) + " − " + display_name(d.below));
   rows.style = styles(d.above);
-  return {
-      of.claim.id,
-      of.claim.layout,
-      of.claim.engine,
-      d.arm,
-      d.unit == "seconds" ? Cell() : Cell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")),
-      rows};
+  return {of.claim.id,
+          of.claim.layout,
+          of.claim.engine,
+          d.arm,
+          d.unit == "seconds" ? TableCell()
+                              : TableCell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")),
+          rows};
 }
 
 // "+0.17 [+0.10, +0.24], p = 0.003", or why there is none; the difference stands in the first of the two alone.
-Cell test_cell(const Placed& of, const Tested& t, const std::string& member, bool first) {
+TableCell test_cell(const Placed& of, const Tested& t, const std::string& member, bool first) {
   if (!t.change) return t.reason;
   const Change& c = *t.change;
   const bool seconds = of.difference.unit == "seconds";
@@ -64,9 +64,9 @@ Cell test_cell(const Placed& of, const Tested& t, const std::string& member, boo
 }
 
 // "6 policies, 2 scenarios, 40 scenes", and "for this training seed" where there is one.
-Cell sample_cell(const Placed& of) {
+TableCell sample_cell(const Placed& of) {
   const ClaimedDifference& d = of.difference;
-  Cell cell;
+  TableCell cell;
   const auto add = [&](const char* member, int n, const char* one) {
     if (n == 0) return;
     if (!cell.spans.empty()) cell.spans.emplace_back(", ");
@@ -106,10 +106,11 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
     for (const std::string& scenario : scenarios) {
       const auto found =
           std::find_if(values.begin(), values.end(), [&scenario](const auto& item) { return item.first == scenario; });
-      row.cells.push_back(found == values.end() ? Cell(Span::number("–"))
-                                                : Cell(Span::number(signed_text(found->second),
-                                                                    fmt::format("{}/by_scenario/{}/difference",
-                                                                                of.place, found - values.begin()))));
+      row.cells.push_back(
+          found == values.end()
+              ? TableCell(Span::number("–"))
+              : TableCell(Span::number(signed_text(found->second),
+                                       fmt::format("{}/by_scenario/{}/difference", of.place, found - values.begin()))));
     }
     grid.rows.push_back(std::move(row));
   }
@@ -128,7 +129,7 @@ Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
     row.cells.emplace_back(to_string(d.these.verdict));
     row.cells.push_back(test_cell(of, d.alike, "/scenarios_like_these", false));
     row.cells.emplace_back(d.alike.change ? to_string(d.alike.verdict) : "");
-    row.cells.push_back(d.these.change ? sample_cell(of) : Cell());
+    row.cells.push_back(d.these.change ? sample_cell(of) : TableCell());
     grid.rows.push_back(std::move(row));
   }
   return grid;
@@ -156,7 +157,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
         {{},
          {claim.id, claim.statement, claim.layout, claim.engine,
           verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
-          claim.differences.empty() ? Cell() : verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
+          claim.differences.empty() ? TableCell() : verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
     lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});

@@ -8,7 +8,9 @@ namespace {
 
 std::string ending(const std::string& failure) { return failure == "none" ? "success" : failure; }
 
-Cell rate(int successes, int of) { return Span::number(of == 0 ? "–" : fixed(static_cast<double>(successes) / of)); }
+TableCell rate(int successes, int of) {
+  return Span::number(of == 0 ? "–" : fixed(static_cast<double>(successes) / of));
+}
 
 Grid agreement_grid(const Material& material, const EngineAgreement& a, const std::string& place) {
   Grid grid;
@@ -28,7 +30,7 @@ Grid agreement_grid(const Material& material, const EngineAgreement& a, const st
                number("low", row.interval.low, 3), Span::number(", "), number("high", row.interval.high, 3),
                Span::number("]")};
     grid.rows.push_back({{},
-                         {row.method.empty() ? Cell("all, an action once a scene") : named(material, row.method),
+                         {row.method.empty() ? TableCell("all, an action once a scene") : named(material, row.method),
                           number("episodes", row.episodes, 0), number("other_actions", row.other_actions, 0),
                           rate(row.won_first, row.episodes), rate(row.won_second, row.episodes), share}});
   }

@@ -97,7 +97,7 @@ Section failed_cells(const Material& material) {
   grid.align = std::string(grid.heads.size(), 'l');
   List lines;
   for (const CellResult& cell : failed) {
-    Cell reason(cell.reason);
+    TableCell reason(cell.reason);
     reason.log = cell.log_tail;
     grid.rows.push_back(
         {{},

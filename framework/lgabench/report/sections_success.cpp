@@ -14,8 +14,8 @@ std::string rate_text(double x) { return fixed(x); }
 std::string shift_text(double x) { return signed_text(x); }
 
 // "0.85 [0.64, 0.95]", each number with its place: `members` of the row.
-Cell with_interval(const Row& row, double value, const Interval& interval, const std::array<const char*, 3>& members,
-                   std::string (*set)(double), Emphasis emphasis) {
+TableCell with_interval(const Row& row, double value, const Interval& interval,
+                        const std::array<const char*, 3>& members, std::string (*set)(double), Emphasis emphasis) {
   const auto aside = [](const std::string& text, const std::string& place) {
     return Span::number(text, place, Emphasis::detail);
   };
@@ -24,28 +24,29 @@ Cell with_interval(const Row& row, double value, const Interval& interval, const
                aside(set(interval.high), place_of(row, members[2])),          aside("]", "")};
 }
 
-Cell success_cell(const Row* row) {
+TableCell success_cell(const Row* row) {
   if (!row) return {};
   const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
   if (!row->success) return Span::number("–" + marks);
-  Cell cell = with_interval(*row, *row->success, row->interval, {"success", "low", "high"}, rate_text, Emphasis::none);
+  TableCell cell =
+      with_interval(*row, *row->success, row->interval, {"success", "low", "high"}, rate_text, Emphasis::none);
   if (!marks.empty()) cell.spans.push_back(Span::number(marks));
   cell.episodes = row->index;
   cell.rate = *row->success;
   return cell;
 }
 
-Cell shift_cell(const Row* row) {
+TableCell shift_cell(const Row* row) {
   if (!row || !row->shift) return {};
   const Interval& interval = row->shift->interval;
   const Emphasis emphasis = interval.high < 0 ? Emphasis::worse : interval.low > 0 ? Emphasis::better : Emphasis::none;
-  Cell cell = with_interval(*row, row->shift->difference, interval, {"shift/difference", "shift/low", "shift/high"},
-                            shift_text, emphasis);
+  TableCell cell = with_interval(*row, row->shift->difference, interval,
+                                 {"shift/difference", "shift/low", "shift/high"}, shift_text, emphasis);
   if (acts_the_same(*row)) cell.spans.push_back(Span::number(" ="));
   return cell;
 }
 
-Cell seen_cell(const Row* row) {
+TableCell seen_cell(const Row* row) {
   if (!row) return {};
   const std::optional<double> share = row->seen_share();
   if (!share) return Span::number("–");
@@ -53,7 +54,8 @@ Cell seen_cell(const Row* row) {
 }
 
 // "0.293 ± 0.078", with its error bar where the figure has one; empty where the paper has no value.
-Cell paper_cell(const PaperValues& paper, const std::string& scenario, const std::string& method, int n, int digits) {
+TableCell paper_cell(const PaperValues& paper, const std::string& scenario, const std::string& method, int n,
+                     int digits) {
   const std::string name = display_name(method);
   const auto rate = paper.find(scenario, name, n), error = paper.error(scenario, name, n);
   if (!rate) return {};
@@ -62,7 +64,7 @@ Cell paper_cell(const PaperValues& paper, const std::string& scenario, const std
 
 // A table of `cell_of` every method of `scenarios`, without what the paper says.
 Grid own_grid(const Material& material, const Table& table, const std::vector<Column>& columns,
-              Cell (*cell_of)(const Row*), const std::vector<std::string>& scenarios, bool plain_names) {
+              TableCell (*cell_of)(const Row*), const std::vector<std::string>& scenarios, bool plain_names) {
   Grid grid;
   grid.group_head = "scenario";
   grid.heads.emplace_back("method");
@@ -70,7 +72,7 @@ Grid own_grid(const Material& material, const Table& table, const std::vector<Co
   grid.align = "ll" + std::string(columns.size(), 'r');
   for (const std::string& scenario : scenarios) {
     const auto line = [&](const std::string& id, bool reference) {
-      Cell name = named(material, id, reference || plain_names ? Emphasis::none : Emphasis::strong);
+      TableCell name = named(material, id, reference || plain_names ? Emphasis::none : Emphasis::strong);
       if (reference && !plain_names) name.spans.insert(name.spans.begin(), "reference: ");
       Grid::Row row{table.title(scenario), {name}, reference};
       for (const Column& c : columns) row.cells.push_back(cell_of(table.find(c.arm, scenario, id, c.demonstrations)));
@@ -219,7 +221,7 @@ void add_view(const Material& material, const Table& table, const View& view, co
     if (media == in_terminal) grid.heads.front() = view.corner;
     section.add(media, std::move(grid));
   };
-  const auto own = [&](Cell (*cell_of)(const Row*), const std::vector<Column>& shown,
+  const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
                        const std::vector<std::string>& scenarios,
                        bool plain_names) { return own_grid(material, table, shown, cell_of, scenarios, plain_names); };
   if (arms) section.add(reading, Heading{view.corner});

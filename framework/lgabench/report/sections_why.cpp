@@ -28,8 +28,8 @@ Span phi_number(const Row& row, const std::string& member, int digits) {
 }
 
 // A chip for each name; too many are counted.
-Cell chips(const std::vector<std::string>& names, std::size_t known, Emphasis emphasis) {
-  return names.empty() ? Cell("–") : Cell(Span(listed(names, known), emphasis));
+TableCell chips(const std::vector<std::string>& names, std::size_t known, Emphasis emphasis) {
+  return names.empty() ? TableCell("–") : TableCell(Span(listed(names, known), emphasis));
 }
 
 // The words of each distinct φ̂: what it has of the truth, what it lacks, what it has beside it.
@@ -60,8 +60,8 @@ Grid words_grid(const Material& material, bool tell) {
   return grid;
 }
 
-Cell bar(const std::vector<BarPart>& parts, int of) {
-  Cell cell;
+TableCell bar(const std::vector<BarPart>& parts, int of) {
+  TableCell cell;
   cell.bar = parts;
   cell.bar_of = of;
   return cell;
@@ -83,19 +83,20 @@ struct Endings {
   }
 
   // A column of numbers; the bars' parts of that `kind`, if any, are what it counts.
-  void column(Cell head, const std::string& kind = "") {
+  void column(TableCell head, const std::string& kind = "") {
     if (!kind.empty()) head.bar = {{kind, "", 1}};
     mean.heads.push_back(std::move(head));
     mean.align += 'r';
   }
 
   // Adds a row with its bar and the columns' numbers.
-  void add(const Material& material, const Table& table, const Row& row, Cell bar, std::vector<Cell> numbers) {
-    std::vector<Cell> cells{table.title(), row.arm, named(material, row.method),
-                            count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};
+  void add(const Material& material, const Table& table, const Row& row, TableCell bar,
+           std::vector<TableCell> numbers) {
+    std::vector<TableCell> cells{table.title(), row.arm, named(material, row.method),
+                                 count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};
     std::move(numbers.begin(), numbers.end(), std::back_inserter(cells));
     Grid& grid = row.is_mean() ? mean : each;
-    grid.rows.push_back({row.is_mean() ? Cell() : Cell(row.scenario), std::move(cells)});
+    grid.rows.push_back({row.is_mean() ? TableCell() : TableCell(row.scenario), std::move(cells)});
   }
 
   void put_into(Section& section) {
@@ -140,8 +141,8 @@ Section phi(const Material& material) {
                       source = one.at("source"), asked_as = one.at("asked_as");
     for (const auto& set : one.at("quality").items()) {
       const std::string& about = set.key();
-      std::vector<Cell> cells{command_text(utterance, one.at("seen"), tell), named(material, row.method), about,
-                              provenance_words(one.at("provenance")), source};
+      std::vector<TableCell> cells{command_text(utterance, one.at("seen"), tell), named(material, row.method), about,
+                                   provenance_words(one.at("provenance")), source};
       for (const char* group : {"object_types", "textures"}) {
         const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
         cells.emplace_back(phi_number(row, numbers + "precision", 2));
@@ -189,13 +190,14 @@ Section failures(const Material& material) {
     for (const Row& row : table.rows) {
       if (row.episodes == 0) continue;
       if (!row.is_mean() && (row.is_reference() || row.demonstrations != table.demonstrations().back())) continue;
-      std::vector<Cell> numbers{count_cell(row, "episodes", row.episodes), count_cell(row, "successes", row.successes)};
+      std::vector<TableCell> numbers{count_cell(row, "episodes", row.episodes),
+                                     count_cell(row, "successes", row.successes)};
       std::vector<BarPart> parts;
       for (const std::string& word : used) {
         const auto found = row.failures.find(word);
         const int n = found == row.failures.end() ? 0 : found->second;
         parts.push_back({kind(word), words(word), n});
-        numbers.push_back(n == 0 ? Cell(Span::number("0")) : count_cell(row, "failures/" + word, n));
+        numbers.push_back(n == 0 ? TableCell(Span::number("0")) : count_cell(row, "failures/" + word, n));
         if (n == 0) continue;
         numbers.back().episodes = row.index;
         numbers.back().outcome = words(word);
@@ -222,11 +224,11 @@ Section attribution(const Material& material) {
     for (const Row& row : table.rows) {
       if (row.attributed() == 0) continue;
       std::vector<BarPart> parts;
-      std::vector<Cell> numbers;
+      std::vector<TableCell> numbers;
       for (const char* to : causes) {
         const int n = row.attributed_to(to);
         parts.push_back({to, to, n});
-        numbers.push_back(row.attribution.count(to) == 0 ? Cell(Span::number("0"))
+        numbers.push_back(row.attribution.count(to) == 0 ? TableCell(Span::number("0"))
                                                          : count_cell(row, fmt::format("attribution/{}", to), n));
       }
       endings.add(material, table, row, bar(parts, row.attributed()), std::move(numbers));

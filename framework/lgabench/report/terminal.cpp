@@ -16,7 +16,7 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(width - std::min(width, display_width(text)), ' ');
 }
 
-std::string text_of(const Spans& spans) { return Cell(spans).text(); }
+std::string text_of(const Spans& spans) { return TableCell(spans).text(); }
 
 std::string terminal_block(const Block& block) {
   if (const Grid* grid = std::get_if<Grid>(&block.content)) return terminal(*grid) + '\n';
@@ -39,7 +39,7 @@ std::string terminal(const Grid& grid) {
     wide[i] += gap;
   }
   std::string text = grid.caption.empty() ? "" : grid.caption + "\n\n";
-  const auto line = [&](const std::vector<Cell>& cells, std::size_t inset) {
+  const auto line = [&](const std::vector<TableCell>& cells, std::size_t inset) {
     std::string row;
     for (std::size_t i = 0; i < cells.size(); ++i)
       row += i == 0 ? padded(std::string(inset, ' ') + cells[i].text(), wide[i] + indent)

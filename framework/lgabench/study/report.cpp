@@ -102,7 +102,7 @@ Grid by_condition(const std::string& name_of_table, const std::string& caption, 
   grid.heads.insert(grid.heads.end(), heads.begin(), heads.end());
   grid.align = "l" + std::string(heads.size(), 'r');
   for (const Condition condition : conditions) {
-    std::vector<Cell> cells{name(condition)};
+    std::vector<TableCell> cells{name(condition)};
     for (const std::string& value : values(condition)) cells.emplace_back(value);
     grid.rows.push_back({{}, std::move(cells)});
   }
