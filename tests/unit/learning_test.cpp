@@ -689,7 +689,10 @@ TEST(CloningOptions, OfAnUnknownValueAreRefusedByName) {
   const auto refused = [](const char* option, const char* value) {
     Json options{{"epochs", 1}, {"batch_size", 10}, {"learning_rate", .001}, {"batches", "drawn"}};
     options[option] = value;
-    return message_of<InputError>([&] { read_cloning_options(options), read_picture_option(options); });
+    return message_of<InputError>([&] {
+      read_cloning_options(options);
+      read_picture_option(options);
+    });
   };
   EXPECT_SAYS(refused("batches", "sorted"), "options: /batches: expected one of drawn, shuffled");
   EXPECT_SAYS(refused("instances", "last"), "options: /instances: expected one of all, first");

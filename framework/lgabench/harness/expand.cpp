@@ -44,7 +44,7 @@ void expect_layouts(const Scenario& scenario, const std::vector<std::string>& la
 
 }  // namespace
 
-Cell unplayed_cell(const Suite& suite, const Design& grid, const Scenario& scenario, const AnswerSource& answers) {
+Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers) {
   Cell cell;
   cell.suite = suite.id;
   cell.environment = suite.environment;

@@ -183,7 +183,7 @@ std::vector<FreshEstimate> fresh_estimates(const Entry& entry, const std::vector
   std::vector<FreshEstimate> estimates;
   std::vector<double> p;
   const auto add = [&](const std::string& arm, const Sum& sum) {
-    const double margin = 1.959964 * std::sqrt(sum.variance);
+    const double margin = report::z_95 * std::sqrt(sum.variance);
     estimates.push_back({arm, sum.difference, sum.difference - margin, sum.difference + margin, 1});
     p.push_back(std::erfc(std::abs(sum.difference) / std::sqrt(2 * sum.variance)));
   };
