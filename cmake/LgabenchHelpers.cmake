@@ -85,7 +85,7 @@ function(lgabench_link_data)
   endforeach()
   foreach(pair ${tables} answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
-               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
+               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates starters:examples/kinematic
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
                python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})
