@@ -1,11 +1,11 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <set>
 
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
@@ -178,15 +178,6 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
     grid.rows.push_back(std::move(row));
   }
   return grid;
-}
-
-std::string base64(const std::string& bytes) {
-  std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int length =
-      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                      reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.resize(static_cast<std::size_t>(length));
-  return text;
 }
 
 // Successes of all cells, in the order of places, arms and episodes, eight to a byte, the first in its highest bit.
