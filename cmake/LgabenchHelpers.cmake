@@ -29,15 +29,16 @@ function(lgabench_environment name)
   set_property(GLOBAL APPEND PROPERTY lgabench_environments lgabench_${name})  # whatever reads scenarios needs them all
 endfunction()
 
-# What plugins include: it is installed, and has pages (docs/Doxyfile.in). Of learning/ what docs/add-a-method.md and
-# docs/add-a-network.md name; the rest of it is private.
-file(GLOB lgabench_public_headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/framework/lgabench
-     ${PROJECT_SOURCE_DIR}/framework/lgabench/core/*.hpp ${PROJECT_SOURCE_DIR}/framework/lgabench/plugin/*.hpp
-     ${PROJECT_SOURCE_DIR}/framework/lgabench/abstraction/*.hpp)
-list(REMOVE_ITEM lgabench_public_headers plugin/reader.hpp)
-foreach(header cloning_method featurizer inputs learner noisy_copies samples)
-  list(APPEND lgabench_public_headers learning/${header}.hpp)
-endforeach()
+# What plugins include, by name: it is installed, and has pages (docs/Doxyfile.in). All else is private, whatever its
+# folder: what a method may not see, or what a later version may change.
+set(lgabench_public_headers
+    core/action.hpp core/error.hpp core/feature_space.hpp core/files.hpp core/geometry.hpp core/json.hpp
+    core/language_model.hpp core/method.hpp core/observation.hpp core/physics_world.hpp core/random.hpp core/selection.hpp
+    core/shown.hpp core/version.hpp
+    plugin/descriptor.hpp plugin/fingerprint.hpp plugin/plugin.hpp
+    abstraction/goal_mask.hpp abstraction/select_features.hpp
+    learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp
+    learning/samples.hpp)
 
 # What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().
 function(lgabench_install_package)
@@ -85,7 +86,7 @@ function(lgabench_link_data)
   endforeach()
   foreach(pair ${tables} answers:framework/lgabench/abstraction/answers prompts:framework/lgabench/abstraction/prompts
                embeddings:framework/lgabench/learning/embeddings paper:results/paper measured:results/measured formats:docs/formats
-               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates
+               page:framework/lgabench/report/page templates:framework/lgabench/cli/templates starters:examples/kinematic
                study:framework/lgabench/study/pages protocols:framework/lgabench/study/protocols
                python:python fetch:cmake/fetch)
     string(REPLACE ":" ";" pair ${pair})

@@ -45,6 +45,7 @@ inline std::vector<fs::path> files_with_schema(const fs::path& run) {
     const Json status = Json::parse(read_file(cell / "status.json"), nullptr, false);
     if (!status.contains("state") || status["state"] != "failed")
       names.insert(names.end(), {"selection.json", "training.jsonl", "episodes.jsonl", "timing.json"});
+    if (fs::exists(cell / "shown.json")) names.emplace_back("shown.json");
     for (const std::string& name : names) files.push_back(cell / name);
   }
   std::sort(files.begin(), files.end());

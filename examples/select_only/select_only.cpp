@@ -17,7 +17,6 @@ class SelectOnly : public CloningMethod {
   Selection select(const Command& command, const FeatureSpace& space, Services&) override {
     Selection selection;
     selection.target = {named(command, space.object_types), named(command, space.textures)};
-    selection.provenance = Provenance::rule;
     return selection;
   }
 };

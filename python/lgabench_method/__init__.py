@@ -9,7 +9,9 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
 
         def needs(self, options): ...                # optional: a Needs
         def select(self, command, space, services): ...    # a Selection
-        def learn(self, demonstrations, services): ...     # an object with act(observation, instruction), and maybe reset()
+        def revise(self, command, selected, demonstrations, services): ...    # optional: another Selection
+        def learn(self, demonstrations, services): ...
+            # an object with act(observation, instruction), and maybe reset() and shown(), a Shown
 
 Needs NumPy alone. One thread; the same seed must give the same bytes.
 """
@@ -18,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy
 
 __all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "Instance", "Instruction", "Needs", "Observation",
-           "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Step", "goal_mask", "select_features"]
+           "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Shown", "Step", "goal_mask", "select_features"]
 
 
 class Refused(RuntimeError):
@@ -126,6 +128,18 @@ class Needs:
     targets: str = "selected"  # or "truth"
     noisy_per_clean: int = 0
     noise_max: float = 0.0
+
+
+@dataclass
+class Shown:
+    """What the policy's last act() read of the scene, for a report's page: no result depends on it.
+
+    `pictures` are (name, array) or (name, array, how it is read). An array of rows x columns is a mask: above 0 is white,
+    below red, 0 black. One of rows x columns x 3 has colours: bytes, or numbers from 0 to 1.
+    """
+    pictures: list = field(default_factory=list)
+    texts: list = field(default_factory=list)   # read beside them, in words for a caption
+    unread: list = field(default_factory=list)  # of the method's inputs, what this policy leaves out
 
 
 @dataclass

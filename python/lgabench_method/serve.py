@@ -9,7 +9,7 @@ import sys
 import time
 import traceback
 
-from lgabench_method import Needs, Refused, Services, values
+from lgabench_method import Needs, Refused, Services, Shown, values
 from lgabench_method.frames import Malformed
 
 PROTOCOL = 1
@@ -151,11 +151,16 @@ class Host:
         if self.method is None:
             self.method = self.kind()
         needs = self.method.needs(self.services.options) if hasattr(self.method, "needs") else Needs()
-        return {"type": "needs", **values.needs_json(needs)}, b""
+        return {"type": "needs", **values.needs_json(needs), "revise": hasattr(self.method, "revise")}, b""
 
     def select(self, header, payload, descriptor):
         chosen = self.method.select(values.command(header["command"]), values.space(header["space"]), self.services)
-        return {"type": "selection", "selection": values.selection_json(chosen)}, b""
+        return {"type": "selection", "selection": values.selection_json(chosen, "select() returned")}, b""
+
+    def revise(self, header, payload, descriptor):
+        revised = self.method.revise(values.command(header["command"]), values.selection(header["selection"]),
+                                     values.demonstrations(header, descriptor), self.services)
+        return {"type": "revised", "selection": values.selection_json(revised, "revise() returned")}, b""
 
     def learn(self, header, payload, descriptor):
         self.policy = self.method.learn(values.demonstrations(header, descriptor), self.services)
@@ -173,6 +178,9 @@ class Host:
         if getattr(self.policy, "seen_in_training", None) is not None:
             reply["seen_in_training"] = bool(self.policy.seen_in_training)
         return reply, action
+
+    def shown(self, header, payload, descriptor):
+        return values.shown_frame(self.policy.shown() if hasattr(self.policy, "shown") else Shown())
 
     def drop(self, header, payload, descriptor):
         setattr(self, "method" if header["what"] == "method" else "policy", None)
@@ -217,7 +225,7 @@ def serve(channel):
         return
     while frame is not None:
         kind = frame[0]["type"]
-        if kind not in ("hello", "needs", "select", "learn", "act", "drop", "bye"):
+        if kind not in ("hello", "needs", "select", "revise", "learn", "act", "shown", "drop", "bye"):
             raise Malformed(f"no frame of a worker: \"{kind}\"")
         _told(channel, "method", host.answer, frame)
         if kind == "bye":

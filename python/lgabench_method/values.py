@@ -5,7 +5,7 @@ import os
 import numpy
 
 from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Needs, Observation,
-                             SecondRole, SecondSet, Selection, Step)
+                             SecondRole, SecondSet, Selection, Shown, Step)
 
 
 def command(json):
@@ -47,7 +47,7 @@ def selection(json):
                      json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
 
 
-def selection_json(value, what="select() returned"):
+def selection_json(value, what):
     if not isinstance(value, Selection):
         raise TypeError(f"{what} {type(value).__name__}, expected a lgabench_method.Selection")
     json = {"target": _set_json(value.target)}
@@ -66,6 +66,40 @@ def needs_json(value):
     if not isinstance(value, Needs):
         raise TypeError(f"needs() returned {type(value).__name__}, expected a lgabench_method.Needs")
     return {"targets": value.targets, "noisy_per_clean": int(value.noisy_per_clean), "noise_max": float(value.noise_max)}
+
+
+MASK_COLOURS = numpy.array([[205, 60, 50], [32, 32, 32], [245, 245, 245]], numpy.uint8)  # of -1, 0 and 1
+
+
+def _colours(name, array):
+    array = numpy.asarray(array)
+    if array.ndim == 2 and array.dtype.kind in "biuf":
+        return MASK_COLOURS[numpy.sign(array.astype(float)).astype(int) + 1]
+    if array.ndim == 3 and array.shape[2] == 3 and array.dtype.kind in "uif":
+        return array if array.dtype == numpy.uint8 else numpy.rint(255 * numpy.clip(array, 0, 1)).astype(numpy.uint8)
+    raise ValueError(f"shown(): {name}: an array of shape {array.shape} and type {array.dtype}, expected rows x columns, "
+                     "or rows x columns x 3")
+
+
+def shown_frame(value):
+    """The reply's header and its payload."""
+    if not isinstance(value, Shown):
+        raise TypeError(f"shown() returned {type(value).__name__}, expected a lgabench_method.Shown")
+    header = {"type": "shown", "pictures": [], "texts": list(map(str, value.texts)), "unread": list(map(str, value.unread))}
+    payload = b""
+    for name, array, *note in value.pictures:
+        colours = _colours(name, array)
+        rows, columns, _ = colours.shape
+        header["pictures"].append({"name": str(name), "note": str(note[0]) if note else "", "rows": rows, "columns": columns})
+        payload += colours.tobytes()
+    lines = [text for one in header["pictures"] for text in (one["name"], one["note"])] + header["texts"] + header["unread"]
+    if any(len(text.encode()) > 200 or not text.isprintable() for text in lines):
+        raise ValueError("shown(): expected captions and texts of one line, at most 200 bytes")
+    if max(len(header[member]) for member in ("pictures", "texts", "unread")) > 8 or len(payload) > 1 << 20:
+        raise ValueError("shown(): expected at most 8 pictures, 8 texts and 1 MiB of pictures, 3 bytes a pixel")
+    if any(not 1 <= one[side] <= 1024 for one in header["pictures"] for side in ("rows", "columns")):
+        raise ValueError("shown(): expected pictures of 1 to 1024 rows and columns")
+    return header, payload
 
 
 def action_bytes(value, count):

@@ -126,10 +126,11 @@ class Runs(OneRun):
     def test_merge_takes_what_a_cell_is_documented_to_hold(self):
         (self.cell() / "payload.sh").write_text("#!/bin/sh\n")
         (self.cell() / "sub").mkdir()
+        (self.cell() / "shown.json").write_text('{"scenes": []}')
         self.call("merge", "merged", "run")
         names = {p.name for p in self.cell(run="merged").iterdir()}
         self.assertEqual(names, {"cell.json", "selection.json", "training.jsonl", "episodes.jsonl", "timing.json",
-                                 "status.json", "log.txt"})
+                                 "status.json", "log.txt", "shown.json"})
 
     # (file, what becomes of its text, what is said)
     BAD_JSON = {

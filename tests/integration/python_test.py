@@ -97,6 +97,35 @@ class Policy:
 '''
 
 
+LATE = '''
+import numpy
+from lgabench_method import FeatureSet, Selection, Shown, goal_mask
+
+class Late:
+    def select(self, command, space, services):
+        return Selection(FeatureSet(["heart"], list(space.textures)))
+
+    def revise(self, command, selected, demonstrations, services):
+        assert len(demonstrations) == 10 and selected.provenance == "rule"
+        return Selection(FeatureSet(selected.target.object_types, ["red"]))
+
+    def learn(self, demonstrations, services):
+        assert demonstrations[0].instruction.selection.target.textures == ["red"]
+        return Policy(demonstrations[0].steps[0].label)
+
+class Policy:
+    def __init__(self, label):
+        self.label = label
+
+    def act(self, observation, instruction):
+        self.mask = goal_mask(observation, instruction.selection)
+        return self.label
+
+    def shown(self):
+        return Shown([("goal mask", self.mask), ("picture", numpy.zeros((2, 3, 3)), "darkened")], ["nothing"])
+'''
+
+
 @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
 class PythonMethods(Case):
     def setUp(self):
@@ -219,6 +248,36 @@ class PythonMethods(Case):
             selection = json.loads((cell / "selection.json").read_text())["commands"][0]["selection"]
             provenance[how] = selection["provenance"], selection["source"].endswith(", edited by the method")
         self.assertEqual(provenance, {"": ("recorded", False), "rule": ("rule", False), "edit": ("recorded", True)})
+
+    def test_a_selection_is_revised_and_what_is_read_is_shown(self):
+        (self.dir / "late.py").write_text(LATE)
+        self.call(*RUN, "--methods", "late.py:Late,mine.py:Mine", "--out", "out")
+        self.assert_matches_schemas("out")
+        cells = {cell["method"]["id"]: self.dir / "out/cells" / key for key, (cell, _) in self.cells("out").items()}
+        command, = json.loads((cells["late"] / "selection.json").read_text())["commands"]
+        self.assertEqual(command["selection"]["target"], {"object_types": ["heart"], "textures": ["red"]})
+        self.assertEqual(command["selection"]["provenance"], "rule")
+        self.assertGreater(len(command["before_revision"]["target"]["textures"]), 1)
+        self.assertEqual(command["quality"]["target"]["textures"]["size"], 1)
+        scenes = json.loads((cells["late"] / "shown.json").read_text())["scenes"]
+        self.assertEqual([scene["index"] for scene in scenes], [0, 1, 2])
+        self.assertEqual([picture["caption"] for picture in scenes[0]["pictures"]],
+                         ["goal mask, 128 × 256", "picture, 2 × 3; darkened"])
+        self.assertEqual((scenes[0]["texts"], scenes[0]["unread"]), (["nothing"], []))
+        # On the page, for whoever's method it is; one of 0.2, which tells nothing, has its row without.
+        self.assertFalse((cells["mine"] / "shown.json").exists())
+        page = (self.dir / "out/report.html").read_text()
+        self.assertIn("goal mask, 128 × 256", page)
+        self.assertIn("picture, 2 × 3; darkened", page)
+        # What cannot be shown costs the pictures alone.
+        (self.dir / "late.py").write_text(LATE.replace("zeros((2, 3, 3))", "zeros((2, 3, 4))"))
+        self.call(*RUN, "--methods", "late.py:Late", "--out", "without")
+        (key, (_, status)), = self.cells("without").items()
+        self.assertEqual(status["state"], "ok")
+        self.assertFalse((self.dir / "without/cells" / key / "shown.json").exists())
+        self.assertIn("expected rows x columns", (self.dir / "without/cells" / key / "log.txt").read_text())
+        self.assertEqual((self.dir / "without/cells" / key / "episodes.jsonl").read_bytes(),
+                         (cells["late"] / "episodes.jsonl").read_bytes())
 
     def test_a_user_and_places_to_write(self):
         """As PyTorch's compiler wants them when an optimiser is imported; the system's list of users cannot be read."""

@@ -150,5 +150,29 @@ TEST_F(AnswerLedgerTest, a_malformed_question_breaks_the_protocol) {
   EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
 }
 
+// What a method makes of an answer once it was shown more.
+TEST_F(AnswerLedgerTest, a_revision_stands_on_the_answer_before_it) {
+  Selection earlier;
+  earlier.target = {{"heart", "star"}, {"red"}};
+  earlier.provenance = Provenance::live;
+  earlier.source = "a model";
+  earlier.asked_as = "Fetch the heart.";
+  earlier.cost = {20, 300, 1.5, 0};
+  AnswerLedger ledger(space, services_, earlier);
+  const Selection same = ledger.account(earlier);
+  EXPECT_EQ(same.provenance, Provenance::live);
+  EXPECT_EQ(same.source, "a model");
+  EXPECT_EQ(same.asked_as, "Fetch the heart.");
+  EXPECT_EQ(same.cost.lm_queries, 20) << "once";
+  Selection narrower;
+  narrower.target = {{"heart"}, {"red"}};
+  const Selection revised = ledger.account(narrower);
+  EXPECT_EQ(revised.source, "a model, edited by the method");
+  EXPECT_EQ(revised.cost.lm_tokens, 300);
+
+  earlier.provenance = Provenance::none;  // nobody's answer
+  EXPECT_EQ(AnswerLedger(space, services_, earlier).account(narrower).provenance, Provenance::rule);
+}
+
 }  // namespace
 }  // namespace lgabench

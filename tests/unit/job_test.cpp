@@ -1,6 +1,7 @@
 // What a run and its workers say to each other is read as it was written.
 #include <lgabench/job/check_report.hpp>
 #include <lgabench/job/job.hpp>
+#include <lgabench/record/shown.hpp>
 
 #include "../engine_under_test.hpp"
 #include "testing.hpp"
@@ -48,13 +49,29 @@ TEST(Jobs, NameThePluginsThatTheyWereWrittenWith) {
   EXPECT_SAYS(message_of<PluginError>([&] { read_cell_job(JsonReader(json, "job")); }), "changed since the run began");
 }
 
+TEST(ShownScenes, AreReadAsTheyWereWrittenAndRefusedWhereTheyAreNone) {
+  const TemporaryDirectory cell;
+  EXPECT_TRUE(read_shown_scenes(cell.path).empty()) << "a cell of 0.2 has none";
+  const ShownScene scene{"test", 3, {{"goal mask, 36 × 72", "iVBORw0KGgo="}}, {"the command's words"}, {"picture"}};
+  write_file(cell.path / "shown.json", to_text({scene}));
+  const std::vector<ShownScene> read = read_shown_scenes(cell.path);
+  ASSERT_EQ(read.size(), 1u);
+  EXPECT_EQ(to_text(read), to_text({scene}));
+  const auto refused = [&](const std::string& text) {
+    write_file(cell.path / "shown.json", text);
+    return message_of<InputError>([&] { read_shown_scenes(cell.path); });
+  };
+  ShownScene script = scene;
+  script.pictures[0].second = "\"><script>";
+  EXPECT_SAYS(refused(to_text({script})), "shown.json: /scenes/0/pictures/0/png: expected a PNG in base64");
+  EXPECT_SAYS(refused("{}"), "shown.json: /: expected a member \"scenes\"");
+}
+
 TEST(Jobs, OfPicturesAreReadAsTheyWereWritten) {
   PictureRequest request{"cells/KEY/cell.json", "test", 4, "0123456789abcdef"};
   request.selections = {{{"distribution", {{"target", 1}}}, {"instances", "all"}}};
   request.ends = {{"mujoco", {.1, .2}}, {"bullet", {.3}}};
-  request.inputs = {{{"pictures", {"mask"}}, {"selection", nullptr}}};
   const Json json = to_json(request);
-  EXPECT_EQ(json.at("inputs").size(), 1u);
   EXPECT_EQ(to_json(read_picture_request(JsonReader(json, "pictures"))), json);
 }
 

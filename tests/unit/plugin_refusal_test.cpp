@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\" or \"engine\""}},
                     Case{"short_descriptor", {"descriptor of 104 bytes", "(this program: 4664)"}},
                     Case{"newer_interface", {"plugin interface 1000", ours}},
-                    Case{"older_interface", {"plugin interface 0", ours}},
+                    Case{"older_interface", {"plugin interface 3", ours + ": build it with this lgabench's package"}},
                     Case{"two_descriptors", {"2 lgabench descriptors, expected one"}},
                     Case{"no_descriptor", {"no lgabench descriptor"}},
                     Case{"bad_options", {"options: /epochs: expected a member \"default\""}},

@@ -1,32 +1,20 @@
 // What a report's page says that a policy saw is what its Featurizer makes.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <set>
+#include <algorithm>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/learning/inputs.hpp>
+#include <lgabench/learning/policies.hpp>
 #include <lgabench/learning/shown_input.hpp>
-#include <lgabench/plugin/loader.hpp>
-#include <lgabench/plugin/plugin.hpp>
 
-// The shipped methods' classes, without the plugins around them.
-#undef LGABENCH_METHOD
-#undef LGABENCH_METHOD_ASKING
-#define LGABENCH_METHOD(...)
-#define LGABENCH_METHOD_ASKING(...)
-#include "../../baselines/gcbc_dart.cpp"
-#include "../../baselines/gcbc_seg.cpp"
-#include "../../plugins/factorial.cpp"
-#include "../../plugins/human.cpp"
-#include "../../plugins/lga.cpp"
-#include "../../plugins/lga_hill.cpp"
-#include "../../plugins/lga_l.cpp"
-#include "../../plugins/lga_s.cpp"
 #include "testing.hpp"
 
 namespace lgabench {
 namespace {
+
+using Picture = PolicyInputs::Picture;
+using Text = PolicyInputs::Text;
 
 const ActionSpace actions{{{"x", "m", .25, .75}, {"y", "m", -.5, .5}}, {}, {{0, 1}}};
 
@@ -49,111 +37,91 @@ struct Seen {
     selection.second = SecondSet{{{"star"}, {"blue"}}, "avoid"};
   }
 
-  ShownInput shown(const Json& with) const {
-    Json input{{"pictures", {"mask", "rgb"}}, {"policy", "regression"}, {"instances", "all"}, {"mask", "binary"}};
-    input.update(with);
-    return shown_input({input, "input"}, observation, selection, actions);
+  // What a policy of that kind read, which a method offers these inputs.
+  Shown shown(const PolicyInputs& offered, PolicyKind policy = PolicyKind::regression) const {
+    PolicyInputs read = inputs_of(policy, offered, observation.size);
+    Featurizer featurizer(without_text(read), actions);
+    Samples row(featurizer.shape(), 1);
+    featurizer.write(observation, {"", selection}, Phase::test, row, 0);
+    return shown_input(offered, read, policy, row);
+  }
+
+ private:
+  // What a sentence encoder makes of a text is nothing to look at.
+  static PolicyInputs without_text(PolicyInputs inputs) {
+    inputs.text = Text::none;
+    return inputs;
   }
 };
 
-std::vector<float> shrunken(const std::vector<std::uint8_t>& mask, PictureSize native, PictureSize size) {
+std::vector<std::uint8_t> drawn(const std::vector<std::uint8_t>& mask, PictureSize native, PictureSize size) {
   std::vector<float> small(size.pixels());
   shrink_mask(mask, native, size, small.data());
-  return small;
+  return shown_mask("", size, small.data()).rgb;
 }
 
 TEST(ShownInput, IsThePaperNetworksAtItsSize) {
   const Seen seen;
-  const ShownInput shown = seen.shown({{"text", "utterance"}});
+  const Shown shown = seen.shown({{Picture::mask, Picture::rgb}, Text::utterance});
   ASSERT_EQ(shown.pictures.size(), 2u);
   EXPECT_EQ(shown.pictures[0].name, "goal mask");
   EXPECT_EQ(shown.pictures[0].size, input_size);
-  EXPECT_EQ(shown.pictures[0].values,
-            shrunken(goal_mask(seen.observation, seen.selection), seen.observation.size, input_size));
+  EXPECT_EQ(shown.pictures[0].rgb,
+            drawn(goal_mask(seen.observation, seen.selection), seen.observation.size, input_size));
   EXPECT_EQ(shown.pictures[0].note, "");
   EXPECT_EQ(shown.pictures[1].name, "picture");
-  EXPECT_EQ(shown.pictures[1].channels, 3);
-  EXPECT_NEAR(shown.pictures[1].values.at(0), .2, 1e-6);
+  EXPECT_EQ(shown.pictures[1].rgb, std::vector<std::uint8_t>(3 * input_size.pixels(), 51));
   EXPECT_EQ(shown.texts, std::vector<std::string>{"the command's words"});
   EXPECT_EQ(shown.unread, std::vector<std::string>());
+  EXPECT_NO_THROW(expect_shown(shown));
 }
 
 TEST(ShownInput, OfOtherPoliciesIsWhatTheyRead) {
   const Seen seen;
   std::vector<std::uint8_t> roles;
   role_mask(seen.observation, seen.selection, roles);
-  const std::vector<float> native = shrunken(roles, seen.observation.size, seen.observation.size);
+  const std::vector<std::uint8_t> native = drawn(roles, seen.observation.size, seen.observation.size);
 
-  const ShownInput centroid = seen.shown({{"policy", "centroid"}, {"text", "utterance"}});
+  const Shown centroid = seen.shown({{Picture::mask, Picture::rgb}, Text::utterance}, PolicyKind::centroid);
   ASSERT_EQ(centroid.pictures.size(), 1u);
   EXPECT_EQ(centroid.pictures[0].size, seen.observation.size);
-  EXPECT_EQ(centroid.pictures[0].values, native);
+  EXPECT_EQ(centroid.pictures[0].rgb, native);
   EXPECT_EQ(centroid.unread, (std::vector<std::string>{"picture", "the command's words"}));
   EXPECT_EQ(centroid.texts, std::vector<std::string>());
 
-  const ShownInput heat_map = seen.shown({{"policy", "heat_map"}, {"text", "selection"}});
+  const Shown heat_map = seen.shown({{Picture::mask, Picture::rgb}, Text::selection}, PolicyKind::heat_map);
   ASSERT_EQ(heat_map.pictures.size(), 2u);
-  EXPECT_EQ(heat_map.pictures[0].values, native);
-  EXPECT_EQ(heat_map.pictures[0].name, "goal mask");
-  EXPECT_EQ(heat_map.pictures[0].note, "; red: to be avoided; the policy takes its share of 32 × 64 cells");
+  EXPECT_EQ(heat_map.pictures[0].rgb, native);
+  EXPECT_EQ(heat_map.pictures[0].note, "red: to be avoided; the policy takes its share of 32 × 64 cells");
   EXPECT_EQ(heat_map.pictures[1].size, (PictureSize{32, 64}));
   EXPECT_EQ(heat_map.texts, std::vector<std::string>{"φ̂ in words"});
 
-  EXPECT_EQ(seen.shown({{"pictures", {"segmentation"}}, {"left_out", "star"}}).pictures.at(0).values,
-            shrunken(object_mask(seen.observation, "star"), seen.observation.size, input_size));
-  EXPECT_THROW(seen.shown({{"policy", "guess"}}), InputError);
-  EXPECT_THROW(seen.shown({{"pictures", {"sound"}}}), InputError);
+  PolicyInputs objects{{Picture::segmentation}};
+  objects.left_out = "star";
+  EXPECT_EQ(seen.shown(objects).pictures.at(0).rgb,
+            drawn(object_mask(seen.observation, "star"), seen.observation.size, input_size));
 }
 
-template <class Shipped>
-struct Open : Shipped {
-  using Shipped::inputs;
-};
-
-template <class Shipped>
-PolicyInputs inputs_of_class(const Json& options) {
-  return Open<Shipped>().inputs(options);
-}
-
-TEST(ShownInput, IsDescribedAsTheShippedMethodsHaveIt) {
-  const std::map<std::string, PolicyInputs (*)(const Json&)> classes{
-      {"lga", inputs_of_class<Lga>},          {"lga_hill", inputs_of_class<LgaHill>},
-      {"human", inputs_of_class<Human>},      {"lga_s", inputs_of_class<LgaS>},
-      {"lga_l", inputs_of_class<LgaL>},       {"gcbc_dart", inputs_of_class<GcbcDart>},
-      {"gcbc_seg", inputs_of_class<GcbcSeg>}, {"factorial", inputs_of_class<Factorial>}};
-  const Json descriptions = read_json(data_directory() / "paper" / "methods.json").at("inputs");
-  const auto described = [&](const std::string& id, const Json& options) {
-    for (const Json& one : descriptions) {
-      bool fits = one.at("id") == id;
-      const Json only = one.value("options", Json::object());
-      for (const auto& [option, value] : only.items()) fits = fits && options.at(option) == value;
-      if (fits) return one;
-    }
-    return Json();
+// A picture that the method makes itself is shown as it was made.
+TEST(ShownInput, IsWhatAMethodsOwnPictureBecame) {
+  PolicyInputs dark{{Picture::rgb}};
+  dark.prepare = [](const Observation& observation, const Selection&, Phase) {
+    Observation black = observation;
+    std::fill(black.rgb.begin(), black.rgb.end(), std::uint8_t{0});
+    return black;
   };
-  const std::map<PolicyInputs::Picture, std::string> words{{PolicyInputs::Picture::mask, "mask"},
-                                                           {PolicyInputs::Picture::rgb, "rgb"},
-                                                           {PolicyInputs::Picture::segmentation, "segmentation"}};
-  const std::map<PolicyInputs::Text, std::string> texts{{PolicyInputs::Text::none, ""},
-                                                        {PolicyInputs::Text::utterance, "utterance"},
-                                                        {PolicyInputs::Text::selection, "selection"}};
-  std::set<Json> met;
-  for (const auto& [id, inputs] : classes)
-    for (const char* picture : {"none", "rgb"})
-      for (const char* image : {"none", "rgb"})
-        for (const char* input : {"mask", "true_mask", "object_mask", "rgb"}) {
-          const Json options{{"picture", picture}, {"image", image}, {"input", input}};
-          const PolicyInputs own = inputs(options);
-          const Json said = described(id, options);
-          ASSERT_TRUE(said.is_object()) << id;
-          met.insert(said);
-          Json pictures = Json::array();
-          for (const PolicyInputs::Picture one : own.pictures) pictures.push_back(words.at(one));
-          EXPECT_EQ(said.at("pictures"), pictures) << id << options;
-          EXPECT_EQ(said.value("text", ""), texts.at(own.text)) << id << options;
-          EXPECT_EQ(said.value("left_out", ""), own.left_out) << id << options;
-        }
-  EXPECT_EQ(met.size(), descriptions.size());
+  EXPECT_EQ(Seen().shown(dark).pictures.at(0).rgb, std::vector<std::uint8_t>(3 * input_size.pixels(), 0));
+}
+
+TEST(Shown, WhatNoPageCanBearIsRefused) {
+  const auto refused = [](const ShownPicture& picture) {
+    return message_of<MethodError>([&] { expect_shown({{picture}, {}, {}}); });
+  };
+  EXPECT_SAYS(refused({"a", "", {2, 2}, std::vector<std::uint8_t>(11)}), "a picture of 2 x 2 with 11 bytes");
+  EXPECT_SAYS(refused({"a", "", {1, 2000}, std::vector<std::uint8_t>(6000)}), "1 to 1024 rows and columns");
+  EXPECT_SAYS(refused({std::string(201, 'a'), "", {1, 1}, {0, 0, 0}}), "at most 200 bytes");
+  EXPECT_SAYS(refused({"two\nlines", "", {1, 1}, {0, 0, 0}}), "of one line");
+  EXPECT_SAYS(refused({"a", "", {700, 700}, std::vector<std::uint8_t>(3 * 700 * 700)}), "bytes of pictures");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/language_model.hpp>
+#include <lgabench/core/scenario.hpp>
 
 namespace lgabench {
 

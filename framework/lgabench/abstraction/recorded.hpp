@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/language_model.hpp>
+#include <lgabench/core/scenario.hpp>
 
 namespace lgabench {
 

@@ -7,6 +7,7 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/check.hpp>
+#include <lgabench/cell/engine_contract.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -15,13 +16,14 @@
 namespace lgabench {
 namespace {
 
-constexpr int scenes_a_task = 4;
+constexpr int scenes_a_task = 10, most_lost = 1;  // of a task
 constexpr std::uint64_t engine_seed = 7;
 
 // A scene played by the oracle: what was seen before and after, and how it was judged, bit for bit.
 struct Played {
   std::string bytes;
   bool success = false;
+  std::string failure{};
 };
 
 std::string bytes_of(const Observation& seen) {
@@ -33,25 +35,23 @@ std::string bytes_of(const Observation& seen) {
 Played play(Environment& environment, const Scene& scene) {
   const std::string before = bytes_of(environment.reset(scene));
   const StepResult result = environment.step(environment.expert_action());
-  return {fmt::format("{} {} {}\n", before, bytes_of(result.observation), result.failure), result.is_success};
+  return {fmt::format("{} {} {}\n", before, bytes_of(result.observation), result.failure), result.is_success,
+          result.failure};
 }
 
-// A block is reset, lifted and let go, without the framework's renderer, which keeps threads of its own.
-void use_alone(const PluginInfo& engine) {
+// The contract on a world of boxes, without the framework's renderer, which keeps threads of its own.
+void use_alone(const PluginInfo& engine, CheckReport& report) {
   const auto world = load_engine(engine);
-  BodyModel block{"block", {{}}};
-  for (const double x : {-.02, .02})
-    for (const double y : {-.03, .03})
-      for (const double z : {.0, .04}) block.pieces[0].corners_m.push_back({x, y, z});
-  world->load({block}, 1);
-  world->reset({{0, {{.5, 0, 0}, {}}}});
-  world->grip(0, {{.5, 0, .04}, {}});
-  for (int i = 1; i <= 20; ++i) {
-    world->move_gripper({{.5, .002 * i, .04 + .001 * i}, {}});
-    world->step();
+  world->load(contract_bodies(), contract_bodies_at_once);
+  for (const ContractCheck& check : engine_contract()) {
+    std::string fault;
+    try {
+      fault = check.fault(*world);
+    } catch (const EngineError& e) {
+      fault = e.what();
+    }
+    report.judge(check.name, fault, "as the contract says", check.remedy);
   }
-  world->release();
-  world->step();
 }
 
 // Scenes of one task, forwards and twice backwards. Returns their bytes.
@@ -61,21 +61,24 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   const std::string& task = task_info.id;
   std::vector<Scene> scenes;
   std::vector<Played> forwards;
-  int won = 0;
+  int lost = 0;
+  std::string last_lost;
   std::string all;
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < scenes_a_task; ++i) {
     scenes.push_back(test_scene(scenario, task_info.layouts[static_cast<std::size_t>(i) % task_info.layouts.size()],
                                 scenario.tests.front().id, engine_seed, i));
     forwards.push_back(play(*environment, scenes.back()));
-    won += forwards.back().success;
+    if (!forwards.back().success) ++lost, last_lost = forwards.back().failure;
     all += forwards.back().bytes;
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report.judge("oracle, " + task,
-               won > 0 ? "" : fmt::format("wins none of {} scenes; the last: {}", scenes_a_task, forwards.back().bytes),
-               fmt::format("wins {} of {} scenes, {:.1f} ms each", won, scenes_a_task, 1e3 * seconds / scenes_a_task),
-               "bodies must rest where reset() puts them, hang at the gripper without lag, and yield to the spatula");
+  report.judge(
+      "oracle, " + task,
+      lost <= most_lost ? "" : fmt::format("loses {} of {} scenes, one of them: {}", lost, scenes_a_task, last_lost),
+      fmt::format("wins {} of {} scenes, {:.1f} ms each", scenes_a_task - lost, scenes_a_task,
+                  1e3 * seconds / scenes_a_task),
+      "bodies must rest where reset() puts them, hang at the gripper without lag, and yield to the spatula");
 
   std::string differs;
   const auto backwards = [&] {
@@ -98,10 +101,10 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
 CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase) {
   CheckReport report;
   const ProcessState at_first = ProcessState::now();
-  std::string all, doing = "a block alone";
+  std::string all, doing = "a world of boxes";
   try {
     phase(doing);
-    use_alone(engine);
+    use_alone(engine, report);
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
     for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
       phase(doing = "scenes of " + task.example);

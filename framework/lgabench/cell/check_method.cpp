@@ -227,6 +227,8 @@ class MethodCheck {
         continue;
       }
       const auto policy = learn_from(*bench, asked, selected, scenes);
+      for (const Instruction& instruction : selected.instructions)
+        use.selections += canonical(distribution_json(instruction.selection)) + '\n';
       if (first && asked.log.lines.empty())
         report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
       use.training += asked.log.lines;
@@ -271,8 +273,10 @@ class MethodCheck {
 
   std::unique_ptr<Policy> learn_from(const Bench& bench, Answering& asked, Selected& selected,
                                      const std::vector<Scene>& scenes) {
-    const std::vector<Demonstration> shown = instructed(
+    std::vector<Demonstration> shown = instructed(
         demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
+    phase_(doing_ = "revise");
+    revise(method_, job_.method.id, bench.scenario, shown, scenes, asked.services, selected);
     return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
   }
 

@@ -14,6 +14,7 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/runs_below.hpp>
+#include <lgabench/cell/showing.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
@@ -157,13 +158,16 @@ std::string first_error(const std::vector<Episode>& episodes) {
   return "";
 }
 
-std::string selection_text(const Scenario& scenario, const Selected& selected) {
+// `first`: what select() returned, from which the targets were drawn.
+std::string selection_text(const Scenario& scenario, const Selected& selected, const std::vector<Instruction>& first) {
   Json commands = Json::array();
   for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
     const auto& [utterance, selection] = selected.instructions[c];
     commands.push_back({{"utterance", utterance},
                         {"selection", to_json(selection)},
                         {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
+    if (Json before = distribution_json(first[c].selection); before != distribution_json(selection))
+      commands.back()["before_revision"] = std::move(before);
   }
   return canonical({{"commands", commands}}) + '\n';
 }
@@ -176,9 +180,11 @@ std::string episodes_text(const std::vector<Episode>& episodes) {
 
 // Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
 // `self` does: a plugin may have forked another one that came here as well.
-void record(const CellJob& job, pid_t self, const Files& files, const Files& of_method, const std::string& error) {
+void record(const CellJob& job, pid_t self, const Files& files, const Files& of_method,
+            const std::vector<ShownScene>& shown, const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   for (const auto& [name, bytes] : of_method) write_file(job.directory / "files" / name, bytes);
+  if (!shown.empty()) write_file(job.directory / cell_file::shown, to_text(shown));
   CellStatus status;
   for (const auto& [name, bytes] : files) {
     write_file(job.directory / name, bytes);
@@ -213,6 +219,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
                     answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
+  const std::vector<Instruction> first = selected.instructions;
   Course course = course_of(method.get(), selected, scenario);
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
@@ -229,7 +236,10 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");
   std::unique_ptr<Policy> policy;
-  if (course == Course::trains) policy = learn(*method, id, demonstrations, services, selected);
+  if (course == Course::trains) {
+    revise(*method, id, scenario, demonstrations, scenes, services, selected);
+    policy = learn(*method, id, demonstrations, services, selected);
+  }
   demonstrations.clear();
 
   // 5 evaluate: the same test scenes for everyone.
@@ -238,7 +248,12 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Actor actor = policy                        ? policy_actor(*policy, selected.instructions, id)
                       : course == Course::reference ? reference_actor(id, demonstrated_to(cell, scenario))
                                                     : Actor();
-  std::vector<Episode> episodes = evaluate(*environment, tests, actor, count);
+  std::optional<Showing> showing;
+  if (policy) showing.emplace(*policy, id);
+  std::vector<Episode> episodes = evaluate(*environment, tests, actor, [&](int n) {
+    count(n);
+    if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
+  });
   auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::vector<Instruction> truth = true_instructions(scenario);
@@ -249,11 +264,11 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 6 record: no clock but in timing.json.
   record(job, self,
          {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-          {cell_file::selections, selection_text(scenario, selected)},
+          {cell_file::selections, selection_text(scenario, selected, first)},
           {cell_file::training, training.lines},
           {cell_file::episodes, episodes_text(episodes)},
           {cell_file::timing, canonical(phases.seconds()) + '\n'}},
-         of_method, first_error(episodes));
+         of_method, showing ? showing->scenes() : std::vector<ShownScene>(), first_error(episodes));
 }
 
 }  // namespace lgabench

@@ -102,6 +102,20 @@ std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const s
   return showed;
 }
 
+void revise(Method& method, const std::string& id, const Scenario& scenario, std::vector<Demonstration>& demonstrations,
+            const std::vector<Scene>& scenes, Services& services, Selected& selected) {
+  if (!selected.needs.revise) return;
+  Selected revised = selected;
+  for (std::size_t c = 0; c < revised.instructions.size(); ++c) {
+    Selection& selection = revised.instructions[c].selection;
+    const Command command = scenario.command(static_cast<int>(c));
+    selection = guarded(id, [&] { return method.revise(command, selection, demonstrations, services); });
+    expect_usable(selection, scenario);
+  }
+  selected = std::move(revised);
+  demonstrations = instructed(std::move(demonstrations), scenes, selected);
+}
+
 std::unique_ptr<Policy> learn(Method& method, const std::string& id, const std::vector<Demonstration>& demonstrations,
                               Services& services, Selected& selected) {
   const SelectionCost before = services.lm.cost();

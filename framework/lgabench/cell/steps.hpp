@@ -55,6 +55,11 @@ std::vector<Scene> sample(const Scenario& scenario, const std::string& layout, c
 std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const std::vector<Scene>& scenes,
                                       const Selected& selected);
 
+/// 4 learn, first part: asks the method, where it needs to, for each command's Selection with what was shown; then the
+/// demonstrations' instructions have it too. @throws as select(), and as expect_usable().
+void revise(Method& method, const std::string& id, const Scenario& scenario, std::vector<Demonstration>& demonstrations,
+            const std::vector<Scene>& scenes, Services& services, Selected& selected);
+
 /// 4 learn: from observations and labels to a policy. What the method asks the language model meanwhile is added to the
 /// cost of the first command's Selection. @throws MethodError where it returns no policy; else likewise.
 std::unique_ptr<Policy> learn(Method& method, const std::string& id, const std::vector<Demonstration>& demonstrations,

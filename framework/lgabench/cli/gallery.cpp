@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/gallery.hpp>
-#include <lgabench/cli/picture.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench::cli {

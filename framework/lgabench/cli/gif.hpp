@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/cli/picture.hpp>
+#include <lgabench/cell/picture.hpp>
 
 namespace lgabench::cli {
 

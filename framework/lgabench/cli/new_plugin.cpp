@@ -60,7 +60,15 @@ void new_plugin(const NewPluginArguments& a) {
     write("python.README.md.in", "README.md");
     return;
   }
-  write(a.kind + ".cpp.in", a.name + ".cpp");
+  if (a.kind == "engine") {  // a copy of the smallest engine that fulfils the contract
+    const std::string smallest = read_file(data_directory() / "starters" / "kinematic.cpp");
+    write_file(directory / (a.name + ".cpp"), filled(smallest, {{"\"kinematic\"", '"' + a.name + '"'},
+                                                                {"\"kinematic: ", '"' + a.name + ": "},
+                                                                {"KinematicWorld", class_name(a.name)}}));
+    to_stdout("{}\n", (directory / (a.name + ".cpp")).string());
+  } else {
+    write("method.cpp.in", a.name + ".cpp");
+  }
   write(a.kind + ".README.md.in", "README.md");
   write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
   write("CMakePresets.json.in", "CMakePresets.json");

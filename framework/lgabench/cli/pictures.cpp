@@ -1,9 +1,7 @@
 // lgabench-worker pictures: what report.html shows of test scenes, as a request on stdin lists them.
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <optional>
 #include <set>
@@ -11,13 +9,12 @@
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/evaluator.hpp>
-#include <lgabench/cli/picture.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/played_scenes.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/job/job.hpp>
-#include <lgabench/learning/shown_input.hpp>
 #include <lgabench/report/pictures.hpp>
 
 namespace lgabench::cli {
@@ -25,54 +22,12 @@ namespace {
 
 template <class ColourAt>
 std::string png(PictureSize size, ColourAt colour_at) {
-  const int step = report::page_step(size), columns = size.columns / step, rows = size.rows / step;
+  const int step = page_step(size), columns = size.columns / step, rows = size.rows / step;
   Picture picture(columns, rows);
   picture.paste(0, 0, columns, rows, 1, [&](int column, int row) {
     return colour_at(static_cast<std::size_t>(step * row * size.columns + step * column));
   });
   return base64(picture.png());
-}
-
-// Likewise, of the numbers that a policy acts on: colours, or a mask in which what is to be avoided is red.
-std::string png(const ShownPicture& shown) {
-  return png(shown.size, [&](std::size_t i) {
-    if (shown.channels == 1 && shown.values[i] < 0) return Rgb{205, 60, 50};
-    if (shown.channels == 1) return mask_colour(shown.values[i] > 0);
-    const auto byte = [&](std::size_t k) {
-      return static_cast<std::uint8_t>(std::lround(255 * std::clamp(shown.values[3 * i + k], 0.f, 1.f)));
-    };
-    return Rgb{byte(0), byte(1), byte(2)};
-  });
-}
-
-// Opened for those runs alone that have such policies: it brings OpenCV. Never closed.
-decltype(&lgabench_shown_input) shown_input_of_the_learners() {
-  static const auto function = [] {
-    void* const library = ::dlopen("liblgabench_learning.so", RTLD_NOW | RTLD_LOCAL);
-    return library ? reinterpret_cast<decltype(&lgabench_shown_input)>(::dlsym(library, "lgabench_shown_input"))
-                   : nullptr;
-  }();
-  if (!function) throw InputError("the learners' library cannot be opened");
-  return function;
-}
-
-// {"pictures": [[caption, PNG], ...], "texts", "unread"}, or null for what is no policy's input.
-Json input_of(const Json& input, const Observation& perceived, const Scenario& scenario) {
-  try {
-    const JsonReader reader(input, "input");
-    Selection selection;
-    if (!reader.at("selection").json().is_null())
-      selection = read_distribution(reader.at("selection"), scenario.space, scenario.second);
-    ShownInput shown;
-    shown_input_of_the_learners()(reader, perceived, selection, find_environment(scenario.environment).action_space(),
-                                  shown);
-    Json pictures = Json::array();
-    for (const ShownPicture& one : shown.pictures)
-      pictures.push_back({fmt::format("{}, {} × {}{}", one.name, one.size.rows, one.size.columns, one.note), png(one)});
-    return {{"pictures", pictures}, {"texts", shown.texts}, {"unread", shown.unread}};
-  } catch (const InputError&) {
-    return nullptr;
-  }
 }
 
 // The edges of all pixels that are `inside`, as an SVG path in pixels.
@@ -99,7 +54,7 @@ std::string targets(const Scene& scene, const Observation& seen) {
   std::set<std::uint8_t> ids;
   for (const SceneObject& object : scene.objects)
     if (object.role == role::target) ids.insert(object.instance_id);
-  const int step = report::page_step(seen.size);
+  const int step = page_step(seen.size);
   const PictureSize size{seen.size.rows / step, seen.size.columns / step};
   return outline(size, [&](int column, int row) {
     if (column < 0 || row < 0 || column >= size.columns || row >= size.rows) return false;
@@ -109,11 +64,10 @@ std::string targets(const Scene& scene, const Observation& seen) {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "inputs": [...], "targets": path, "oracle": action},
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action},
   // pictures in base64: the scene, goal masks of the request's Selections, the scene after each of its actions (null
-  // where it could not be carried out, "" where nothing moved), input_of() each of its inputs, the targets' outline,
-  // and what the oracle would do (null without the cell's engine). @throws InputError where the scene is not the one
-  // asked for.
+  // where it could not be carried out, "" where nothing moved), the targets' outline, and what the oracle would do
+  // (null without the cell's engine). @throws InputError where the scene is not the one asked for.
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
@@ -129,8 +83,6 @@ class Pictures {
           selection.at("instances").string() == "first" ? Instances::first : Instances::all);
       masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
-    Json inputs = Json::array();
-    for (const Json& input : request.inputs) inputs.push_back(input_of(input, perceived, played.scenario));
     const std::string picture = picture_of(seen);
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
@@ -142,7 +94,6 @@ class Pictures {
     return {{"picture", picture},
             {"masks", masks},
             {"ends", ends},
-            {"inputs", inputs},
             {"targets", targets(scene, seen)},
             {"oracle", environment ? Json(environment->expert_action()) : Json()}};
   }

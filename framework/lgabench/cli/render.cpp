@@ -6,10 +6,10 @@
 #include <memory>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
 #include <lgabench/cli/help.hpp>
-#include <lgabench/cli/picture.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <lgabench/core/scenario.hpp>
+#include <lgabench/core/selection.hpp>
 
 namespace lgabench {
 

@@ -14,6 +14,7 @@
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/language_model.hpp>
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/shown.hpp>
 
 namespace lgabench {
 
@@ -43,6 +44,8 @@ struct Needs {
   /// the oracle and added. Rollout k of n executes the action with sigma = noise_max * k / n.
   int noisy_per_clean = 0;
   double noise_max = 0;
+  /// revise() is called.
+  bool revise = false;
 };
 
 /// Where a method reports its training, while learn() runs. Owned by the host.
@@ -86,11 +89,14 @@ class Policy {
   /// Whether all that the last act() made its action of was, to the byte, an input that the policy learned from. None
   /// where it does not tell.
   virtual std::optional<bool> seen_in_training() const { return std::nullopt; }
+  /// What the last act() read of the scene: the pictures themselves, as they were after all that prepares them. Asked
+  /// after some episodes, for a report's page; no result depends on it. Nothing where the policy does not tell.
+  virtual Shown shown() const { return {}; }
 };
 
 /// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default
-/// constructor; called in the order needs, select for each of the scenario's commands, learn. One thread. Everything
-/// that is random comes from Services::seed: the same seed gives the same bytes.
+/// constructor; called in the order needs, select for each of the scenario's commands, revise likewise, learn. One
+/// thread. Everything that is random comes from Services::seed: the same seed gives the same bytes.
 class Method {
  public:
   virtual ~Method() = default;
@@ -101,6 +107,14 @@ class Method {
   /// empty Selection, or one of which no layout shows anything, is an answer, and fails it as abstraction_empty if
   /// targets are drawn from it. A run says itself, from what was asked, where it comes from and what it cost.
   virtual Selection select(const Command& command, const FeatureSpace& space, Services& services) = 0;
+  /// Feature abstraction with what was shown: another Selection for the command in place of what select() returned,
+  /// from which the targets were drawn. Called for each command once the demonstrations are there, where needs() asks
+  /// for it. From then on it is the command's in every Instruction, and what the run records and measures; what is
+  /// asked meanwhile is added to its cost. Otherwise as select().
+  virtual Selection revise(const Command& /*command*/, const Selection& selected,
+                           const std::vector<Demonstration>& /*demonstrations*/, Services& /*services*/) {
+    return selected;
+  }
   /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
   /// scenes. The policy must not refer to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;

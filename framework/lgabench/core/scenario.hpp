@@ -10,13 +10,6 @@
 
 namespace lgabench {
 
-/// What a method is told of the task: the words, and the kind of motion that is wanted.
-struct Command {
-  std::string utterance;
-  std::string task;                                 // an id of the environment's list
-  std::optional<SecondRole> second = std::nullopt;  // what it speaks of beside the target; none for most tasks
-};
-
 /// One way to ask for the task, and what the scenario's author means by it.
 struct ScenarioCommand {
   std::string utterance;

@@ -38,6 +38,13 @@ struct SecondRole {
   std::string phrase;  // "the object to be avoided": its name in prompts
 };
 
+/// What a method is told of the task: the words, and the kind of motion that is wanted.
+struct Command {
+  std::string utterance;
+  std::string task;                                 // an id of the environment's list
+  std::optional<SecondRole> second = std::nullopt;  // what it speaks of beside the target; none for most tasks
+};
+
 /// The features of that set.
 struct SecondSet : FeatureSet {
   std::string role;  // SecondRole::id

@@ -3,4 +3,4 @@
 
 #define LGABENCH_VERSION "0.2.0"
 /// Raised whenever a type that crosses the plugin boundary changes.
-#define LGABENCH_PLUGIN_ABI 3
+#define LGABENCH_PLUGIN_ABI 4

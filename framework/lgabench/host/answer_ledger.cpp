@@ -39,6 +39,14 @@ Selection in_order(Selection selection, const FeatureSpace& space) {
 AnswerLedger::AnswerLedger(const FeatureSpace& space, Services& services)
     : space_(space), services_(services), before_(services.lm.cost()) {}
 
+AnswerLedger::AnswerLedger(const FeatureSpace& space, Services& services, const Selection& earlier)
+    : AnswerLedger(space, services) {
+  earlier_ = earlier.cost;
+  if (earlier.provenance == Provenance::none || earlier.provenance == Provenance::rule) return;  // nobody's answer
+  keep(earlier);
+  answers_.back().cost = {};
+}
+
 bool AnswerLedger::answer(const Frame& frame, Channel& channel) {
   const JsonReader reader(frame.header, "frame");
   if (frame.type() != "ask" && frame.type() != "person") return false;
@@ -121,6 +129,7 @@ Selection AnswerLedger::account(Selection selection) const {
   selection.source = from.source + edited;
   selection.asked_as = from.asked_as;
   selection.cost = from.cost;
+  selection.cost += earlier_;
   return selection;
 }
 

@@ -14,6 +14,8 @@ class AnswerLedger {
  public:
   /// Holds references.
   AnswerLedger(const FeatureSpace& space, Services& services);
+  /// With an answer that was given before the call: what the method revises. Its cost is account()'s too.
+  AnswerLedger(const FeatureSpace& space, Services& services, const Selection& earlier);
 
   /// Answers on the channel; false for a frame that is no question. What an answer throws is kept, and told to the
   /// method, which may bear it. @throws InputError for a question that is malformed.
@@ -32,7 +34,7 @@ class AnswerLedger {
 
   const FeatureSpace& space_;
   Services& services_;
-  SelectionCost before_;
+  SelectionCost before_, earlier_;
   std::exception_ptr failure_;
   Selection model_;                 // all that the language model said yes to
   std::vector<Selection> answers_;  // the model's and people's, the last one at the end

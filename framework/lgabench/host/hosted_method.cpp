@@ -170,6 +170,7 @@ class HostedPolicy : public Policy {
 
   void reset() override { reset_ = true; }
   Action act(const Observation& observation, const Instruction& instruction) override {
+    acted_ = false;
     protocol::write(observation, session_->observation());
     const Frame frame = session_->call({{"type", "act"},
                                         {"reset", std::exchange(reset_, false)},
@@ -178,15 +179,22 @@ class HostedPolicy : public Policy {
                                        "action");
     return session_->read([&] {
       const JsonReader reader(frame.header, "action");
+      acted_ = true;
       seen_.reset();
       if (reader.has("seen_in_training")) seen_ = reader.at("seen_in_training").boolean();
       return protocol::read_action(frame.payload, session_->layout().actions.size());
     });
   }
   std::optional<bool> seen_in_training() const override { return seen_; }
+  Shown shown() const override {
+    if (!acted_) return {};
+    const Frame frame = session_->call({{"type", "shown"}}, "shown");
+    return session_->read([&] { return protocol::read_shown(frame); });
+  }
 
  private:
   std::shared_ptr<HostSession> session_;
+  bool acted_ = false;  // the last act() gave an action
   bool reset_ = false;
   std::optional<bool> seen_;
 };
@@ -204,6 +212,7 @@ Needs HostedMethod::needs(const Json&) const {
 }
 
 Selection HostedMethod::select(const Command& command, const FeatureSpace& space, Services& services) {
+  space_ = space;
   AnswerLedger ledger(space, services);
   const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
   try {
@@ -212,6 +221,27 @@ Selection HostedMethod::select(const Command& command, const FeatureSpace& space
         answer);
     return ledger.account(session_->read([&] {
       const JsonReader reader(frame.header, "selection");
+      return protocol::read_selection(reader.at("selection"));
+    }));
+  } catch (const MethodError&) {
+    ledger.rethrow();
+    throw;
+  }
+}
+
+Selection HostedMethod::revise(const Command& command, const Selection& selected,
+                               const std::vector<Demonstration>& demonstrations, Services& services) {
+  AnswerLedger ledger(space_, services, selected);
+  const auto answer = [&ledger](const Frame& frame, Channel& channel) { return ledger.answer(frame, channel); };
+  const protocol::DemonstrationFile packed = protocol::pack(session_->layout(), demonstrations);
+  Json request = packed.header;
+  request["type"] = "revise";
+  request["command"] = protocol::to_json(command);
+  request["selection"] = protocol::told(selected);
+  try {
+    const Frame frame = session_->call(request, "revised", answer, &packed.file);
+    return ledger.account(session_->read([&] {
+      const JsonReader reader(frame.header, "revised");
       return protocol::read_selection(reader.at("selection"));
     }));
   } catch (const MethodError&) {

@@ -44,6 +44,8 @@ class HostedMethod : public Method {
 
   Needs needs(const Json& options) const override;
   Selection select(const Command& command, const FeatureSpace& space, Services& services) override;
+  Selection revise(const Command& command, const Selection& selected, const std::vector<Demonstration>& demonstrations,
+                   Services& services) override;
   /// The policy may outlive this object; it acts in the same process.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
   /// What the method left in Services::files, as names and bytes: 64 MiB at most. What is left out is said in the log.
@@ -61,6 +63,7 @@ class HostedMethod : public Method {
 
  private:
   PlainDirectory files_;
+  FeatureSpace space_;  // that select() was last given
   std::shared_ptr<HostSession> session_;
 };
 

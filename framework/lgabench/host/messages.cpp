@@ -74,7 +74,8 @@ Instruction read_instruction(const JsonReader& reader) {
 Json to_json(const Needs& needs) {
   return {{"targets", needs.targets == Needs::Targets::truth ? "truth" : "selected"},
           {"noisy_per_clean", needs.noisy_per_clean},
-          {"noise_max", needs.noise_max}};
+          {"noise_max", needs.noise_max},
+          {"revise", needs.revise}};
 }
 
 Needs read_needs(const JsonReader& reader) {
@@ -85,6 +86,7 @@ Needs read_needs(const JsonReader& reader) {
   if (targets == "truth") needs.targets = Needs::Targets::truth;
   needs.noisy_per_clean = static_cast<int>(reader.at("noisy_per_clean").integer(0, most));
   needs.noise_max = reader.at("noise_max").number();
+  if (reader.has("revise")) needs.revise = reader.at("revise").boolean();
   return needs;
 }
 
@@ -183,6 +185,38 @@ std::vector<LogEntry> read_log(const Frame& frame) {
     for (const std::string& name : names[i]) entries[i].curves.emplace_back(name, next());
   }
   return entries;
+}
+
+Frame shown_frame(const Shown& shown) {
+  expect_shown(shown);
+  Frame frame{{{"type", "shown"}, {"pictures", Json::array()}, {"texts", shown.texts}, {"unread", shown.unread}}};
+  for (const auto& [name, note, size, rgb] : shown.pictures) {
+    frame.header["pictures"].push_back(
+        {{"name", name}, {"note", note}, {"rows", size.rows}, {"columns", size.columns}});
+    frame.payload.append(rgb.begin(), rgb.end());
+  }
+  return frame;
+}
+
+Shown read_shown(const Frame& frame) {
+  constexpr int longest = 1 << 10;
+  const JsonReader reader(frame.header, "shown");
+  Shown shown{{}, reader.at("texts").strings(), reader.at("unread").strings()};
+  auto from = frame.payload.begin();
+  for (const JsonReader& one : reader.at("pictures").elements()) {
+    const PictureSize size{static_cast<int>(one.at("rows").integer(1, longest)),
+                           static_cast<int>(one.at("columns").integer(1, longest))};
+    const auto bytes = static_cast<std::ptrdiff_t>(3 * size.pixels());
+    if (frame.payload.end() - from < bytes) reader.fail("a payload of 3 bytes for each pixel");
+    shown.pictures.push_back({one.at("name").string(), one.at("note").string(), size, {from, from + bytes}});
+    from += bytes;
+  }
+  try {
+    expect_shown(shown);
+  } catch (const MethodError& e) {
+    throw InputError(e.what());
+  }
+  return shown;
 }
 
 std::string to_bytes(const Action& action) {

@@ -59,6 +59,10 @@ struct LogEntry {
 Frame log_frame(const std::vector<LogEntry>& entries);
 std::vector<LogEntry> read_log(const Frame& frame);
 
+/// "shown": colours in the payload, picture by picture. @throws MethodError as expect_shown()
+Frame shown_frame(const Shown& shown);
+Shown read_shown(const Frame& frame);
+
 /// A double for each number; NaN and infinity included.
 std::string to_bytes(const Action& action);
 /// @throws InputError for bytes of another number of them.

@@ -194,6 +194,13 @@ class Host {
       const Selection selection = call([&] { return method().select(command, space, services); });
       return {{{"type", "selection"}, {"selection", distribution_json(selection)}}};
     }
+    if (frame.type() == "revise") {
+      const Command command = protocol::read_command(reader.at("command"));
+      const Selection selected = protocol::read_selection(reader.at("selection"));
+      const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
+      const Selection revised = call([&] { return method().revise(command, selected, demonstrations, services); });
+      return {{{"type", "revised"}, {"selection", distribution_json(revised)}}};
+    }
     if (frame.type() == "learn") {
       const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
       policy_ = call([&] { return method().learn(demonstrations, services); });
@@ -214,6 +221,8 @@ class Host {
       if (const auto seen = call([&] { return policy_->seen_in_training(); })) reply["seen_in_training"] = *seen;
       return {reply, protocol::to_bytes(action)};
     }
+    if (frame.type() == "shown")
+      return protocol::shown_frame(policy_ ? call([&] { return policy_->shown(); }) : Shown());
     if (frame.type() == "drop") {
       const bool drops_method = reader.at("what").string() == "method";
       call([&] { drops_method ? method_.reset() : policy_.reset(); });

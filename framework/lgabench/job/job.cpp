@@ -134,8 +134,7 @@ CheckJob read_check_job(const JsonReader& reader) {
 
 Json to_json(const PictureRequest& request) {
   Json json{{"cell", request.cell.string()}, {"arm", request.arm},    {"index", request.index},
-            {"scene", request.scene},        {"ends", Json::array()}, {"selections", request.selections},
-            {"inputs", request.inputs}};
+            {"scene", request.scene},        {"ends", Json::array()}, {"selections", request.selections}};
   for (const PictureRequest::End& end : request.ends)
     json["ends"].push_back({{"engine", end.engine}, {"action", end.action}});
   return json;
@@ -170,8 +169,6 @@ PictureRequest read_picture_request(const JsonReader& reader) {
                          static_cast<int>(reader.at("index").integer(0, std::numeric_limits<int>::max())),
                          reader.at("scene").string()};
   for (const JsonReader& selection : reader.at("selections").elements()) request.selections.push_back(selection.json());
-  if (reader.has("inputs"))
-    for (const JsonReader& input : reader.at("inputs").elements()) request.inputs.push_back(input.json());
   if (!reader.has("ends")) return request;
   for (const JsonReader& end : reader.at("ends").elements())
     request.ends.push_back({end.at("engine").string(), action_of(end.at("action"))});

@@ -79,9 +79,6 @@ struct PictureRequest {
     Action action{};
   };
   std::vector<End> ends{};
-  /// What of it a policy acts on: each as learning/shown_input.hpp reads it, with a "selection", a distribution or
-  /// null.
-  std::vector<Json> inputs{};
 };
 Json to_json(const PictureRequest& request);
 /// @throws InputError

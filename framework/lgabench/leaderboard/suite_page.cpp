@@ -6,6 +6,7 @@
 #include <set>
 
 #include <lgabench/core/base64.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/leaderboard/verification.hpp>

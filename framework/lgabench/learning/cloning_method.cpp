@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <lgabench/learning/policies.hpp>
+#include <lgabench/learning/shown_input.hpp>
 #include <lgabench/learning/training.hpp>
 
 namespace lgabench {
@@ -46,8 +47,15 @@ class SeenInputs {
 
 class CloningPolicy : public Policy {
  public:
-  CloningPolicy(Featurizer featurizer, std::unique_ptr<Learner> learner, const Samples& shown)
-      : featurizer_(std::move(featurizer)), learner_(std::move(learner)), input_(shown.shape, 1) {
+  /// Of the `offered` inputs a policy of that kind takes `inputs`.
+  CloningPolicy(PolicyInputs offered, PolicyInputs inputs, PolicyKind kind, Featurizer featurizer,
+                std::unique_ptr<Learner> learner, const Samples& shown)
+      : offered_(std::move(offered)),
+        inputs_(std::move(inputs)),
+        kind_(kind),
+        featurizer_(std::move(featurizer)),
+        learner_(std::move(learner)),
+        input_(shown.shape, 1) {
     for (int row = 0; row < shown.rows; ++row) seen_.learn(hash_of(shown, row));
   }
 
@@ -59,8 +67,11 @@ class CloningPolicy : public Policy {
   }
 
   std::optional<bool> seen_in_training() const override { return seen_.last(); }
+  Shown shown() const override { return shown_input(offered_, inputs_, kind_, input_); }
 
  private:
+  PolicyInputs offered_, inputs_;
+  PolicyKind kind_;
   Featurizer featurizer_;
   std::unique_ptr<Learner> learner_;
   SeenInputs seen_;
@@ -89,14 +100,16 @@ std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const 
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const CloningOptions options = read_cloning_options(services.options);
-  PolicyInputs seen = inputs(services.options);
-  if (options.instances == Instances::first) seen.instances = options.instances;
-  if (options.signed_mask) seen.signed_mask = true;
-  Featurizer featurizer(inputs_of(options.policy, std::move(seen), picture_size(demonstrations)), services.actions);
+  PolicyInputs offered = inputs(services.options);
+  if (options.instances == Instances::first) offered.instances = options.instances;
+  if (options.signed_mask) offered.signed_mask = true;
+  PolicyInputs seen = inputs_of(options.policy, offered, picture_size(demonstrations));
+  Featurizer featurizer(seen, services.actions);
   const Samples samples = training_rows(featurizer.samples(demonstrations), services);
   std::unique_ptr<Learner> trained = learner(samples.shape, services);
   train(*trained, samples, options.training, services.seed, services.log);
-  return std::make_unique<CloningPolicy>(std::move(featurizer), std::move(trained), samples);
+  return std::make_unique<CloningPolicy>(std::move(offered), std::move(seen), options.policy, std::move(featurizer),
+                                         std::move(trained), samples);
 }
 
 }  // namespace lgabench

@@ -39,14 +39,11 @@ CloningOptions read_cloning_options(const Json& json) {
       named<Batches>(options.at("batches"), {{"drawn", Batches::drawn}, {"shuffled", Batches::shuffled}});
   read_if_there(options, "instances", {{"all", Instances::all}, {"first", Instances::first}}, read.instances);
   read_if_there(options, "mask", {{"binary", false}, {"signed", true}}, read.signed_mask);
-  if (options.has("policy")) read.policy = read_policy_kind(options.at("policy"));
+  read_if_there(
+      options, "policy",
+      {{"regression", PolicyKind::regression}, {"centroid", PolicyKind::centroid}, {"heat_map", PolicyKind::heat_map}},
+      read.policy);
   return read;
-}
-
-PolicyKind read_policy_kind(const JsonReader& option) {
-  return named<PolicyKind>(option, {{"regression", PolicyKind::regression},
-                                    {"centroid", PolicyKind::centroid},
-                                    {"heat_map", PolicyKind::heat_map}});
 }
 
 bool read_picture_option(const Json& json) {

@@ -31,7 +31,6 @@ struct NetworkOptions {
 /// `options` as in Services. @throws InputError naming the option: a value that is none of those above is never taken
 /// for a default, LGABENCH_TRAINING_OPTIONS cannot be lacking.
 CloningOptions read_cloning_options(const Json& options);
-PolicyKind read_policy_kind(const JsonReader& option);
 /// Likewise, `picture`: whether the picture is seen beside the goal mask. CloningMethod::inputs() alone asks.
 bool read_picture_option(const Json& options);
 /// Likewise; none can be lacking.

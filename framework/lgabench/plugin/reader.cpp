@@ -186,7 +186,8 @@ PluginDescriptor find_descriptor(std::string_view bytes) {
   if (found[0].size() < header) throw PluginError("descriptor: cut off");
   const auto abi = value_at<std::uint32_t>(found[0], abi_at);
   if (abi != LGABENCH_PLUGIN_ABI)
-    throw PluginError(fmt::format("plugin interface {} (this program: {})", abi, LGABENCH_PLUGIN_ABI));
+    throw PluginError(fmt::format("plugin interface {} (this program: {}): build it with this lgabench's package", abi,
+                                  LGABENCH_PLUGIN_ABI));
   const auto size = value_at<std::uint32_t>(found[0], size_at);
   if (size != sizeof(PluginDescriptor))
     throw PluginError(fmt::format("descriptor of {} bytes (this program: {})", size, sizeof(PluginDescriptor)));

@@ -15,8 +15,9 @@ extern const std::vector<std::string> cell_phases;
 namespace cell_file {
 inline constexpr const char *configuration = "cell.json", *selections = "selection.json", *training = "training.jsonl",
                             *episodes = "episodes.jsonl", *timing = "timing.json",
-                            *log = "log.txt",             // may hold anything: status.json has no checksum of it
-                                *status = "status.json";  // written last
+                            *shown = "shown.json",  // may lack, like `files`: no checksum, no result depends on it
+                                *log = "log.txt",   // may hold anything: status.json has no checksum of it
+                                    *status = "status.json";  // written last
 }  // namespace cell_file
 /// All but the status.
 inline constexpr std::array cell_files{cell_file::configuration, cell_file::selections, cell_file::training,

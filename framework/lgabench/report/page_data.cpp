@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/shown.hpp>
 #include <lgabench/record/outcome.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
@@ -37,6 +38,10 @@ std::string title_of(const Table& table, const Row& row) {
                      table.title());
 }
 
+Json to_json(const Pictures::Input& input) {
+  return {{"pictures", input.pictures}, {"texts", input.texts}, {"unread", input.unread}};
+}
+
 // The rows that each (cell, arm) counts in: its scenario's and the mean's.
 using Place = std::tuple<std::string, std::string, std::string, std::string, std::string, int>;
 Place place(const std::string& layout, const std::string& engine, const std::string& arm, const std::string& scenario,
@@ -59,10 +64,11 @@ Json page_data(const Material& material) {
   const std::vector<std::string> words = failure_words();
   std::map<std::vector<std::string>, std::size_t> scenes;  // of an arm, shared by the cells that play it
   std::map<Json, std::size_t> phis;                        // what was selected, shared likewise
+  std::map<Json, std::size_t> inputs;                      // what policies read, shared likewise
   Json cells = Json::array();
   for (const CellResult& cell : material.run.cells) {
     if (cell.failed) continue;
-    Json commands = Json::array(), masks = Json::array(), inputs = Json::array(), selected = Json::array();
+    Json commands = Json::array(), masks = Json::array(), selected = Json::array();
     for (const CommandResult& command : cell.commands) {
       commands.push_back(command.utterance);
       Json chips = Json::array();  // [what, whether right, missed or wrong, the names]
@@ -72,13 +78,12 @@ Json page_data(const Material& material) {
       selected.push_back(phis.emplace(chips, phis.size()).first->second);
       // What follows the scene's hash in the names of pictures.masks.
       masks.push_back(command.quality.empty() ? Json() : Json(mask_key("", cell, command.selection)));
-      inputs.push_back(input_key("", cell, command));  // likewise, of pictures.inputs
     }
     Json played = Json::array();
     for (const std::string& arm : cell.arms) {
       std::string outcomes, blamed;  // a character an episode
       std::vector<std::string> hashes;
-      Json given = Json::array(), actions = Json::object(), ends = Json::object();
+      Json given = Json::array(), actions = Json::object(), ends = Json::object(), read = Json::object();
       const std::vector<Episode>& all = cell.episodes.at(arm);
       for (std::size_t i = 0; i < all.size(); ++i) {
         const Episode& e = all[i];
@@ -90,6 +95,8 @@ Json page_data(const Material& material) {
           actions[std::to_string(i)] = places_of(cell.environment, e.action);
         if (const auto end = pictures.ends.find(end_key(cell, arm, i, cell.engine)); end != pictures.ends.end())
           ends[std::to_string(i)] = end->second;
+        if (const auto input = pictures.inputs.find(episode_key(cell, arm, i)); input != pictures.inputs.end())
+          read[std::to_string(i)] = inputs.emplace(to_json(input->second), inputs.size()).first->second;
       }
       const std::size_t shared = scenes.emplace(hashes, scenes.size()).first->second;
       const auto row = [&](const std::string& scenario) {
@@ -102,7 +109,8 @@ Json page_data(const Material& material) {
                         {"outcomes", outcomes},
                         {"attribution", blamed},
                         {"actions", actions},
-                        {"ends", ends}});
+                        {"ends", ends},
+                        {"read", read}});
     }
     cells.push_back({{"cell", cell.key},
                      {"scenario", cell.scenario},
@@ -110,7 +118,6 @@ Json page_data(const Material& material) {
                      {"participant", cell.participant},
                      {"commands", commands},
                      {"masks", masks},
-                     {"inputs", inputs},
                      {"phi", selected},
                      {"arms", played}});
   }
@@ -118,17 +125,13 @@ Json page_data(const Material& material) {
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
   for (const auto& [words_of, number] : phis) selections[number] = words_of;
-  Json inputs = Json::object();
-  for (const auto& [name, input] : pictures.inputs)
-    inputs[name] = {{"pictures", input.pictures}, {"texts", input.texts}, {"unread", input.unread}};
+  std::vector<Json> all_read(inputs.size());
+  for (const auto& [input, number] : inputs) all_read[number] = input;
   Json oracle = Json::object();
   for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
-  return {{"failures", words},       {"phi", selections},
-          {"titles", titles},        {"cells", cells},
-          {"scenes", lists},         {"pictures", pictures.scenes},
-          {"masks", pictures.masks}, {"targets", pictures.targets},
-          {"oracle", oracle},        {"inputs", inputs},
-          {"seen", pictures.seen}};
+  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
+          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
+          {"oracle", oracle},  {"inputs", all_read},          {"seen", pictures.seen}};
 }
 
 }  // namespace lgabench::report

@@ -11,7 +11,7 @@
 #include <lgabench/core/selection.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/record/layout.hpp>
-#include <lgabench/report/settings.hpp>
+#include <lgabench/record/shown.hpp>
 #include <lgabench/report/worker.hpp>
 
 namespace lgabench::report {
@@ -19,39 +19,17 @@ namespace {
 
 struct Request {
   PictureRequest scene;
-  std::vector<std::string> masks;     // mask_key of each of its selections
-  std::vector<std::string> ends{};    // end_key of each of its ends
-  std::string before{};               // end_key of the scene itself, where engines disagree about its end
-  bool failed = false;                // a method in it
-  std::string environment{};          // whose actions these are
-  std::vector<std::string> inputs{};  // input_key of each of its inputs
+  std::vector<std::string> masks;   // mask_key of each of its selections
+  std::vector<std::string> ends{};  // end_key of each of its ends
+  std::string before{};             // end_key of the scene itself, where engines disagree about its end
+  bool failed = false;              // a method in it
+  std::string environment{};        // whose actions these are
 };
 
 // All that a goal mask depends on beside the scene.
 Json what_is_kept(const CellResult& cell, const Json& selection) {
   const Json all = "all", chosen = cell.options.value("instances", all);
   return {{"distribution", distribution_of(selection)}, {"instances", chosen.is_string() ? chosen : all}};
-}
-
-// What learning/shown_input.hpp makes of the cell's policy, as methods.json describes its method; null where it does
-// not.
-Json input_of(const CellResult& cell, const CommandResult& command) {
-  static const fs::path file = data_directory() / "paper" / "methods.json";
-  static const Json json = read_json(file);
-  for (const JsonReader& one : JsonReader(json, file.string()).at("inputs").elements()) {
-    if (!fits(cell, one)) continue;
-    Json input{{"selection", nullptr}};
-    for (const char* member : {"pictures", "text", "left_out"})
-      if (one.has(member)) input[member] = one.at(member).json();
-    for (const auto& [option, usual] :
-         {std::pair{"policy", "regression"}, {"instances", "all"}, {"mask", "binary"}})  // no option of every method
-      input[option] = cell.options.value(option, Json(usual));
-    const Json& pictures = input.at("pictures");
-    if (std::find(pictures.begin(), pictures.end(), Json("mask")) != pictures.end())
-      input["selection"] = one.has("true_mask") ? command.truth : distribution_of(command.selection);
-    return input;
-  }
-  return nullptr;
 }
 
 // Whether the list lacked the scene's picture of that name, which it then has; not of "".
@@ -68,11 +46,9 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
   std::vector<Request> all;
   for (const CellResult& cell : results.cells) {
     if (cell.failed || cell.is_reference()) continue;
-    std::vector<std::string> masks, inputs;  // of each command, what follows the scene's hash in their names
-    for (const CommandResult& command : cell.commands) {
+    std::vector<std::string> masks;  // of each command, what follows the scene's hash in their names
+    for (const CommandResult& command : cell.commands)
       masks.push_back(command.quality.empty() ? "" : mask_key("", cell, command.selection));
-      inputs.push_back(input_key("", cell, command));
-    }
     for (const std::string& arm : cell.arms)
       for (std::size_t i = 0; i < cell.episodes.at(arm).size(); ++i) {
         const Episode& episode = cell.episodes.at(arm)[i];
@@ -86,8 +62,6 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
         const CommandResult& command = cell.commands[episode.command];
         if (is_new_in(request.masks, episode.scene, masks[episode.command]))
           request.scene.selections.push_back(what_is_kept(cell, command.selection));
-        if (is_new_in(request.inputs, episode.scene, inputs[episode.command]))
-          request.scene.inputs.push_back(input_of(cell, command));
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const Request& a, const Request& b) {
@@ -150,17 +124,29 @@ void add_disagreements(const fs::path& run, const std::vector<EngineAgreement>& 
     }
 }
 
-// A picture that is there already, of another policy, is not kept twice.
-Pictures::Input read_input(const Json& drawn, std::vector<std::string>& seen) {
-  Pictures::Input input;
-  for (const Json& picture : drawn.at("pictures")) {
-    const auto at = std::find(seen.begin(), seen.end(), picture.at(1).get<std::string>()) - seen.begin();
-    if (static_cast<std::size_t>(at) == seen.size()) seen.push_back(picture.at(1));
-    input.pictures.emplace_back(picture.at(0), at);
+// What policies read of the scenes that are drawn. A picture that is there already, of another policy, is not kept
+// twice; what would take more than most_read_bytes is left out.
+void add_inputs(const fs::path& run, const RunResults& results, Pictures& pictures) {
+  std::map<std::string, std::size_t> known;  // PNG -> its index in `seen`
+  std::size_t bytes = 0;
+  for (const CellResult& cell : results.cells) {
+    if (cell.failed) continue;
+    for (const ShownScene& shown : read_shown_scenes(run / "cells" / cell.key)) {
+      const auto arm = cell.episodes.find(shown.arm);
+      const auto index = static_cast<std::size_t>(shown.index);
+      if (arm == cell.episodes.end() || index >= arm->second.size() ||
+          pictures.scenes.count(arm->second[index].scene) == 0)
+        continue;
+      Pictures::Input input{{}, shown.texts, shown.unread};
+      for (const auto& [caption, png] : shown.pictures) {
+        const auto [at, is_new] = known.emplace(png, pictures.seen.size());
+        if (is_new) pictures.seen.push_back(png), bytes += png.size();
+        input.pictures.emplace_back(caption, at->second);
+      }
+      if (bytes > most_read_bytes) return;
+      pictures.inputs[episode_key(cell, shown.arm, index)] = std::move(input);
+    }
   }
-  input.texts = drawn.at("texts").get<std::vector<std::string>>();
-  input.unread = drawn.at("unread").get<std::vector<std::string>>();
-  return input;
 }
 
 }  // namespace
@@ -169,13 +155,12 @@ std::string mask_key(const std::string& scene, const CellResult& cell, const Jso
   return scene + "/" + sha256(canonical(what_is_kept(cell, selection))).substr(0, 8);
 }
 
-std::string input_key(const std::string& scene, const CellResult& cell, const CommandResult& command) {
-  const Json input = input_of(cell, command);
-  return input.is_null() ? "" : scene + "/" + sha256(canonical(input)).substr(0, 8);
+std::string episode_key(const CellResult& cell, const std::string& arm, std::size_t index) {
+  return fmt::format("{}/{}/{}", cell.key, arm, index);
 }
 
 std::string end_key(const CellResult& cell, const std::string& arm, std::size_t index, const std::string& engine) {
-  return fmt::format("{}/{}/{}/{}", cell.key, arm, index, engine);
+  return episode_key(cell, arm, index) + "/" + engine;
 }
 
 Pictures draw_pictures(const fs::path& run, const RunResults& results, const std::vector<EngineAgreement>& agreements) {
@@ -200,9 +185,6 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     }
     for (std::size_t i = 0; i < request.ends.size(); ++i)
       if (const Json& png = drawn.at("ends").at(i); png.is_string()) pictures.ends[request.ends[i]] = png;
-    for (std::size_t i = 0; i < request.inputs.size(); ++i)
-      if (const Json& input = drawn.at("inputs").at(i); !input.is_null())
-        pictures.inputs[request.inputs[i]] = read_input(input, pictures.seen);
     if (!request.before.empty()) {
       pictures.ends[request.before] = drawn.at("picture");
       continue;
@@ -212,6 +194,11 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     pictures.targets[scene] = drawn.at("targets");
     if (drawn.at("oracle").is_array()) pictures.oracle[scene] = {request.environment, drawn.at("oracle").get<Action>()};
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
+  }
+  try {
+    add_inputs(run, results, pictures);
+  } catch (const InputError& e) {
+    pictures.problem = e.what();
   }
   return pictures;
 }

@@ -1,7 +1,7 @@
-// Compiled for another version of the plugin interface.
+// Compiled for the plugin interface of 0.2.
 #include <lgabench/core/version.hpp>
 #undef LGABENCH_PLUGIN_ABI
-#define LGABENCH_PLUGIN_ABI 0
+#define LGABENCH_PLUGIN_ABI 3
 #include "../fixture.hpp"
 
 LGABENCH_METHOD("older_interface", "0.1", "made for an older plugin interface",

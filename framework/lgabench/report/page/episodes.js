@@ -17,7 +17,7 @@ function episodesOf(row) {
             action: played.actions[index], picture: data.pictures[scene], end: played.ends[index],
             oracle: data.oracle[scene], targets: data.targets[scene],
             mask: cell.masks[command] && data.masks[scene + cell.masks[command]],
-            input: cell.inputs[command] && data.inputs[scene + cell.inputs[command]],
+            input: data.inputs[played.read[index]],
             phi: data.phi[cell.phi[command]],
           });
         });
@@ -79,11 +79,11 @@ const card = (e) =>
 
 // What the policy acted on, at its size, and in words what of it is no picture.
 const saw = (e) => !e.input ? [] : e.input.pictures.map(([name, number]) =>
-  [`what the policy saw: ${name}`, picture(data.seen[number], `what the policy saw: ${name}; ${where(e)}`)]);
+  [`what the policy saw: ${escaped(name)}`, picture(data.seen[number], `what the policy saw: ${name}; ${where(e)}`)]);
 const joined = (all) => all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} and ${all.at(-1)}`;
 function read(e) {
   if (!e.input) return "";
-  const { pictures, texts, unread } = e.input;
+  const { pictures } = e.input, [texts, unread] = [e.input.texts, e.input.unread].map((all) => all.map(escaped));
   const also = texts.length ? `The policy read ${joined(texts)}${pictures.length ? " as well" : " alone"}, as a sentence embedding. ` : "";
   return also || unread.length ? `<p>${also}${unread.length ? `It did not read: ${joined(unread)}.` : ""}</p>` : "";
 }

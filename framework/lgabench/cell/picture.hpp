@@ -1,20 +1,17 @@
 // A picture in memory, made of enlarged pieces, and its PNG bytes.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/shown.hpp>
 
-namespace lgabench::cli {
+namespace lgabench {
 
-using Rgb = std::array<std::uint8_t, 3>;
-
-/// How pixel `i` of a picture or a goal mask is shown.
+/// How pixel `i` of a picture is shown.
 Rgb pixel_colour(const Observation& seen, std::size_t i);
-Rgb mask_colour(bool kept);
 
 class Picture {
  public:
@@ -42,4 +39,4 @@ class Picture {
   std::vector<std::uint8_t> rgb_;
 };
 
-}  // namespace lgabench::cli
+}  // namespace lgabench

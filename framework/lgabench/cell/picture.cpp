@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include <lgabench/cli/picture.hpp>
+#include <lgabench/cell/picture.hpp>
 #include <lgabench/core/error.hpp>
 
-namespace lgabench::cli {
+namespace lgabench {
 
 Rgb pixel_colour(const Observation& seen, std::size_t i) {
   return {seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]};
 }
-
-Rgb mask_colour(bool kept) { return kept ? Rgb{245, 245, 245} : Rgb{32, 32, 32}; }
 
 Picture::Picture(int width, int height)
     : width_(width), height_(height), rgb_(3 * static_cast<std::size_t>(width * height), 255) {}
@@ -57,4 +55,4 @@ std::string Picture::png() const {
   return bytes;
 }
 
-}  // namespace lgabench::cli
+}  // namespace lgabench

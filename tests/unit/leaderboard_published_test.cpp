@@ -1,0 +1,39 @@
+// The published entries: what names an entry and its cells, and what its options are, is what it was when it was
+// played.
+#include <gtest/gtest.h>
+
+#include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench::leaderboard {
+namespace {
+
+TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
+  const fs::path board = LGABENCH_BOARD;
+  const Catalogue catalogue = scan_plugins(plugin_directories());
+  int entries = 0;
+  for (const fs::path& directory : entry_directories(board)) {
+    const Entry entry = read_entry(board, directory);
+    EXPECT_EQ(entry.place(), directory);
+    ++entries;
+    const Competitor& row = entry.identity.row;
+    if (!row.is_reference())
+      EXPECT_EQ(resolve_options(catalogue.find("method", row.id), row.options), row.options) << directory;
+
+    const Installed installed = installed_setting(entry.setting.suite, entry.setting.preset);
+    EXPECT_EQ(hash(installed.setting), entry.identity.preset_sha256) << directory;
+    const std::vector<Cell> cells = cells_of_row(installed, row, entry.identity.engine, entry.identity.answers);
+    ASSERT_EQ(cells.size(), entry.cells.size()) << directory;
+    for (std::size_t i = 0; i < cells.size(); i += 10) {
+      Cell cell = cells[i];
+      cell.data = entry.evidence.front().at("data");  // further answers are other data, and another cell
+      ASSERT_EQ(key(cell), entry.cells[i].key) << directory << " " << cell.title();
+    }
+  }
+  EXPECT_GE(entries, 100);
+}
+
+}  // namespace
+}  // namespace lgabench::leaderboard
