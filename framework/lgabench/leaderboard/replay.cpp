@@ -45,6 +45,7 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.out = scratch / "run";
   plan.cache = scratch / "cache";
   plan.pool = options.pool;
+  plan.attributes_others = false;
   const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
   if (is_live(entry.identity.answers))
     plan.live.emplace(LiveModel{cassette, false, -1});
