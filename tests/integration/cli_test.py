@@ -10,7 +10,7 @@ import unittest
 
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line
 
-VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "merge", "cluster", "status",
+VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
          "leaderboard", "new-plugin", "check-plugin", "study", "encoder", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.

@@ -3,6 +3,7 @@ and nothing survives (docs/trust.md).
 
 One CTest entry a class. In Python where the interpreter has NumPy (LGABENCH_TEST_PYTHON names one).
 """
+import hashlib
 import json
 import pathlib
 import re
@@ -101,6 +102,83 @@ class Hostile(Harm):
         self.assertEqual(faults, ["plugin"] * 2 * len(rows))
         for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]:
             self.assertIn("incomplete", row["marks"])
+
+
+class Keepers(Harm):
+    """A method that keeps the truth that it is told when its failures are attributed, where a next cell could find it."""
+
+    def setUp(self):
+        super().setUp()
+        self.addCleanup(pathlib.Path("/tmp/lgabench-kept").unlink, missing_ok=True)
+
+    def play(self, keep, out, *more):
+        folder = self.dir / f"mine_{keep}"
+        if not folder.exists():
+            folder.mkdir()
+            shutil.copy(FIXTURES / "faulty/fixture_keeper.so", folder)
+        words = with_options(["run", "q1", "--scenarios", "heart", "--layout", "cells", "--demos", "10", "--seeds", "0:3",
+                              "--episodes", "3", "--no-reference", "--jobs", "1"], *more)
+        self.call(*words, "--plugin-path", folder, "--methods", f"fixture_keeper+keep={keep}+folder={folder}", "--out", out)
+
+    def selected(self, run):
+        """Seed -> what was selected."""
+        return {cell["training_seed"]: (self.dir / run / "cells" / key / "selection.json").read_text()
+                for key, (cell, _) in self.cells(run).items()}
+
+    def causes(self, run):
+        return {json.loads(line)["attribution"] for path in (self.dir / run).glob("cells/*/episodes.jsonl")
+                for line in path.read_text().splitlines()}
+
+    def assert_keeping_helps_nothing(self, *more):
+        for keep in "no", "yes":
+            self.play(keep, keep, *more)                          # one run, then a cell of it again
+            shutil.rmtree(next((self.dir / keep / "cells").glob("[0-9a-f]*")))
+            self.play(keep, keep, *more, "--resume")
+            self.play(keep, f"{keep}_jobs", *more, "--jobs", "2")
+        self.assertEqual(self.selected("yes"), self.selected("no"))
+        self.assertEqual(self.selected("yes_jobs"), self.selected("no"))
+
+    def test_nothing_is_kept_from_a_run_that_tells_the_truth(self):
+        self.assert_keeping_helps_nothing()
+        self.assertLessEqual(self.causes("yes"), {"abstraction", "policy"})
+        self.call("verify", "yes", "--all", "--plugin-path", "mine_yes")  # which tells no truth
+
+    def test_presets_of_the_board_tell_others_methods_no_truth(self):
+        board = "--preset", "leaderboard"
+        self.assert_keeping_helps_nothing(*board)
+        self.assertEqual(self.causes("yes"), {None})
+        self.call("verify", "yes", "--all", "--plugin-path", "mine_yes")
+        self.call("run", "q1", *board, "--methods", "lga_hill", "--scenarios", "heart", "--layout", "cells", "--demos", "10",
+                  "--seeds", "0", "--episodes", "20", "--set", "*.epochs=1", "--no-reference", "--out", "own")
+        self.assertLessEqual(self.causes("own"), {None, "abstraction", "policy"})
+        self.assertNotEqual(self.causes("own"), {None})
+
+    def test_causes_are_found_afterwards_in_a_copy(self):
+        self.play("no", "run", "--preset", "leaderboard")
+        before = {path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}
+        said = self.call("attribute", "run", "--plugin-path", "mine_no").stderr
+        self.assertRegex(said, r"3 cells")
+        self.assertRegex(said, r"written to \S*run-attributed")
+        self.assertLessEqual(self.causes("run-attributed"), {"abstraction", "policy"})
+        self.assertEqual({path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}, before)
+        self.call("verify", "run-attributed", "--all", "--plugin-path", "mine_no")
+        self.assert_matches_schemas("run-attributed")
+        for words, expect, says in ((["run", "--out", "run-attributed"], 2, "is there already"),
+                                    (["run-attributed", "--out", "x"], 2, "every failure that can be attributed is"),
+                                    (["run", "--rows", "lga", "--out", "x"], 2, "no row lga, the run has: fixture_keeper")):
+            self.assertIn(says, self.call("attribute", *words, "--plugin-path", "mine_no", expect=expect).stderr)
+
+    def test_a_row_that_acts_otherwise_is_left_out(self):
+        self.play("no", "run", "--preset", "leaderboard")
+        for cell in (self.dir / "run").glob("cells/*"):
+            episodes = cell / "episodes.jsonl"
+            episodes.write_text(episodes.read_text().replace('"action":[0.5,', '"action":[0.25,', 1))
+            status = json.loads((cell / "status.json").read_text())
+            status["files"]["episodes.jsonl"] = hashlib.sha256(episodes.read_bytes()).hexdigest()
+            (cell / "status.json").write_text(json.dumps(status, sort_keys=True, separators=(",", ":")) + "\n")
+        said = self.call("attribute", "run", "--plugin-path", "mine_no", expect=1).stderr
+        self.assertIn("left out", said)
+        self.assertEqual(self.causes("run-attributed"), {None})
 
 
 class Cheats(Harm):

@@ -573,6 +573,23 @@ TEST(Schedules, GiveLongCellsFirstOnceTheyAreKnown) {
   EXPECT_EQ(order, "slow50 slow50 slow10 slow10 slow10 quick50 quick50 quick10 quick10 quick10 ");
 }
 
+TEST(Schedules, MayGiveCellsInAnOrderThatIsDrawn) {
+  const std::vector<Cell> cells = cells_to_play();
+  const auto order = [&cells](std::uint32_t drawn_by) {
+    Schedule schedule(cells_of(cells, {}), drawn_by);
+    std::vector<const Cell*> all;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      all.push_back(schedule.next());
+      schedule.learn(*all.back(), 1. + static_cast<double>(i));  // has no part in it
+    }
+    return all;
+  };
+  const std::vector<const Cell*> one = order(1);
+  EXPECT_EQ(order(1), one);
+  EXPECT_NE(order(2), one);
+  EXPECT_EQ(std::set<const Cell*>(one.begin(), one.end()).size(), cells.size());
+}
+
 // Would take minutes if each cell were looked for among all.
 TEST(Schedules, OfAHundredThousandCellsAreGivenInSeconds) {
   std::vector<Cell> cells(100'000);

@@ -258,7 +258,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
-  if (selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
+  if (job.attributed && selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
   if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/cell/picture.hpp>
-#include <lgabench/core/hash.hpp>
+#include <lgabench/core/base64.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 

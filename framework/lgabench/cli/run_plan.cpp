@@ -184,6 +184,8 @@ PlannedRun plan_run(RunArguments a) {
   plan.pool.timeout_s = a.timeout_s;
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
+  // A preset with a scene seed of its own is one of the board's.
+  plan.attributes_others = a.preset.empty() || !suite.presets.at(a.preset).contains("scene_seed");
   return planned;
 }
 

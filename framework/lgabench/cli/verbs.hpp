@@ -35,6 +35,7 @@ void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
+void add_attribute(CLI::App& app, int& exit);
 void add_cluster(CLI::App& app, int& exit);
 void add_status(CLI::App& app, int& exit);
 void add_leaderboard(CLI::App& app, int& exit);

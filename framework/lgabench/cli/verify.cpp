@@ -8,17 +8,16 @@
 #include <optional>
 #include <random>
 #include <set>
-#include <thread>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
+#include <lgabench/cli/recorded_run.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/core/version.hpp>
 #include <lgabench/harness/recompute.hpp>
-#include <lgabench/harness/run_directory.hpp>
+#include <lgabench/harness/run_suite.hpp>
 #include <lgabench/host/python_method.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/agreement.hpp>
@@ -37,43 +36,6 @@ struct VerifyArguments {
   std::vector<std::string> methods;
   std::string python = "python3";
 };
-
-struct Recorded {
-  fs::path directory;
-  Cell cell;
-  Json build;  // what computed it
-};
-
-// What the run holds, sorted by key.
-struct Inventory {
-  std::vector<Recorded> cells;
-  std::vector<std::string> edited;  // a line for each cell that is not what its worker wrote
-  int failed = 0, not_played = 0;
-};
-
-Inventory take_stock(const fs::path& run, const RunRecord& record) {
-  expect_plain_run(run);
-  Inventory inventory;
-  for (const std::string& name : std::set<std::string>(record.cells.begin(), record.cells.end())) {
-    const fs::path directory = run / "cells" / name;
-    if (!has_status(directory)) {
-      ++inventory.not_played;
-      continue;
-    }
-    const CellState state = cell_state(directory, name, Json::object());  // of whatever build
-    if (state.failed) {
-      ++inventory.failed;
-      continue;
-    }
-    try {
-      if (!state.complete) throw InputError(state.why);
-      inventory.cells.push_back({directory, recorded_cell(directory), state.build});
-    } catch (const InputError& e) {
-      inventory.edited.emplace_back(e.what());
-    }
-  }
-  return inventory;
-}
 
 std::vector<Recorded> sampled(std::vector<Recorded> cells, std::size_t wanted, std::uint32_t seed) {
   if (wanted >= cells.size()) return cells;
@@ -228,10 +190,7 @@ void print_cells(const VerifyArguments& a, const Inventory& inventory, std::uint
 int verify(const VerifyArguments& a) {
   expect_run(a.run);
   const RunRecord record = read_run_record(a.run);
-  if (!same_cells(record.version, LGABENCH_VERSION))
-    throw InputError(
-        fmt::format("{}: a run of lgabench {}, and this is {}, which computes other cells: verify it with {}",
-                    a.run.string(), record.version, LGABENCH_VERSION, record.version));
+  expect_same_version(a.run, record, "verify");
   const Inventory inventory = take_stock(a.run, record);
   for (const std::string& line : inventory.edited) to_stderr("edited: {}\n", one_line(line));
   if (inventory.cells.empty() && inventory.edited.empty())
@@ -243,23 +202,12 @@ int verify(const VerifyArguments& a) {
   std::set<std::string> why;  // of all cells
   std::vector<Compared> now;
   if (!cells.empty()) {
-    RunPlan plan;
+    std::vector<Cell> present;
     std::vector<std::set<std::string>> excuses(cells.size());  // of each cell: why the same bytes are not owed
-    for (std::size_t i = 0; i < cells.size(); ++i) plan.cells.push_back(with_present_data(cells[i], excuses[i]));
-    plan.request = {{"suite", cells.front().cell.suite}, {"preset", ""}};
+    for (std::size_t i = 0; i < cells.size(); ++i) present.push_back(with_present_data(cells[i], excuses[i]));
+    RunPlan plan = plan_again(a.run, record, std::move(present), a.jobs, a.timeout_s);
     plan.command = "lgabench verify";
-    plan.answers = kept_answers(a.run);
-    if (std::holds_alternative<LiveAnswers>(cells.front().cell.answers)) {
-      const std::optional<AnswerFile> replies = kept_replies(a.run);
-      if (!replies)
-        throw InputError(fmt::format(
-            "{}: its language model's replies are not kept in answers/, as after a kill; give its command again: {}",
-            a.run.string(), record.command));
-      plan.live.emplace().cassette = replies->path;
-      plan.live->asks = false;
-    }
-    plan.pool.jobs = a.jobs != 0 ? a.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    plan.pool.timeout_s = a.timeout_s;
+    plan.attributes_others = false;
     Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
     for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
     const std::optional<Recomputed> recomputed = recompute(plan, catalogue);

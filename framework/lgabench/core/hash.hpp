@@ -16,9 +16,6 @@ std::string hex(std::uint64_t value);
 /// SHA-256 of the bytes, 64 hexadecimal digits (OpenSSL's libcrypto).
 std::string sha256(std::string_view bytes);
 
-/// The bytes as letters, digits, "+" and "/", padded with "=" (RFC 4648).
-std::string base64(std::string_view bytes);
-
 /// SHA-256 of a file's contents. @throws InputError where it cannot be read.
 std::string sha256_file(const std::filesystem::path& file);
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
+#include <random>
 #include <set>
 #include <thread>
 
@@ -46,6 +47,20 @@ Json answers_json(const std::vector<AnswerFile>& files) {
     answers.back().update({{"file", file.path.string()}, {"name", file.name}});
   }
   return answers;
+}
+
+// Told by its bytes: among the plugins that the installation came with.
+bool is_own(const PluginInfo& method, const Catalogue& catalogue) {
+  const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
+  return std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
+    return one.sha256 == method.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
+  });
+}
+
+// A method that is told nothing true in any cell, and knows of no order of the cells, has nothing to pass on.
+std::optional<std::uint32_t> order_of(const RunPlan& plan) {
+  if (plan.attributes_others) return std::nullopt;
+  return std::random_device()();
 }
 
 // A run that goes on must find what its cells were told: what was asked is not asked again.
@@ -258,7 +273,10 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               scratch,       build_of(cell, catalogue),
               plan.confined, worker_limits(plan.pool),
               plan.live};
-  if (const PluginInfo* method = method_plugin(cell, catalogue)) job.method = *method;
+  if (const PluginInfo* method = method_plugin(cell, catalogue)) {
+    job.method = *method;
+    job.attributed = plan.attributes_others || is_own(*method, catalogue);
+  }
   return job;
 }
 
@@ -276,7 +294,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   if (!plan.confined && !missing.empty()) directory.amend([](RunRecord& run) { run.confinement = unconfined_run; });
   RunOutcome outcome;
   outcome.reused = complete.size();
-  Schedule schedule(missing);
+  Schedule schedule(missing, order_of(plan));
   for (const Cell* cell : complete) schedule.learn(*cell, recorded_seconds(directory.cell(key(*cell))));
 
   const Forecast expected = forecast(complete, missing, schedule.costs(), plan.pool.jobs);

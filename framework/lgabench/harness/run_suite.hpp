@@ -29,6 +29,8 @@ struct RunPlan {
   Existing existing = Existing::same;
   PoolOptions pool;
   bool confined = true;  // methods' processes, see host/confine.hpp
+  bool attributes_others =
+      true;  // failures of methods that are not the installation's own, too: they are told the truth
 };
 
 struct FailedCell {

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <tuple>
 
+#include <lgabench/core/random.hpp>
+
 namespace lgabench {
 
 Shard read_shard(const std::string& text) {
@@ -31,19 +33,23 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard) {
   return dealt;
 }
 
-Schedule::Schedule(const std::vector<const Cell*>& cells) {
+Schedule::Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by)
+    : drawn_(drawn_by.has_value()) {
   std::map<std::string, std::size_t> known;
-  std::size_t place = 0;
+  std::vector<int> places(cells.size());
+  std::iota(places.begin(), places.end(), 0);
+  if (drawn_by) places = RandomStream(fmt::format("order/{}", *drawn_by)).permutation(static_cast<int>(cells.size()));
+  auto place = places.begin();
   for (const Cell* cell : cells) {
     const auto [row, is_new] = known.emplace(cell->method.name, rows_.size());
     if (is_new) rows_.push_back({cell->method.name, {}, 0});
     Row& all = rows_[row->second];
-    all.left.push_back({cell, usual_seconds(*cell), place++});
+    all.left.push_back({cell, usual_seconds(*cell), static_cast<std::size_t>(*place++)});
     all.usual_s += all.left.back().usual_s;
   }
   for (Row& row : rows_)
-    std::sort(row.left.begin(), row.left.end(), [](const Waiting& a, const Waiting& b) {
-      return std::pair(a.usual_s, b.place) < std::pair(b.usual_s, a.place);
+    std::sort(row.left.begin(), row.left.end(), [this](const Waiting& a, const Waiting& b) {
+      return std::pair(drawn_ ? 0. : a.usual_s, b.place) < std::pair(drawn_ ? 0. : b.usual_s, a.place);
     });
 }
 
@@ -56,7 +62,7 @@ double Schedule::left_s() const {
 const Cell* Schedule::next() {
   const auto urgency = [this](const Row& row) {
     const Waiting& one = row.left.back();
-    return std::tuple(!costs_.knows(row.name), costs_.expected_seconds(row.name, one.usual_s),
+    return std::tuple(!drawn_ && !costs_.knows(row.name), drawn_ ? 0. : costs_.expected_seconds(row.name, one.usual_s),
                       -static_cast<double>(one.place));
   };
   const auto longest =

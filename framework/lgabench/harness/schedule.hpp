@@ -1,5 +1,7 @@
 // Which cells are played where, and in which order. Neither changes a result.
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +26,8 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard);
 /// learns from the cells that are done how long each row's take.
 class Schedule {
  public:
-  /// The cells must outlive it.
-  explicit Schedule(const std::vector<const Cell*>& cells);
+  /// The cells must outlive it. With a number they are given out in the order that it draws, whatever they take.
+  explicit Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by = std::nullopt);
 
   /// What a cell of this run took, played now or earlier.
   void learn(const Cell& cell, double seconds) { costs_.learn(cell, seconds); }
@@ -40,15 +42,16 @@ class Schedule {
   struct Waiting {
     const Cell* cell;
     double usual_s;
-    std::size_t place;  // among the cells as they were given: of two that take as long the earlier goes first
+    std::size_t place;  // in the order given, or drawn: of two that take as long the earlier goes first
   };
   // What is known of one row; new timings change all of its cells alike, so that their order stays.
   struct Row {
     std::string name;
-    std::vector<Waiting> left;  // the longest last
+    std::vector<Waiting> left;  // the longest last, or the first that was drawn
     double usual_s = 0;         // over all of them
   };
 
+  bool drawn_;
   std::vector<Row> rows_;  // that have cells left
   Costs costs_;
 };

@@ -84,6 +84,7 @@ Json to_json(const CellJob& job) {
             {"scratch", job.scratch.string()},
             {"build", job.build},
             {"confined", job.confined},
+            {"attributed", job.attributed},
             {"limits", to_json(job.limits)}};
   if (job.method) json["method"] = plugin_json(*job.method);
   if (job.live) json["live"] = to_json(*job.live);
@@ -105,6 +106,7 @@ CellJob read_cell_job(const JsonReader& reader) {
   if (reader.has("method")) job.method = plugin_of(reader.at("method"));
   if (job.cell.method.is_reference() == job.method.has_value())
     reader.at("cell").fail("a plugin for a method, and only there");
+  job.attributed = reader.at("attributed").boolean();
   if (reader.has("live")) job.live = live_of(reader.at("live"));
   if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
   return job;

@@ -35,15 +35,16 @@ struct LiveModel {
 struct CellJob {
   Cell cell;
   PluginInfo engine;
-  std::optional<PluginInfo> method;                    // none for a reference row
-  std::filesystem::path directory;                     // gets the cell's files
-  std::filesystem::path cache;                         // of demonstrations
-  std::filesystem::path answers;                       // files of answers that the cell names (harness/answers.hpp)
-  std::filesystem::path scratch;                       // empty, of the method's process
-  Json build;                                          // of build_hashes()
-  bool confined = true;                                // the method's process, see host/confine.hpp
-  Limits limits{};                                     // of the worker; of the method's process likewise
-  std::optional<LiveModel> live{};                     // that the cell asks
+  std::optional<PluginInfo> method;  // none for a reference row
+  std::filesystem::path directory;   // gets the cell's files
+  std::filesystem::path cache;       // of demonstrations
+  std::filesystem::path answers;     // files of answers that the cell names (harness/answers.hpp)
+  std::filesystem::path scratch;     // empty, of the method's process
+  Json build;                        // of build_hashes()
+  bool confined = true;              // the method's process, see host/confine.hpp
+  Limits limits{};                   // of the worker; of the method's process likewise
+  std::optional<LiveModel> live{};   // that the cell asks
+  bool attributed = true;            // whether the method is told the truth in the end, to find causes
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
 };
 Json to_json(const CellJob& job);

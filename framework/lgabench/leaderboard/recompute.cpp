@@ -40,6 +40,7 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.command = "lgabench leaderboard verify";
   plan.program = options.program;
   plan.pool = options.pool;
+  plan.attributes_others = false;
   const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
   if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
     plan.live.emplace(LiveModel{cassette, false, -1});

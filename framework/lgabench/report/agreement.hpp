@@ -27,7 +27,7 @@ struct CellAgreement {
 
 /// Compares the directories of two finished cells. `excused`: build, processor or data are not those of the record.
 /// Without that the same bytes are owed, and anything else differs. What was selected is not a matter of numerics: it
-/// differs, excused or not.
+/// differs, excused or not. Attributions are compared where both have some.
 /// @throws InputError for files that are not as docs/formats says.
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused);
 
