@@ -8,27 +8,27 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).parent
-WIDTH, ROW, LABEL, BAR = 430, 21, 210, 170  # pixels
+WIDTH, ROW, LABEL, BAR = 250, 18, 110, 100  # pixels: a column of a table
 METHOD, REFERENCE = "#0b5cad", "#87919c"
 
 # figure -> (label, start of the heading of the table's section, start of its row, column) of each bar; references are grey.
 FIGURES = {
-    "reproduction": [("LGA", "q1: success", "LGA", 5), ("Human (true φ̂)", "q1: success", "Human", 5),
-                     ("GCBC-SEG", "q1: success", "GCBC-SEG", 5), ("random visible object", "q1: success", "*random", 5)],
-    "policy": [("φ̂'s mask, paper's network", "factorial on the", "the truth", 1),
-               ("φ̂'s mask, heat_map", "factorial on the", "the truth, `policy=heat_map`", 1),
-               ("picture, paper's network", "factorial on the", "the truth", 4),
+    "reproduction": [("LGA", "q1: success", "LGA", 5), ("Human", "q1: success", "Human", 5),
+                     ("GCBC-SEG", "q1: success", "GCBC-SEG", 5), ("random object", "q1: success", "*random", 5)],
+    "policy": [("mask, network", "factorial on the", "the truth", 1),
+               ("mask, heat_map", "factorial on the", "the truth, `policy=heat_map`", 1),
+               ("picture, network", "factorial on the", "the truth", 4),
                ("picture, heat_map", "factorial on the", "the truth, `policy=heat_map`", 4)],
-    "shift": [("LGA, as in training", "q2: other", "LGA", 1), ("LGA, another distractor", "q2: other", "LGA", 3),
-              ("GCBC-SEG, as in training", "q2: other", "GCBC-SEG", 1),
-              ("GCBC-SEG, another distractor", "q2: other", "GCBC-SEG", 3)],
-    "unseen": [("LGA, one instance", "q3: a command", "LGA, LGA-HILL, Human, `instances=first`", 2),
-               ("LGA, all instances", "q3: a command", "LGA, LGA-HILL, Human", 2),
-               ("GCBC-SEG", "q3: a command", "GCBC-SEG", 2), ("random visible object", "q3: a command", "*random", 2)],
+    "shift": [("LGA, control", "q2: other", "LGA", 1), ("LGA, distractor", "q2: other", "LGA", 3),
+              ("SEG, control", "q2: other", "GCBC-SEG", 1),
+              ("SEG, distractor", "q2: other", "GCBC-SEG", 3)],
+    "unseen": [("LGA, one object", "q3: a command", "LGA, LGA-HILL, Human, `instances=first`", 2),
+               ("LGA, all objects", "q3: a command", "LGA, LGA-HILL, Human", 2),
+               ("GCBC-SEG", "q3: a command", "GCBC-SEG", 2), ("random object", "q3: a command", "*random", 2)],
     "mobile": [("LGA, heat_map", "mobile: from", "LGA, `policy=heat_map`", 1),
-               ("GCBC-SEG, heat_map", "mobile: from", "GCBC-SEG, `heat_map`", 1),
-               ("LGA, paper's network", "mobile: from", "LGA, regression", 1),
-               ("random visible object", "mobile: from", "*random", 1)],
+               ("SEG, heat_map", "mobile: from", "GCBC-SEG, `heat_map`", 1),
+               ("LGA, network", "mobile: from", "LGA, regression", 1),
+               ("random object", "mobile: from", "*random", 1)],
 }
 
 
@@ -50,10 +50,10 @@ def figure(page, bars):
         y = ROW * i + 4
         x, left, right = (LABEL + BAR * value for value in (rate, low, high))
         color = REFERENCE if label.startswith("random") else METHOD
-        parts += [f'<text x="{LABEL - 8}" y="{y + 13}" text-anchor="end" fill="#1b1f24">{label}</text>',
+        parts += [f'<text x="{LABEL - 8}" y="{y + 11}" text-anchor="end" fill="#1b1f24">{label}</text>',
                   f'<rect x="{LABEL}" y="{y}" width="{x - LABEL:.1f}" height="{ROW - 5}" fill="{color}"/>',
-                  f'<path d="M{left:.1f} {y + 8}H{right:.1f}" stroke="#1b1f24" stroke-width="1.5"/>',
-                  f'<text x="{max(x, right) + 6:.1f}" y="{y + 13}" fill="#1b1f24">{rate:.2f}</text>']
+                  f'<path d="M{left:.1f} {y + 7}H{right:.1f}" stroke="#1b1f24" stroke-width="1.5"/>',
+                  f'<text x="{max(x, right) + 6:.1f}" y="{y + 11}" fill="#1b1f24">{rate:.2f}</text>']
     said = "; ".join(f"{label} {cell(page, *place)[0]:.2f}" for label, *place in bars)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" '
             f'aria-label="{said}" font-family="Helvetica,Arial,sans-serif" font-size="12"><rect width="100%" height="100%" fill="#ffffff"/>'
