@@ -38,7 +38,7 @@ std::string scene() {
   return objects.dump();
 }
 
-void draw(benchmark::State& state) {
+void draw_in_pybullet(benchmark::State& state) {
   const Scratch scratch("tinyrenderer");
   const fs::path path = scratch.path / "scene.json";
   write_file(path, scene());
@@ -56,6 +56,8 @@ void draw(benchmark::State& state) {
 
 }  // namespace
 
-void register_tinyrenderer() { benchmark::RegisterBenchmark("picture/tinyrenderer", draw)->UseManualTime(); }
+void register_tinyrenderer() {
+  benchmark::RegisterBenchmark("picture/tinyrenderer", draw_in_pybullet)->UseManualTime();
+}
 
 }  // namespace lgabench

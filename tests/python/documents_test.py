@@ -45,7 +45,7 @@ class Page(Case):
     def test_the_notebook(self):
         cells = json.loads((SOURCE / "examples/python/scenes.ipynb").read_text())["cells"]
         text = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-        self.python(f"import matplotlib; matplotlib.use('Agg')\n{text}\nassert .5 < result.success and success['lga'] > .5")
+        self.python(f"import matplotlib; matplotlib.use('Agg')\n{text}\nassert .5 < result.success and success['oracle'] == 1")
 
 
 if __name__ == "__main__":
