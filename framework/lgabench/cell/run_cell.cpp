@@ -152,13 +152,16 @@ std::string first_error(const std::vector<Episode>& episodes) {
   return "";
 }
 
-std::string selection_text(const Scenario& scenario, const Selected& selected) {
+std::string selection_text(const Scenario& scenario, const Cell& cell, const Selected& selected) {
+  const Json shown = find_environment(scenario.environment)
+                         .shown_members(scenario, {cell.layout, "train", "train", cell.training_seed});
   Json commands = Json::array();
   for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
     const auto& [utterance, selection] = selected.instructions[c];
     commands.push_back({{"utterance", utterance},
                         {"selection", to_json(selection)},
                         {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
+    if (!shown.is_null()) commands.back()["shown"] = shown.at(c);
   }
   return canonical({{"commands", commands}}) + '\n';
 }
@@ -244,7 +247,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 6 record: no clock but in timing.json.
   record(job, self,
          {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-          {cell_file::selections, selection_text(scenario, selected)},
+          {cell_file::selections, selection_text(scenario, cell, selected)},
           {cell_file::training, training.lines},
           {cell_file::episodes, episodes_text(episodes)},
           {cell_file::timing, canonical(phases.seconds()) + '\n'}},

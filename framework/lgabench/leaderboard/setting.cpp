@@ -105,7 +105,7 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
   Setting& setting = installed.setting;
   setting = {installed.suite.id, preset,         {}, grid.layouts, grid.demonstrations, grid.seeds, grid.episodes,
              grid.test_scenes,   grid.scene_seed};
-  for (const std::string& id : grid.scenarios) {
+  for (const std::string& id : suite_scenario_ids(installed.suite, grid)) {
     const Scenario scenario = suite_scenario(installed.suite, id, Truth::released);
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
