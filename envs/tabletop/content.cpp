@@ -16,9 +16,9 @@ void append(std::vector<std::string>& names, std::vector<std::string> more) {
 // `second`: the id of the task's second set, of which the choice then is; "" where the choice is of targets.
 void read_choice(const JsonReader& scenes, const std::string& second, const FeatureSpace& space, Content& content) {
   constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
-  for (const std::string& drawn :
-       {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
-        std::string("later_letters"), std::string("near_miss"), second.empty() ? std::string("target") : second})
+  for (const std::string& drawn : {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
+                                   std::string("later_letters"), std::string("near_miss"), std::string("members"),
+                                   second.empty() ? std::string("target") : second})
     if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
   const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
@@ -61,6 +61,31 @@ NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario) {
   return sets;
 }
 
+// `file`: the scenario's; `content` gets what the member says of its scenes.
+void read_members(const JsonReader& scenes, const JsonReader& file, const Scenario& scenario, bool training,
+                  Content& content) {
+  constexpr int most = 1'000'000;
+  const JsonReader members = scenes.at("members");
+  if (scenes.has("target")) scenes.at("target").fail("no such member beside \"members\"");
+  if (training) {
+    content.members = static_cast<int>(members.integer(1, most));
+    if (scenario.as_method_asks) members.fail("\"as_method_asks\": false beside it");
+  } else {
+    content.members_tested = members.string();
+    if (content.members_tested != "seen" && content.members_tested != "new") members.fail("seen or new");
+    if (!file.has("train") || !file.at("train").has("members")) members.fail("\"members\" in \"train\"");
+  }
+  const long long count = training ? content.members : file.at("train").at("members").integer(1, most);
+  for (const ScenarioCommand& command : scenario.commands) {
+    const FeatureSet& meant = command.truth.target;
+    const auto all = static_cast<long long>(meant.object_types.size() * meant.textures.size());
+    if (count > all || (content.members_tested == "new" && count == all))
+      (training ? members : file.at("train").at("members"))
+          .fail(fmt::format("{} {}, the pairs of type and texture that \"{}\" means",
+                            content.members_tested == "new" ? "fewer than" : "at most", all, command.utterance));
+  }
+}
+
 void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& content) {
   const int most = find_task(scenario.task).most_distractors();
   const FeatureSpace& space = scenario.space;
@@ -100,8 +125,8 @@ std::vector<std::string> scenario_members(const Task& task) {
 }
 
 std::vector<std::string> scene_members(const Task& task) {
-  std::vector<std::string> names{"target",        "distractors", "outside_all_commands", "hard", "near_miss",
-                                 "later_letters", "choice"};
+  std::vector<std::string> names{"target",    "distractors", "outside_all_commands", "hard",
+                                 "near_miss", "members",     "later_letters",        "choice"};
   if (const auto second = task.second()) names.push_back(second->id);
   append(names, task.scene_members());
   return names;
@@ -113,6 +138,7 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
   if (file.has("never_distractor"))
     content.never_distractor = read_feature_set(file.at("never_distractor"), scenario.space);
   if (scenes) read_scenes(*scenes, scenario, content);
+  if (scenes && scenes->has("members")) read_members(*scenes, file, scenario, training, content);
   find_task(scenario.task).read(file, scenes, content);
   if (training && scenes && scenario.as_method_asks && (content.target || content.second))
     scenes->fail("\"as_method_asks\": false beside \"target\"" +

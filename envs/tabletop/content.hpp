@@ -13,7 +13,7 @@ namespace lgabench::tabletop {
 
 class Task;
 
-/// Of which features near misses are made, where not of all that the command does not mean.
+/// Of which features near misses are made first, before others that the command does not mean.
 struct NearMiss {
   std::vector<std::string> object_types, textures;  // empty: any
 };
@@ -26,7 +26,11 @@ struct Content : SceneContent {
   bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
   bool hard = false;                  // a distractor shares the target's type or its texture, and still is no target
   std::optional<NearMiss> near_miss;  // others share the target's type or texture, and each other's: see near_misses()
-  bool later_letters = false;         // "the one that comes earliest": a distractor may be a later letter
+  /// Training: of how many members of what a command means, pairs of type and texture, targets are; 0: of all. Tests:
+  /// of these ("seen"), or of the others ("new"); "": of all. Which they are: see members_of().
+  int members = 0;
+  std::string members_tested;
+  bool later_letters = false;  // "the one that comes earliest": a distractor may be a later letter
   /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets, or
   /// the second set where the task has one), the others are distractors.
   std::vector<std::string> choice;

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <iterator>
 
-#include <common/sampling.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench::tabletop {
@@ -16,27 +14,25 @@ bool has(const Names& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// Names that a command leaves out, and those of them that a near miss must have.
+// Names that a command leaves out: those that the scenario calls near, and the others.
 struct LeftOut {
-  LeftOut(const Names& shown, const Names& meant, const Names& named) {
-    std::copy_if(shown.begin(), shown.end(), std::back_inserter(all), [&](const auto& n) { return !has(meant, n); });
-    std::copy_if(all.begin(), all.end(), std::back_inserter(first),
-                 [&](const auto& n) { return named.empty() || has(named, n); });
+  LeftOut(const Names& shown, const Names& meant, const Names& called_near) {
+    for (const std::string& name : shown)
+      if (!has(meant, name)) (called_near.empty() || has(called_near, name) ? near : others).push_back(name);
   }
 
-  bool suffices(std::size_t count) const { return !first.empty() && all.size() >= count; }
+  bool suffices(std::size_t count) const { return !near.empty() && near.size() + others.size() >= count; }
 
-  // Different ones, of which the first must be. @pre suffices(count)
+  // Different ones, near ones as far as they go. @pre suffices(count)
   Names draw(std::size_t count, RandomStream& random) const {
-    Names drawn{common::any_of(first, random)};
-    for (const int i : random.permutation(static_cast<int>(all.size()))) {
-      if (drawn.size() == count) break;
-      if (const std::string& name = all[static_cast<std::size_t>(i)]; name != drawn.front()) drawn.push_back(name);
-    }
+    Names drawn;
+    for (const Names* some : {&near, &others})
+      for (const int i : random.permutation(static_cast<int>(some->size())))
+        if (drawn.size() < count) drawn.push_back((*some)[static_cast<std::size_t>(i)]);
     return drawn;
   }
 
-  Names all, first;
+  Names near, others;
 };
 
 std::vector<Features> attempt(const Features& target, const LeftOut& types, const LeftOut& textures, std::size_t count,
@@ -73,7 +69,8 @@ std::vector<Features> near_misses(const NearMissRequest& r, int count, RandomStr
   throw NothingToShow(
       fmt::format("near_miss: expected a command that leaves out types or textures for {} near misses of a {} {}, "
                   "got {} and {} that can be shown",
-                  count, r.target.texture, r.target.type, types.all.size(), textures.all.size()));
+                  count, r.target.texture, r.target.type, types.near.size() + types.others.size(),
+                  textures.near.size() + textures.others.size()));
 }
 
 }  // namespace lgabench::tabletop

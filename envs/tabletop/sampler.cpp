@@ -69,7 +69,8 @@ struct Request {
   const Layout& layout;
   const Content& content;
   bool training;
-  Selection meant;  // distractors stay out of it
+  Selection meant;                // distractors stay out of it
+  std::vector<Features> members;  // of what is meant, those that targets are of; none: all
 
   double widest_m() const { return std::min(layout.widest_m, content.widest_m()); }
 };
@@ -167,14 +168,15 @@ struct Draws {
 };
 
 std::vector<SceneObject> sample_objects(const Request& request, const Streams& stream, Draws& draws) {
-  const auto& [scenario, task, layout, content, training, meant] = request;
+  const auto& [scenario, task, layout, content, training, meant, members] = request;
   const auto second = task.second();
   const bool by_choice = !content.choice.empty();
   if (by_choice && !second) return sample_choice(request, stream("choice"));
 
   const Features target =
-      sample_features(scenario, layout, content.target.value_or(meant.target),
-                      std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets);
+      members.empty() ? sample_features(scenario, layout, content.target.value_or(meant.target),
+                                        std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets)
+                      : members[draws.targets.below(static_cast<std::uint32_t>(members.size()))];
   std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
   if (by_choice) {
     const std::vector<SceneObject> chosen = sample_choice(request, stream("choice"));
@@ -194,10 +196,29 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   return objects;
 }
 
+// Those that targets of the scene are of, where it says so.
+std::vector<Features> members_to_show(const Scenario& scenario, const SceneRequest& request, const Content& content,
+                                      int command) {
+  const int shown = content_of(*scenario.train).members;
+  const bool training = request.arm == "train";
+  if (training ? shown == 0 : content.members_tested.empty()) return {};
+  std::vector<Features> all =
+      members_of(scenario, request.layout, command, training ? request.seed : request.training_seed.value_or(0));
+  const auto first_new = all.begin() + std::min<std::ptrdiff_t>(shown, static_cast<std::ptrdiff_t>(all.size()));
+  if (content.members_tested == "new")
+    all.erase(all.begin(), first_new);
+  else
+    all.erase(first_new, all.end());
+  if (all.empty() || (content.members_tested != "new" && all.size() < static_cast<std::size_t>(shown)))
+    throw InputError(fmt::format("scenario \"{}\", layout {}: expected more members that can be shown than {}",
+                                 scenario.id, request.layout, shown));
+  return all;
+}
+
 // Where a crowd finds no room, the next draw of its objects.
 std::vector<SceneObject> placed_objects(const Request& request, const Streams& stream) {
   constexpr int draws = 20;
-  const auto& [scenario, task, layout, content, training, meant] = request;
+  const auto& [scenario, task, layout, content, training, meant, members] = request;
   Draws random{stream("target"), stream("distractors")};
   for (int draw = 1;; ++draw) {
     std::vector<SceneObject> objects = sample_objects(request, stream, random);
@@ -219,6 +240,22 @@ std::vector<SceneObject> placed_objects(const Request& request, const Streams& s
 
 }  // namespace
 
+std::vector<Features> members_of(const Scenario& scenario, const std::string& layout_id, int command,
+                                 std::uint64_t training_seed) {
+  const Layout layout = find_layout(find_task(scenario.task), layout_id);
+  double widest_m = std::min({layout.widest_m, layout.widest_target_m, content_of(*scenario.train).widest_m()});
+  for (const Arm& arm : scenario.tests) widest_m = std::min(widest_m, content_of(*arm.scenes).widest_m());
+  const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
+  std::vector<Features> all, drawn;
+  for (const std::string& type : truth.target.object_types)
+    if (can_show(type, widest_m))
+      for (const std::string& texture : truth.target.textures) all.push_back({type, texture});
+  RandomStream random(fmt::format("members/{}/{}/{}", utterance, layout_id, training_seed));
+  for (const int i : random.permutation(static_cast<int>(all.size())))
+    drawn.push_back(all[static_cast<std::size_t>(i)]);
+  return drawn;
+}
+
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
   Scene scene = without_objects(scenario, request, index);
   const auto command = static_cast<std::size_t>(scene.command);
@@ -227,8 +264,13 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const bool asked = training && scenario.as_method_asks && !request.selections.empty();
   const Task& task = find_task(scenario.task);
   const Layout layout = find_layout(task, request.layout);
-  const Request what{scenario, task,     layout,
-                     content,  training, asked ? request.selections.at(command) : scenario.commands[command].truth};
+  const Request what{scenario,
+                     task,
+                     layout,
+                     content,
+                     training,
+                     asked ? request.selections.at(command) : scenario.commands[command].truth,
+                     members_to_show(scenario, request, content, scene.command)};
   const Streams stream = streams_of(scenario, request, index);
 
   set_asked_turn(scene, task.turn_rad(content));

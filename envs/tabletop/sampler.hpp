@@ -1,6 +1,11 @@
 // From a scenario to scenes.
 #pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <lgabench/core/environments.hpp>
+#include <tabletop/near_misses.hpp>
 
 namespace lgabench::tabletop {
 
@@ -11,5 +16,11 @@ namespace lgabench::tabletop {
 /// NothingToShow where the distribution holds nothing that the layout, or the choice, can show. Error where no room is
 /// found.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);
+
+/// The members of what the scenario's command means that all of its scenes can show in that layout, in an order drawn
+/// for the training seed; training shows the first of them (Content::members). Fewer are among more, and all suites
+/// that give one command share them.
+std::vector<Features> members_of(const Scenario& scenario, const std::string& layout, int command,
+                                 std::uint64_t training_seed);
 
 }  // namespace lgabench::tabletop

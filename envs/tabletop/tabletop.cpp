@@ -166,6 +166,20 @@ class TabletopType final : public EnvironmentType {
     static Renderer& renderer = *new Renderer();
     return renderer.render(visible_objects(scene), find_task(scene.task).ground());
   }
+  Json shown_members(const Scenario& scenario, const SceneRequest& request) const override {
+    const int shown = content_of(*scenario.train).members;
+    if (shown == 0) return nullptr;
+    Json commands = Json::array();
+    for (int command = 0; command < static_cast<int>(scenario.commands.size()); ++command) {
+      Json pairs = Json::array();
+      for (const auto& [type, texture] : members_of(scenario, request.layout, command, request.seed)) {
+        if (static_cast<int>(pairs.size()) == shown) break;
+        pairs.push_back(Json::array({type, texture}));
+      }
+      commands.push_back(std::move(pairs));
+    }
+    return commands;
+  }
   std::string world_of(const Scenario& scenario) const override {
     const int bodies = bodies_of(scenario);
     return bodies == most_bodies ? "" : fmt::format("{} bodies", bodies);

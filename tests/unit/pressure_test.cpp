@@ -202,6 +202,7 @@ TEST(SuiteMembers, ReplaceTrainingArmsAndNearMisses) {
             (std::vector<std::string>{"brick", "tiles", "wooden", "magma"}));
   const Scenario heart = suite_scenario(suite, "heart", Truth::released);
   EXPECT_TRUE(content_of(*heart.tests[7].scenes).near_miss->textures.empty());
+  EXPECT_EQ(content_of(*heart.tests[7].scenes).near_miss->object_types.size(), 6u);
 }
 
 TEST(SuiteMembers, AreRefusedWithTheirPlace) {
@@ -222,6 +223,86 @@ TEST(SuiteMembers, AreRefusedWithTheirPlace) {
   EXPECT_SAYS(refusal("near_miss", {{"hart", true}}), "clutter.json: /near_miss: unknown member \"hart\"");
   EXPECT_SAYS(refusal("near_miss", {{"heart", {{"object_types", {"heart"}}}}}), "expected a name outside of what");
   EXPECT_SAYS(refusal("references", {"least_shared"}), "/references/0: no reference row \"least_shared\"");
+}
+
+using Pair = std::pair<std::string, std::string>;
+
+Pair pair_of(const Scene& scene) { return {scene.find(role::target)->object_type, scene.find(role::target)->texture}; }
+
+TEST(Members, AreSeenOrNewAndEachTrainingSeedsOwn) {
+  const Suite suite = load_suite("few_members");
+  const EnvironmentType& type = find_environment("tabletop");
+  for (const std::string& id : suite.design.scenarios) {
+    std::set<Pair> fewer;
+    for (const int k : {1, 2, 4}) {
+      const std::string variant = fmt::format("_members_{}", k);
+      const Scenario scenario = suite_scenario(suite, id + variant, Truth::released);
+      SCOPED_TRACE(scenario.id);
+      std::set<Pair> trained, seen, fresh, of_another;
+      for (int i = 0; i < 60; ++i) {
+        trained.insert(pair_of(scene_of(scenario, "train", i)));
+        const auto test = [&](const char* arm, std::uint64_t seed) {
+          return pair_of(sample_scene(scenario, {"continuous", "test", arm + variant, 0, {}, seed}, i));
+        };
+        seen.insert(test("seen_near", 0));
+        fresh.insert(test("new", 0));
+        of_another.insert(test("seen", 1));
+      }
+      EXPECT_EQ(trained.size(), static_cast<std::size_t>(k));
+      EXPECT_EQ(seen, trained);
+      EXPECT_NE(of_another, trained);
+      EXPECT_TRUE(std::includes(trained.begin(), trained.end(), fewer.begin(), fewer.end())) << "fewer are among more";
+      fewer = trained;
+      for (const Pair& pair : fresh) EXPECT_EQ(trained.count(pair), 0u);
+      EXPECT_GT(fresh.size(), 6u);
+      std::set<Pair> recorded;
+      const Json shown = type.shown_members(scenario, {"continuous", "train", "train", 0});
+      for (const Json& pair : shown.at(0)) recorded.emplace(pair.at(0), pair.at(1));
+      EXPECT_EQ(recorded, trained) << "selection.json has them";
+    }
+  }
+  EXPECT_TRUE(type.shown_members(load_scenario("heart"), {"continuous", "train", "train", 0}).is_null());
+}
+
+TEST(Members, AreRefusedWhereTheyCannotBe) {
+  const auto refusal = [](const Json& train, const Json& arm, const char* id = "heart") {
+    Json json = load_scenario(id).json;
+    json["train"] = train;
+    json["tests"] = Json::array({arm});
+    json["tests"][0]["arm"] = "test";
+    return message_of<InputError>([&] { read_scenario(json, std::string(id) + ".json"); });
+  };
+  const Json two{{"as_method_asks", false}, {"members", 2}};
+  EXPECT_SAYS(refusal({{"members", 2}}, Json::object()),
+              "heart.json: /train/members: expected \"as_method_asks\": false beside it");
+  EXPECT_SAYS(refusal({{"as_method_asks", false}, {"members", 84}}, Json::object()),
+              "/train/members: expected at most 83, the pairs of type and texture that \"Bring me the heart.\" means");
+  EXPECT_SAYS(refusal({{"as_method_asks", false}, {"members", 83}}, {{"members", "new"}}),
+              "/train/members: expected fewer than 83");
+  EXPECT_SAYS(refusal({{"as_method_asks", false}, {"members", 0}}, Json::object()),
+              "/train/members: expected a whole number from 1");
+  EXPECT_SAYS(refusal({{"as_method_asks", false}}, {{"members", "new"}}),
+              "/tests/0/members: expected \"members\" in \"train\"");
+  EXPECT_SAYS(refusal(two, {{"members", "old"}}), "/tests/0/members: expected seen or new");
+  EXPECT_SAYS(refusal(two, {{"members", "new"}, {"choice", {"heart", "star"}}}),
+              "/tests/0/members: expected no such member beside \"choice\"");
+  EXPECT_SAYS(refusal(two, {{"members", "new"}, {"target", {{"object_types", "ALL"}, {"textures", "ALL"}}}}),
+              "/tests/0/target: expected no such member beside \"members\"");
+}
+
+TEST(Variants, AreScenariosOfTheirOwn) {
+  const Suite suite = load_suite("few_members");
+  Design design = suite.design;
+  design.scenarios = {"heart"};
+  EXPECT_EQ(suite_scenario_ids(suite, design),
+            (std::vector<std::string>{"heart_members_1", "heart_members_2", "heart_members_4"}));
+  const Scenario two = suite_scenario(suite, "heart_members_2", Truth::released);
+  EXPECT_EQ(two.id, "heart_members_2");
+  EXPECT_EQ(two.answers_of, "heart");
+  EXPECT_EQ(two.tests.back().id, "new_near_members_2") << "a mean in an arm is over scenarios of one variant";
+  design.engines = {}, design.methods = {}, design.options = Json::object(), design.test_scenes = TestScenes::shared;
+  EXPECT_SAYS(message_of<InputError>([&] { expand(suite, design, {}, {}); }),
+              "few_members.json: /test_scenes: expected per_seed beside \"members\"");
 }
 
 }  // namespace

@@ -159,7 +159,10 @@ std::string first_error(const std::vector<Episode>& episodes) {
 }
 
 // `first`: what select() returned, from which the targets were drawn.
-std::string selection_text(const Scenario& scenario, const Selected& selected, const std::vector<Instruction>& first) {
+std::string selection_text(const Scenario& scenario, const Cell& cell, const Selected& selected,
+                           const std::vector<Instruction>& first) {
+  const Json shown = find_environment(scenario.environment)
+                         .shown_members(scenario, {cell.layout, "train", "train", cell.training_seed});
   Json commands = Json::array();
   for (std::size_t c = 0; c < scenario.commands.size(); ++c) {
     const auto& [utterance, selection] = selected.instructions[c];
@@ -168,6 +171,7 @@ std::string selection_text(const Scenario& scenario, const Selected& selected, c
                         {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
     if (Json before = distribution_json(first[c].selection); before != distribution_json(selection))
       commands.back()["before_revision"] = std::move(before);
+    if (!shown.is_null()) commands.back()["shown"] = shown.at(c);
   }
   return canonical({{"commands", commands}}) + '\n';
 }
@@ -264,7 +268,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 6 record: no clock but in timing.json.
   record(job, self,
          {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-          {cell_file::selections, selection_text(scenario, selected, first)},
+          {cell_file::selections, selection_text(scenario, cell, selected, first)},
           {cell_file::training, training.lines},
           {cell_file::episodes, episodes_text(episodes)},
           {cell_file::timing, canonical(phases.seconds()) + '\n'}},

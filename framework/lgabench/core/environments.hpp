@@ -91,6 +91,9 @@ class EnvironmentType {
   /// Scene number `index`. @throws InputError where layout, split or arm is unknown; NothingToShow where a Selection or
   /// the truth holds no target, or nothing of the second set, that the layout can show.
   virtual Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const = 0;
+  /// Of what the scenario's commands mean, what that request's training scenes show where it is not all: of each
+  /// command a list of [object type, texture]; null where nothing is left out.
+  virtual Json shown_members(const Scenario& /*scenario*/, const SceneRequest& /*request*/) const { return nullptr; }
   /// How scenes of that kind are perceived, beside the noise that every environment's arms may ask for (scenario.hpp):
   /// null where nothing errs, as it is unless an environment says otherwise.
   virtual Perceive perception(const SceneContent& /*scenes*/) const { return nullptr; }

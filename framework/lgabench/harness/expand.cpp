@@ -33,6 +33,17 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
+// Which members of a meaning are seen is each training seed's own.
+void expect_own_scenes(const Suite& suite, const Design& design, const Scenario& scenario) {
+  const Json& arms = scenario.json.at("tests");
+  if (design.test_scenes != TestScenes::per_seed &&
+      std::any_of(arms.begin(), arms.end(), [](const Json& arm) { return arm.contains("members"); }))
+    throw InputError(
+        fmt::format("{}: /test_scenes: expected per_seed beside \"members\", of which each training seed "
+                    "shows its own",
+                    suite.file));
+}
+
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string>& there = layouts_of(scenario);
@@ -58,22 +69,43 @@ Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& sce
   return cell;
 }
 
+std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& design) {
+  if (suite.variants.empty()) return design.scenarios;
+  std::vector<std::string> ids;
+  for (const std::string& id : design.scenarios)
+    for (const auto& [variant, ignored] : suite.variants.items()) ids.push_back(id + "_" + variant);
+  return ids;
+}
+
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) {
-  const Scenario scenario = load_scenario(id, truth);
+  std::string base = id, variant;
+  for (const auto& [name, ignored] : suite.variants.items()) {
+    const std::string end = "_" + name;
+    if (id.size() <= end.size() || id.compare(id.size() - end.size(), end.size(), end) != 0) continue;
+    base = id.substr(0, id.size() - end.size());
+    variant = name;
+  }
+  const Scenario scenario = load_scenario(base, truth);
   if (scenario.environment != suite.environment)
     throw InputError(fmt::format("{}: /scenarios: \"{}\" is a scenario of {}, expected {}", suite.file, id,
                                  scenario.environment, suite.environment));
   Json json = scenario.json;
   if (!suite.train.empty()) json["train"].update(suite.train);
+  if (!variant.empty()) json["train"].update(suite.variants[variant]["train"]);
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
   for (const Json& arm : suite.arms) {
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
-    if (suite.near_miss.contains(id) && arm.value("near_miss", Json()) == Json(true))
-      json["tests"].back()["near_miss"] = suite.near_miss[id];
+    if (suite.near_miss.contains(base) && arm.value("near_miss", Json()) == Json(true))
+      json["tests"].back()["near_miss"] = suite.near_miss[base];
   }
-  return read_scenario(json, fmt::format("{}: scenario {} with the suite's members", suite.file, scenario.id));
+  if (!variant.empty()) {
+    json["id"] = id;
+    json["answers_of"] = scenario.answers_of;
+    for (Json& arm : json["tests"]) arm["arm"] = arm["arm"].get<std::string>() + "_" + variant;
+  }
+  return read_scenario(json, fmt::format("{}: scenario {} with the suite's members", suite.file, id));
 }
 
 bool learns(const Competitor& row) {
@@ -93,8 +125,9 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
     for (const std::string& row : suite.references) references.push_back(row.c_str());
   }
   std::vector<Cell> cells;
-  for (const std::string& id : design.scenarios) {
+  for (const std::string& id : suite_scenario_ids(suite, design)) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth);
+    expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {

@@ -20,7 +20,10 @@ struct Variation {
   std::vector<Participant> participants{};  // none: the truth stands in for people
 };
 
-/// A suite's scenario: its own arms, then those that the suite adds. @throws InputError for one of another environment.
+/// Ids of the scenarios that the design names, as they are in the suite: of its variants, where it has any.
+std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& design);
+/// A suite's scenario, or one of its variants: its own arms, then those that the suite adds. @throws InputError for one
+/// of another environment.
 Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth);
 /// A cell of the design without its layout, engine, method, demonstrations and training seed.
 Cell unplayed_cell(const Suite& suite, const Design& design, const Scenario& scenario, const AnswerSource& answers);

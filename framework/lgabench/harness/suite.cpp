@@ -105,8 +105,8 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(),
-                 {"id", "note", "environment", "arms", "only_arms", "train", "near_miss", "references", "presets"});
+  members.insert(members.end(), {"id", "note", "environment", "arms", "only_arms", "train", "near_miss", "variants",
+                                 "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -134,6 +134,15 @@ Suite load_suite(const std::string& id) {
   if (reader.has("near_miss")) {
     reader.at("near_miss").only(suite.design.scenarios);
     suite.near_miss = reader.at("near_miss").json();
+  }
+  if (reader.has("variants")) {
+    suite.variants = reader.at("variants").json();
+    if (!suite.variants.is_object() || suite.variants.empty()) reader.at("variants").fail("an object with a member");
+    for (const auto& [name, ignored] : suite.variants.items()) {
+      const JsonReader variant = reader.at("variants").at(name);
+      variant.only({"train"});
+      if (!variant.at("train").json().is_object()) variant.at("train").fail("an object");
+    }
   }
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});

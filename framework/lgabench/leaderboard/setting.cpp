@@ -114,7 +114,7 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
   setting = {
       installed.suite.id, preset,           {}, design.layouts, design.demonstrations, design.seeds, design.episodes,
       design.test_scenes, design.scene_seed};
-  for (const std::string& id : design.scenarios) {
+  for (const std::string& id : suite_scenario_ids(installed.suite, design)) {
     const Scenario scenario = suite_scenario(installed.suite, id, Truth::released);
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
