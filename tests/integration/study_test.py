@@ -197,8 +197,8 @@ class StudyServer(StudyCase):
         self.server.ask("POST", "/withdraw", {"code": first.state["withdrawal_code"]})
         self.server.process.send_signal(signal.SIGTERM)
         said = re.sub(r"^\d\d:\d\d ", "", self.server.process.stdout.read(), flags=re.M).splitlines()
-        self.assertEqual(said, ["p01 began, with lga_hill first; 1 under way, 0 of 18 finished",
-                                "p02 began, with human first; 2 under way, 0 of 18 finished",
+        self.assertEqual(said, ["p01 began, with human first; 1 under way, 0 of 18 finished",
+                                "p02 began, with lga_hill first; 2 under way, 0 of 18 finished",
                                 "p02 finished; 1 under way, 1 of 18 finished",
                                 "p01 withdrew; 0 under way, 1 of 18 finished"])
 
