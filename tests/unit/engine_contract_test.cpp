@@ -27,8 +27,10 @@ std::vector<std::string> failed(PhysicsWorld& world) {
 
 TEST(EngineContract, IsKeptByEveryEngineThatWasBuilt) {
   const Catalogue catalogue = scan_plugins(plugin_directories());
-  for (const PluginInfo& plugin : catalogue.plugins)
-    if (plugin.kind == "engine") EXPECT_EQ(failed(*load_engine(plugin)), std::vector<std::string>()) << plugin.id;
+  for (const PluginInfo& plugin : catalogue.plugins) {
+    if (plugin.kind != "engine") continue;
+    EXPECT_EQ(failed(*load_engine(plugin)), std::vector<std::string>()) << plugin.id;
+  }
 }
 
 struct OnAnEngine : ForwardingWorld {

@@ -19,8 +19,9 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
     EXPECT_EQ(entry.place(), directory);
     ++entries;
     const Competitor& row = entry.identity.row;
-    if (!row.is_reference())
+    if (!row.is_reference()) {
       EXPECT_EQ(resolve_options(catalogue.find("method", row.id), row.options), row.options) << directory;
+    }
 
     const Installed installed = installed_setting(entry.setting.suite, entry.setting.preset);
     EXPECT_EQ(hash(installed.setting), entry.identity.preset_sha256) << directory;

@@ -84,8 +84,8 @@ constexpr std::array kinds{"methods",   "rows",    "engines", "environments", "s
                            "scenarios", "layouts", "presets", "sources",      "kinds"};
 
 std::vector<std::string> layouts_of_all(const Suite& suite) {
-  std::vector<std::string> common = layouts_of(load_scenario(suite.grid.scenarios.front()));
-  for (const std::string& id : suite.grid.scenarios) {
+  std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
+  for (const std::string& id : suite.design.scenarios) {
     const std::vector<std::string>& there = layouts_of(load_scenario(id));
     common.erase(std::remove_if(common.begin(), common.end(),
                                 [&there](const std::string& layout) {
