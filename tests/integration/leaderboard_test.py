@@ -276,6 +276,14 @@ class Refusals(Board):
         self.mark_failed(self.cell(), "host")
         self.assertRegex(self.refused()[0], "^failed by the host, not by the method: fixture_constant.*: ended by signal 11$")
 
+    def test_a_method_of_others_that_was_told_the_truth(self):
+        for member, why in (("policy", 1), (None, 0)):
+            rewrite(self.cell(), "episodes.jsonl", lambda e: e if e["success"] else {**e, "attribution": member})
+            if why:
+                self.assertRegex(" ".join(self.refused()), "^failures have causes, for which the method was told the truth: "
+                                 "add a run that tells none: fixture_constant")
+        self.add()
+
     def test_an_edited_file(self):
         file = self.cell() / "episodes.jsonl"
         file.write_text(file.read_text().replace('"success":false', '"success":true').replace('"failure":"missed_object"', '"failure":"none"'))
