@@ -120,6 +120,20 @@ class Submissions(Board):
         said = self.add(expect=1).stderr
         self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
 
+    def test_a_file_of_answers_goes_with_its_entry(self):
+        self.prepare()
+        (self.dir / "mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": [
+            {"scenario": name, "command": name, "target": {"object_types": ["heart"], "textures": "ALL"}} for name in ("heart", "letter")]}))
+        self.play("out", "--answers", "mine.json", "--no-reference")
+        self.add("out", 0, "--rows", "fixture_constant")
+        kept = hashlib.sha256((self.dir / "mine.json").read_bytes()).hexdigest() + ".json"
+        self.assertEqual((self.dir / "board/answers" / kept).read_bytes(), (self.dir / "mine.json").read_bytes())
+        self.replay()
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn(f"--answers answers/{kept}", (self.dir / "board/tiny.html").read_text())
+        (self.dir / "board/answers" / kept).unlink()
+        self.assertIn(f"{kept} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
+
     def test_two_shards_make_the_same_entries(self):
         self.take_run()
         for shard in 1, 2:
