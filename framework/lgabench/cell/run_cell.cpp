@@ -41,6 +41,7 @@ class Phases {
     report_(phase, 0);
   }
   void count(long long n) const { report_(phase_, n); }
+  void in_line(bool begins) const { report_(begins ? in_line_phase : phase_, 0); }
   Json seconds() {
     end();
     return seconds_;
@@ -216,7 +217,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  const Answers answers = answers_for(job, scenario, server);
+  const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);
   Services services{*answers.lm,        *answers.human, cell.method.options,
                     cell.training_seed, training,       find_environment(cell.environment).action_space(),

@@ -149,6 +149,9 @@ PlannedRun plan_run(RunArguments a) {
   if (auto* cassette = std::get_if<CassetteAnswers>(&variation.answers)) {
     plan.answers.push_back(check_cassette(cassette->file, design.scenarios));
     cassette->file = fs::path(plan.answers.back().name).stem();
+  } else if (auto* written = std::get_if<FileAnswers>(&variation.answers)) {
+    plan.answers.push_back(check_written(written->file, design.scenarios));
+    written->file = fs::path(plan.answers.back().name).stem();
   } else if (const auto* recorded = std::get_if<RecordedAnswers>(&variation.answers)) {
     check_recorded(*recorded, design.scenarios);
   }
@@ -230,7 +233,8 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--answers", a.answers,
                   "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
                   "another word of lgabench list sources: only that source; cassette:FILE: a server's replies, as "
-                  "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
+                  "lgabench select --suite records them; FILE.json: answers in a file of yours (docs/formats); openai: "
+                  "a server, asked by the cells as they run; none: for "
                   "methods that ask no language model")
       ->check([](const std::string& word) { return answers_complaint(word, true); })
       ->capture_default_str();
