@@ -150,6 +150,16 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     row.more = !table.best[i];
     grid.rows.push_back(std::move(row));
   }
+  // A column without a value in any row says nothing.
+  for (std::size_t k = grid.heads.size(); k-- > 3;) {
+    if (!std::all_of(grid.rows.begin(), grid.rows.end(),
+                     [k](const Grid::Row& row) { return row.cells[k].text() == "–"; }))
+      continue;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    grid.heads.erase(grid.heads.begin() + at);
+    grid.align.erase(k, 1);
+    for (Grid::Row& row : grid.rows) row.cells.erase(row.cells.begin() + at);
+  }
   return grid;
 }
 

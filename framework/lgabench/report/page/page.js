@@ -64,7 +64,10 @@ function fit(within = document) {
     const list = lists && wide.includes(frame), scrolls = !lists && wide.includes(frame);
     const heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
     for (const row of list ? frame.querySelectorAll("tbody tr:not(.group)") : [])
-      [...row.cells].forEach((cell, i) => cell.tagName === "TD" && (cell.dataset.head = heads[i]));
+      [...row.cells].forEach((cell, i) => {
+        if (cell.tagName === "TD") cell.dataset.head = heads[i];
+        cell.classList.toggle("none", cell.textContent.trim() === "–");
+      });
     frame.classList.toggle("list", list);
     scrolls || (!list && frame.scrollHeight > frame.clientHeight + 1) ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
     const first = frame.querySelector("tbody tr:not(.group)");
