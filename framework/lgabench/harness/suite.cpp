@@ -60,6 +60,17 @@ Json options_of(const JsonReader& options, const std::vector<std::string>& metho
   return options.json();
 }
 
+// What pages say of the suite (report/about_suite.hpp).
+void expect_about(const JsonReader& about) {
+  about.only({"question", "main_arm", "main_demonstrations", "arms"});
+  about.at("question").string();
+  if (about.has("main_arm")) about.at("main_arm").string();
+  if (about.has("main_demonstrations")) about.at("main_demonstrations").integer(1, most);
+  if (!about.has("arms")) return;
+  if (!about.at("arms").json().is_object()) about.at("arms").fail("an object");
+  for (const auto& arm : about.at("arms").json().items()) about.at("arms").at(arm.key()).string();
+}
+
 }  // namespace
 
 Json to_json(const Design& design) {
@@ -105,8 +116,8 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "environment", "arms", "only_arms", "train", "near_miss", "variants",
-                                 "references", "presets"});
+  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
+                                 "variants", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -146,6 +157,7 @@ Suite load_suite(const std::string& id) {
   }
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
+  if (reader.has("about")) expect_about(reader.at("about"));
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_design(suite, preset.key());
