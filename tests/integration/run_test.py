@@ -420,8 +420,9 @@ class Demonstrations(Case):
                 "--set", "*.epochs=1", "--no-reference")
         self.call("run", "q1", *grid, "--methods", "human,gcbc_dart", "--out", "out",
                   "--selection-errors", "none,missing=1,added=0.3,added=0.3+missing=0.1")
-        cells = {(cell["scenario"]["id"], cell["method"]["name"]): (key, cell, episodes)
-                 for key, (cell, episodes) in self.cells("out").items()}
+        cells = {(cell["scenario"]["id"], cell["method"]["name"]):
+                 (key, cell, [json.loads(line) for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines()])
+                 for key, (cell, _) in self.cells("out").items()}
         self.assertEqual(len(cells), 2 * 2 * 4)
         self.assertNotIn("selection_errors", cells["heart", "human"][1])
         self.assertEqual(cells["heart", "human+added=0.3+missing=0.1"][1]["selection_errors"], {"added": .3, "missing": .1})
