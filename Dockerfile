@@ -1,5 +1,5 @@
 # lgabench in an image:  docker build --build-arg COMMIT="$(git rev-parse --short=12 HEAD)" -t lgabench .
-# A run of it:           docker run --rm --user "$(id -u):$(id -g)" -v "$PWD/runs:/data/runs" lgabench run q1 --preset smoke
+# A run of it:           docker run --rm --user "$(id -u):$(id -g)" -v "$PWD/runs:/data/runs" lgabench run clutter --preset smoke
 # With compilers, for plugins of your own: docker build --target build -t lgabench-build .
 FROM debian:12 AS build
 COPY . /src

@@ -7,8 +7,8 @@ lgabench=${1:-../../../build/release/bin/lgabench}
 scene=$(mktemp --suffix .png)
 trap 'rm -f "$scene"' EXIT
 
-draw() {  # SCENARIO ARM SIZE [LAYOUT]
-  "$lgabench" render "$1" --arm "$2" ${4:+--layout "$4"} --out "$scene" > /dev/null
+draw() {  # SCENARIO ARM SIZE [LAYOUT] [SUITE]
+  "$lgabench" render "$1" --arm "$2" ${4:+--layout "$4"} ${5:+--suite "$5"} --out "$scene" > /dev/null
   convert "$scene" -sample "$3" -define png:exclude-chunks=date,time "$1-$2.png"
 }
 
@@ -16,3 +16,8 @@ draw heart test 25% continuous
 for arm in control texture distractor hard; do draw q2_heart $arm 25% continuous; done
 for arm in seen unseen seen_varied; do draw q3_utensil $arm 25% continuous; done
 for arm in same_place moved crowd; do draw bring_fruit $arm 12.5%; done
+for others in 1 2 4 6; do for kind in others near; do draw something_to_drink_water_out_of ${kind}_$others 25% continuous clutter; done; done
+for arm in seen new seen_near new_near; do
+  draw something_to_drink_water_out_of_members_2 ${arm}_members_2 25% continuous few_members
+  mv something_to_drink_water_out_of_members_2-${arm}_members_2.png few_members-$arm.png
+done

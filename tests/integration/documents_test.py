@@ -24,7 +24,7 @@ WITH_A_SERVER = ("openai", "cassette:")  # answers_test plays the server
 BUILT_BY_A_READER = ("own_network", "my_stack", "my_statistic")
 LONGEST = 300 if os.environ.get("LGABENCH_FULL") else 10  # seconds, as --dry-run expects them
 # run_test, verify_test, consumer_test, study_test, leaderboard_test, cluster_test
-ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin", "study", "leaderboard", "cluster", "status"}
+ELSEWHERE = {"install", "merge", "verify", "new-plugin", "check-plugin", "study", "leaderboard", "cluster", "status", "attribute"}
 
 
 def commands(page):

@@ -134,7 +134,7 @@ class PageInABrowser(BesideOneRun):
             [...body.rows].forEach((row, i) => { row.cells[1].textContent = texts[i] || "words"; });
             table.querySelector("thead th:nth-child(2) button").click();
             return [...body.rows].map((row) => row.cells[1].textContent);""")
-        self.assertEqual(texts[:4], ["-0.1", "< 0.001", "0.02", "0.5"])
+        self.assertEqual(texts[:4], ["0.5", "0.02", "< 0.001", "-0.1"], "the largest first")
 
     def test_a_number_leads_to_its_episodes_and_these_to_one(self):
         self.open()

@@ -255,7 +255,7 @@ std::string refusal(const Json& json) {
 TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
-  EXPECT_EQ(pick_and_place, 12);  // q1 has 9, q2 two, q3 one
+  EXPECT_EQ(pick_and_place, 18);  // q1 has 9, clutter 6 more, q2 two, q3 one
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(s.commands[0].truth.target.textures.size(), 83u);  // ALL
@@ -318,7 +318,8 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
-  EXPECT_SAYS(refusal(json), "mine.json: /answers/recorded: expected one of: claude, gpt4_released, gpt4_study");
+  EXPECT_SAYS(refusal(json),
+              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");

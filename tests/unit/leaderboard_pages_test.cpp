@@ -59,8 +59,47 @@ TEST(Board, AnOptionThatTellsRowsOfAMethodApartIsNamedAtAllThatHaveIt) {
   build(board.path);
   const std::string page = read_file(board.path / "README.md");
   for (const char* row :
-       {"| method_of_a loss=norm |", "| method_of_a loss=squared |", "| method_of_b loss=norm |", "| method_of_c |"})
+       {"| method_of_a, loss=norm |", "| method_of_a, loss=squared |", "| method_of_b, loss=norm |", "| method_of_c |"})
     EXPECT_SAYS(page, row);
+}
+
+TEST(Board, TheMaintainersLabelsStandBeforeTheAuthorsAndTheseBeforeNames) {
+  const TemporaryDirectory board;
+  for (const auto& [name, loss] : {std::pair("a", "norm"), {"a", "squared"}, {"b", "norm"}, {"c", "norm"}}) {
+    Entry entry = made_entry(small_setting(), name, .5);
+    entry.identity.row.options["loss"] = loss;
+    if (*name != 'c') entry.about["label"] = std::string("Ours, ") + name;
+    write_replayed(board.path, entry);
+  }
+  write_file(
+      board.path / "labels.json",
+      R"({"values": {"loss=squared": "squares"}, "rows": [{"id": "method_of_a", "options": {"loss": "norm"}, "label": "The first"}]})");
+  build(board.path);
+  const std::string page = read_file(board.path / "README.md");
+  for (const char* row :
+       {"| The first |", "| Ours, a, squares |", "| Ours, b, loss=norm |", "| method_of_c, loss=norm |"})
+    EXPECT_SAYS(page, row);
+  EXPECT_SAYS(read_file(board.path / "q1.html"), "<span title=\"method_of_a loss=norm\">The first</span>");
+  write_file(board.path / "labels.json", R"({"names": {}})");
+  EXPECT_SAYS(all(check(board.path).problems), "unknown member \"names\", expected one of: note, values, rows");
+}
+
+TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
+  const TemporaryDirectory board;
+  for (const auto& [name, loss, rate] : {std::tuple("a", "norm", .9), {"a", "squared", .2}, {"b", "norm", .5}}) {
+    Entry entry = made_entry(small_setting(), name, rate);
+    entry.identity.row.options["loss"] = loss;
+    write_replayed(board.path, entry);
+  }
+  build(board.path);
+  const std::string page = read_file(board.path / "q1.html"), index = read_file(board.path / "index.html");
+  const std::size_t more = page.find("<tr class=more>");
+  ASSERT_NE(more, page.npos);
+  EXPECT_SAYS(page.substr(more, page.find("</tr>", more) - more), "method_of_a, loss=squared");
+  EXPECT_SILENT(index, "loss=squared");
+  EXPECT_SAYS(index, "2 of 3 entries, the best of each method");
+  for (const char* words : {"not yet replayed", "claimed by", "used as submitted", "does not say that they are equal"})
+    EXPECT_SAYS(index, words);
 }
 
 TEST(Board, SuitesComeInThePapersOrderAndThoseWithoutARankLast) {
@@ -83,7 +122,8 @@ TEST(Board, ARowBelowTheRandomObjectSaysSoAndTheIndexSaysWhatItLeavesOut) {
   write_replayed(board.path, made_entry(setting, "random_object", .5, "reference"));
   for (int i = 0; i < 12; ++i) write_replayed(board.path, made_entry(setting, fmt::format("m{}", i), i == 0 ? .2 : .8));
   build(board.path);
-  EXPECT_SAYS(read_file(board.path / "index.html"), "10 of 12 entries; <a href=\"q1.html\">all of them</a>");
+  EXPECT_SAYS(read_file(board.path / "index.html"),
+              "10 of 12 entries, the best of each method; <a href=\"q1.html\">all of them</a>");
   EXPECT_SAYS(read_file(board.path / "index.html"), "random visible object") << "reference rows stay";
   const std::string page = read_file(board.path / "README.md"), suite = read_file(board.path / "q1.html");
   EXPECT_SILENT(page, "of 12 entries");
@@ -135,7 +175,7 @@ TEST(Board, DocumentsHaveTheTablesOfReadme) {
   const std::string text = read_file(document), readme = read_file(board / "README.md");
   EXPECT_EQ(text.find(before), 0u);
   EXPECT_SAYS(text, "\n\n" + after);
-  std::string table = readme.substr(readme.find("| rank"));
+  std::string table = readme.substr(readme.find("| rank"), readme.find("\n## What the words") - readme.find("| rank"));
   EXPECT_SAYS(table, "](entries/");
   table.replace(table.find("](entries/"), 2, "](../results/board/");
   EXPECT_SAYS(text, table);

@@ -6,11 +6,13 @@
 #include <memory>
 #include <set>
 
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
@@ -96,6 +98,24 @@ std::vector<std::string> layouts_of_all(const Suite& suite) {
   return common;
 }
 
+bool answers(const std::string& source, const std::string& scenario) {
+  try {
+    check_recorded({source}, {scenario});
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+// Words of --answers, without recorded files that answer none of the scenarios.
+std::vector<std::string> sources_of(const std::vector<std::string>& scenarios) {
+  std::vector<std::string> words = answer_words(false);
+  for (const std::string& source : recorded_sources())
+    if (std::none_of(scenarios.begin(), scenarios.end(), [&](const std::string& id) { return answers(source, id); }))
+      words.erase(std::find(words.begin(), words.end(), source));
+  return words;
+}
+
 // The words of one kind that options take: with `of`, those that a run of that suite or, of layouts, that scenario
 // takes.
 std::vector<std::string> words(const std::string& kind, const std::string& of, const Json& all) {
@@ -103,7 +123,8 @@ std::vector<std::string> words(const std::string& kind, const std::string& of, c
   const bool of_suite =
       std::any_of(shipped.begin(), shipped.end(), [&of](const Json& suite) { return suite.at("id") == of; });
   if (kind == "kinds") return {kinds.begin(), kinds.end()};
-  if (kind == "sources") return answer_words(false);
+  if (kind == "sources" && of.empty()) return answer_words(false);
+  if (kind == "sources") return sources_of(of_suite ? load_suite(of).design.scenarios : std::vector{of});
   if (kind == "layouts" && of.empty()) return installed_layouts();
   if (kind == "layouts") return of_suite ? layouts_of_all(load_suite(of)) : layouts_of(load_scenario(of));
   std::vector<Suite> suites;
@@ -146,7 +167,8 @@ void add_list(CLI::App& app, int& exit) {
                    fmt::format("Only the words of one kind, a line each: {}", fmt::join(kinds, ", ")))
       ->type_name("KIND")
       ->check(one_of("kind", {kinds.begin(), kinds.end()}));
-  verb->add_option("--of", arguments->of, "With KIND: those that a run of this suite takes; layouts also of a scenario")
+  verb->add_option("--of", arguments->of,
+                   "With KIND: those that a run of this suite takes; layouts and sources also of a scenario")
       ->type_name("SUITE");
   verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
   verb->add_flag("--json", arguments->json, "One JSON object on stdout");

@@ -79,7 +79,7 @@ constexpr const char* word_functions =
     "    NAME) local kind; for kind in methods rows engines environments suites scenarios; do _lgabench_list $kind; "
     "done ;;\n"
     "    LAYOUT*) _lgabench_list layouts --of \"$2\" || _lgabench_list layouts ;;\n"
-    "    SOURCE) _lgabench_list sources ;;\n"
+    "    SOURCE) _lgabench_list sources --of \"$2\" || _lgabench_list sources ;;\n"
     "    KIND) _lgabench_list kinds ;;\n"
     "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
     "  esac\n"

@@ -30,8 +30,9 @@ class PlayedScenes {
   Environment* on(const std::string& engine, const Scenario& scenario);
 
  private:
-  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>> environments_;  // by engine, environment, space and world
-  std::map<std::string, std::unique_ptr<Played>> cells_;                             // by file
+  std::map<std::array<std::string, 3>, std::unique_ptr<Environment>>
+      environments_;                                      // by engine, environment, space and world
+  std::map<std::string, std::unique_ptr<Played>> cells_;  // by file
 };
 
 /// Answers each of the JSON list on standard input with a line of JSON: {"problem": why} where answering throws an

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/cell/picture.hpp>
@@ -14,12 +15,13 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/harness/expand.hpp>
 
 namespace lgabench::cli {
 namespace {
 
 struct RenderArguments {
-  std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, out;
+  std::string scenario, gallery, cells, layout, split = "test", truth = "released", arm, suite, out;
   std::uint64_t seed = 0;
   int index = 0;
 };
@@ -61,7 +63,11 @@ void render_gallery(const RenderArguments& arguments) {
 }
 
 void render(const RenderArguments& arguments) {
-  const Scenario scenario = load_scenario(arguments.scenario, read_truth(arguments.truth));
+  const Truth truth = read_truth(arguments.truth);
+  const std::optional<Suite> suite =
+      arguments.suite.empty() ? std::nullopt : std::optional(load_suite(arguments.suite));
+  const Scenario scenario =
+      suite ? suite_scenario(*suite, arguments.scenario, truth) : load_scenario(arguments.scenario, truth);
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
@@ -113,6 +119,8 @@ void add_render(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--arm", arguments->arm,
                    "One of the scenario's tests (lgabench info SCENARIO), or train; else its first test");
+  verb->add_option("--suite", arguments->suite,
+                   "As that suite has it: its arms, and with variants SCENARIO_VARIANT for the scenario");
   verb->add_option("--truth", arguments->truth, "The scenario's true distributions, where released and printed differ")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
@@ -127,6 +135,7 @@ void add_render(CLI::App& app, int&) {
            {"--layout", "LAYOUT"},
            {"--split", "train|dev|test"},
            {"--arm", "ARM"},
+           {"--suite", "SUITE"},
            {"--truth", "released|printed"},
            {"--seed", "N"},
            {"--scenario-path", "DIR"}});

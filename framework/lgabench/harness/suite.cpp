@@ -42,8 +42,8 @@ std::vector<std::string> names(const JsonReader& list, const char* what = "",
 
 const std::vector<std::string> grid_members{"scenarios",      "layouts", "engines",  "methods",
                                             "demonstrations", "seeds",   "episodes", "scene_seed",
-                                            "test_scenes",    "smoke",   "options"};
-const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options"};
+                                            "test_scenes",    "smoke",   "options",  "selection_errors"};
+const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", "selection_errors"};
 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
@@ -60,13 +60,27 @@ Json options_of(const JsonReader& options, const std::vector<std::string>& metho
   return options.json();
 }
 
+// What pages say of the suite (report/about_suite.hpp).
+void expect_about(const JsonReader& about) {
+  about.only({"question", "main_arm", "main_demonstrations", "arms"});
+  about.at("question").string();
+  if (about.has("main_arm")) about.at("main_arm").string();
+  if (about.has("main_demonstrations")) about.at("main_demonstrations").integer(1, most);
+  if (!about.has("arms")) return;
+  if (!about.at("arms").json().is_object()) about.at("arms").fail("an object");
+  for (const auto& arm : about.at("arms").json().items()) about.at("arms").at(arm.key()).string();
+}
+
 }  // namespace
 
 Json to_json(const Design& design) {
-  return {{"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
-          {"methods", design.methods},     {"seeds", design.seeds},           {"demonstrations", design.demonstrations},
-          {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
-          {"smoke", design.smoke},         {"options", design.options}};
+  Json json{
+      {"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
+      {"methods", design.methods},     {"seeds", design.seeds},           {"demonstrations", design.demonstrations},
+      {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
+      {"smoke", design.smoke},         {"options", design.options}};
+  for (const SelectionErrors& errors : design.selection_errors) json["selection_errors"].push_back(to_json(errors));
+  return json;
 }
 
 Design apply(const JsonReader& overrides, Design design) {
@@ -90,6 +104,8 @@ Design apply(const JsonReader& overrides, Design design) {
     design.options = options_of(overrides.at("options"), design.methods);
     design.options_place = overrides.at("options").place();
   }
+  if (overrides.has("selection_errors"))
+    design.selection_errors = distinct<SelectionErrors>(overrides.at("selection_errors"), read_selection_errors);
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
 }
@@ -105,8 +121,8 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "environment", "arms", "only_arms", "train", "near_miss", "variants",
-                                 "references", "presets"});
+  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
+                                 "variants", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -146,6 +162,7 @@ Suite load_suite(const std::string& id) {
   }
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
+  if (reader.has("about")) expect_about(reader.at("about"));
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_design(suite, preset.key());

@@ -70,6 +70,7 @@ std::string other_setting(const Json& cell, const Json& expected) {
     if (member == "data") return "computed with other data than this installation's";
     return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
   }
+  if (cell.contains("selection_errors")) return "errors were made in what was selected (selection_errors)";
   return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -17,7 +18,7 @@ struct Checked {
 };
 
 /// Files of the board that nobody else's request may change.
-inline constexpr std::array maintainers_files{vouched_file};
+inline constexpr std::array maintainers_files{vouched_file, labels_file};
 
 struct CheckOptions {
   std::string against;      // a revision of git, whose outcomes must not have changed; "": none

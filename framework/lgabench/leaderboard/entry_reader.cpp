@@ -5,6 +5,8 @@
 #include <ctime>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/layout.hpp>
 
@@ -110,12 +112,17 @@ PlayedCell read_cell_line(const JsonReader& reader, const Entry& entry) {
 }
 
 void expect_about(const JsonReader& about) {
-  about.only({"authors", "license", "source", "by", "answers", "note"});
+  about.only({"authors", "license", "source", "by", "answers", "note", "label"});
   if (about.at("authors").strings().empty()) about.at("authors").fail("at least one name");
   for (const char* text : {"license", "by"})
     if (about.at(text).string().empty()) about.at(text).fail("a text");
   for (const char* text : {"answers", "note"})
     if (about.has(text)) about.at(text).string();
+  if (about.has("label")) {
+    const std::string label = about.at("label").string();
+    if (label.empty() || label.size() > longest_label || one_line(label) != label)
+      about.at("label").fail(fmt::format("1 to {} characters in one line", longest_label));
+  }
   const JsonReader source = about.at("source");
   source.only({"repository", "commit", "file", "sha256"});
   if (source.has("repository")) {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include <lgabench/leaderboard/suite_page.hpp>
+#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -39,12 +40,13 @@ Grid short_grid(const NamedTable& table, std::size_t most, const fs::path& board
   std::size_t entries = 0;
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
+    if (most != all_rows && !table.best[i]) continue;
     if (!is_reference(s) && ++entries > most) continue;
     report::Spans success{Span::number(score_text(s))};
     if (s.below_random) success.push_back(below_random_mark());
     grid.rows.push_back({{},
-                         {Span::number(rank_text(s)), Span(display_name(table.names[i])), success,
-                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
+                         {Span::number(rank_text(s)), Span(table.labels[i]), success, Span(tier_and_marks(s)),
+                          Span(s.entry->about.at("by").get<std::string>()),
                           Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
                          is_reference(s)});
   }
@@ -62,19 +64,37 @@ Document index(const Suites& suites, std::size_t most) {
   Document document;
   document.title = "lgabench leaderboard";
   document.headline = {
-      "Every number here is computed from the episodes in entries/. Entries with one rank are ties: none of them is "
-      "significantly better than the other by the paired test on these scenes."};
+      "lgabench asks which features of a scene matter for a command, and what leaving out the rest is worth to a "
+      "policy "
+      "that imitates a few demonstrations. These tables say how often such policies succeed in scenes that were not "
+      "demonstrated. Every number is computed from the episodes in entries/."};
+  Section enter{"enter", "How to enter"};
+  enter.add<Paragraph>(
+      reading, {{"Run a suite's preset ", Span("leaderboard", report::Emphasis::code),
+                 " with your method, add the result, and send it as a pull request: ",
+                 Span::link("in ten minutes, with a real entry", "../../docs/entering-the-leaderboard.md"), ". ",
+                 Span::link("The rules", "../../docs/leaderboard.md"), " say what is taken and how it is checked, ",
+                 Span::link("the suites", "../../docs/suites.md"), " what is played."}});
+  document.sections.push_back(std::move(enter));
   for (const auto& [suite, tables] : suites) {
     Section section{"suite-" + suite, suite};
-    section.add<Paragraph>(reading, {{Span::link("Sortable table, scenarios, episodes of " + suite, suite + ".html")}});
+    report::Spans introduction;
+    if (const std::string question = report::about_suite(suite).question; !question.empty())
+      introduction.emplace_back(question + " ");
+    introduction.push_back(Span::link("Sortable table, scenarios, episodes of " + suite, suite + ".html"));
+    section.add<Paragraph>(reading, {std::move(introduction)});
     for (const NamedTable& table : tables) {
-      section.add<Heading>(reading, {title_of(table.setting)});
+      if (tables.size() > 1) section.add<Heading>(reading, {title_of(table.setting)});
       add_table(section, table, most);
-      const auto entries = static_cast<std::size_t>(std::count_if(table.standings.begin(), table.standings.end(),
-                                                                  [](const auto& s) { return !is_reference(s); }));
-      if (entries > most)
-        section.add<Paragraph>(
-            reading, {{fmt::format("{} of {} entries; ", most, entries), Span::link("all of them", suite + ".html")}});
+      std::size_t entries = 0, methods = 0;
+      for (std::size_t i = 0; i < table.standings.size(); ++i) {
+        if (is_reference(table.standings[i])) continue;
+        ++entries;
+        methods += table.best[i];
+      }
+      if (const std::size_t shown = std::min(most, methods); most != all_rows && entries > shown)
+        section.add<Paragraph>(reading, {{fmt::format("{} of {} entries, the best of each method; ", shown, entries),
+                                          Span::link("all of them", suite + ".html")}});
     }
     document.sections.push_back(std::move(section));
   }
@@ -83,6 +103,7 @@ Document index(const Suites& suites, std::size_t most) {
     section.add<Paragraph>(reading, {{"docs/leaderboard.md says how to submit one."}});
     document.sections.push_back(std::move(section));
   }
+  document.sections.push_back(words_of_the_board());
   return document;
 }
 
@@ -160,13 +181,14 @@ bool ranks_entries(const NamedTable& table) {
   return std::any_of(table.standings.begin(), table.standings.end(), [](const Standing& s) { return s.rank; });
 }
 
-// In the order of the paper's questions, then by name; suites for diagnosis, without a rank, come last.
-Suites suites_of(const std::vector<Entry>& entries) {
-  constexpr std::array order{"q1", "q2", "q3", "mobile"};
+// In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
+Suites suites_of(const std::vector<Entry>& entries, const Labels& labels) {
+  constexpr std::array order{"q1", "clutter", "q2", "q3", "few_members", "mobile", "robustness"};
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   for (const auto& table : tables(entries)) {
     const std::string& suite = table.front()->setting.suite;
-    by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(named_table(table));
+    by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(
+        named_table(table, labels));
   }
   Suites suites;
   for (auto& [place, named] : by_place) suites.emplace_back(place.second, std::move(named));
@@ -180,7 +202,7 @@ Suites suites_of(const std::vector<Entry>& entries) {
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents) {
-  const Suites suites = suites_of(entries);
+  const Suites suites = suites_of(entries, read_labels(board));
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(index(suites, all_rows));
   files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");

@@ -11,6 +11,7 @@
 #include <lgabench/core/shell.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -44,7 +45,10 @@ std::string interval_text(const Standing& s) {
 
 // Names of a table's rows: the id, and those options, at every row that has them, by which two rows of one method
 // differ (one row's default is another's variant); then what else tells them apart.
-std::vector<std::string> names_of(const std::vector<Standing>& all) {
+struct Names {
+  std::vector<std::string> names, labels;
+};
+Names names_of(const std::vector<Standing>& all, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
   for (const Standing& s : all)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
@@ -52,8 +56,9 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
   std::set<std::string> telling;
   for (const auto& [key, different] : values)
     if (different.size() > 1) telling.insert(key.second);
-  std::vector<std::string> names;
-  std::map<std::string, int> times;
+  const std::vector<std::string> options(telling.begin(), telling.end());
+  std::vector<std::string> names, labels;
+  std::map<std::string, int> times, labelled;
   for (const Standing& s : all) {
     const Identity& identity = s.entry->identity;
     std::string name = identity.row.id;
@@ -61,6 +66,8 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
       if (telling.count(option) > 0) name += fmt::format("+{}={}", option, option_text(value));
     names.push_back(name);
     ++times[name];
+    labels.push_back(label_of(words, *s.entry, options));
+    ++labelled[labels.back()];
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     if (times[names[i]] > 1) {
@@ -69,7 +76,25 @@ std::vector<std::string> names_of(const std::vector<Standing>& all) {
           fmt::format("+version={}+answers={}+engine={}+id={}", identity.row.version,
                       to_string(identity.answers).substr(0, 20), identity.engine, all[i].entry->id().substr(0, 6));
     }
-  return names;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (labelled[labels[i]] > 1)
+      labels[i] += fmt::format(", version {}, {}", all[i].entry->identity.row.version, all[i].entry->id().substr(0, 6));
+  return {names, labels};
+}
+
+// Whether each is the first of its method: the best, as rows stand by rank and success.
+std::vector<bool> best_of(const std::vector<Standing>& all) {
+  std::set<std::string> known;
+  std::vector<bool> best;
+  for (const Standing& s : all) best.push_back(known.insert(s.entry->identity.row.id).second);
+  return best;
+}
+
+// What a row is called; its options under the pointer.
+TableCell named_cell(const NamedTable& table, std::size_t i) {
+  Span name(table.labels[i]);
+  if (const std::string options = display_name(table.names[i]); options != name.text) name.title = options;
+  return name;
 }
 
 TableCell rate_button(const std::string& text, double rate, std::size_t row) {
@@ -108,7 +133,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
     const bool reference = s.entry->identity.row.is_reference();
-    TableCell name(Span(display_name(table.names[i])));
+    TableCell name = named_cell(table, i);
     name.style = reference ? MethodStyle() : styles(table.names[i]);
     Grid::Row row{
         {}, {Span::number(rank_text(s)), name, score_button(s, (first_row + i) * scenarios_of_a_row)}, reference};
@@ -122,7 +147,18 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
       row.cells.emplace_back(Span::number(reference ? "–" : amount(value)));
     row.cells.emplace_back(tier_and_marks(s));
+    row.more = !table.best[i];
     grid.rows.push_back(std::move(row));
+  }
+  // A column without a value in any row says nothing.
+  for (std::size_t k = grid.heads.size(); k-- > 3;) {
+    if (!std::all_of(grid.rows.begin(), grid.rows.end(),
+                     [k](const Grid::Row& row) { return row.cells[k].text() == "–"; }))
+      continue;
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    grid.heads.erase(grid.heads.begin() + at);
+    grid.align.erase(k, 1);
+    for (Grid::Row& row : grid.rows) row.cells.erase(row.cells.begin() + at);
   }
   return grid;
 }
@@ -132,8 +168,8 @@ Chart curve_chart(const NamedTable& table) {
   Chart chart;
   const std::vector<int>& demonstrations = table.setting.demonstrations;
   chart.title = "Success against the number of demonstrations";
-  chart.subtitle = fmt::format("mean over {} scenarios; the first {} entries and reference rows",
-                               table.setting.scenarios.size(), curves);
+  chart.subtitle = fmt::format("mean over {} scenarios; the best row of each method, and reference rows",
+                               table.setting.scenarios.size());
   chart.axis = "demonstrations";
   chart.alternative = chart.title + ", as in the table's columns";
   const double pad = .08 * (demonstrations.back() - demonstrations.front());
@@ -145,10 +181,9 @@ Chart curve_chart(const NamedTable& table) {
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
     const bool reference = s.entry->identity.row.is_reference();
-    if (!reference && ++drawn > curves) continue;
-    const std::string name = display_name(table.names[i]);
-    Series series{reference ? Series::reference : Series::measured, name,
-                  reference ? MethodStyle() : styles(table.names[i]), true};
+    if (!reference && (!table.best[i] || ++drawn > curves)) continue;
+    const std::string& name = table.labels[i];
+    Series series{reference ? Series::reference : Series::measured, name, styles(table.names[i]), true};
     for (const int n : demonstrations)
       if (const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0); at != s.at.end()) {
         const double rate = at->second;
@@ -174,7 +209,7 @@ Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   grid.align = "l" + std::string(table.setting.scenarios.size(), 'r');
   for (std::size_t i = 0; i < table.standings.size(); ++i) {
     const Standing& s = table.standings[i];
-    Grid::Row row{{}, {TableCell(Span(display_name(table.names[i])))}, s.entry->identity.row.is_reference()};
+    Grid::Row row{{}, {named_cell(table, i)}, s.entry->identity.row.is_reference(), !table.best[i]};
     for (std::size_t k = 0; k < table.setting.scenarios.size(); ++k) {
       const double rate = s.in_scenario.at(table.setting.scenarios[k].id);
       row.cells.push_back(rate_button(fixed(rate), rate, (first_row + i) * scenarios_of_a_row + k + 1));
@@ -212,10 +247,13 @@ std::string command_of(const Entry& entry) {
 
 }  // namespace
 
-NamedTable named_table(const std::vector<const Entry*>& table) {
-  NamedTable named{table.front()->setting, standings(table), {}, not_yet_replayed(table), {}, 0};
-  named.names = names_of(named.standings);
-  named.waiting_names = names_of(named.waiting);
+NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels) {
+  NamedTable named{table.front()->setting, standings(table), {}, {}, {}, not_yet_replayed(table), {}, 0};
+  Names names = names_of(named.standings, labels);
+  named.names = std::move(names.names);
+  named.labels = std::move(names.labels);
+  named.best = best_of(named.standings);
+  named.waiting_labels = names_of(named.waiting, labels).labels;
   named.withdrawn = static_cast<int>(table.size() - named.standings.size() - named.waiting.size());
   return named;
 }
@@ -275,25 +313,55 @@ std::optional<Grid> waiting_grid(const NamedTable& table, const fs::path& board)
   grid.align = "lrlll";
   for (std::size_t i = 0; i < table.waiting.size(); ++i) {
     const Standing& s = table.waiting[i];
-    grid.rows.push_back(
-        {{},
-         {TableCell(Span(display_name(table.waiting_names[i]))), Span::number(fixed(s.score, score_digits)),
-          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
-          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
-         false});
+    grid.rows.push_back({{},
+                         {TableCell(Span(table.waiting_labels[i])), Span::number(fixed(s.score, score_digits)),
+                          Span(tier_and_marks(s)), Span(s.entry->about.at("by").get<std::string>()),
+                          Span::link(s.entry->id(), (board / s.entry->place() / "entry.json").string())},
+                         false});
   }
   return grid;
+}
+
+Section words_of_the_board() {
+  Section section{"words", "What the words mean"};
+  section.add<report::Facts>(
+      reading,
+      {{{"rank",
+         "1 plus the number of entries that are significantly better (paired test on these scenes, Holm’s "
+         "correction). Two entries of one rank have as many better ones; it does not say that they are equal."},
+        {"reference rows",
+         "not methods: the same action everywhere, any visible object, the expert that demonstrates. "
+         "They stand where their success puts them, and have no rank."},
+        {"§", "below the random visible object, which needs no demonstration."},
+        {"recomputed", "the numbers follow from the entry’s files; nothing was played again."},
+        {"replayed",
+         "a maintainer’s build played some of its cells again, chosen by bits drawn after it was written, "
+         "and got the same."},
+        {"reproduced", "so did another person, on another machine."},
+        {"fresh", "played on scenes that nobody knew when it was submitted, and no worse there."},
+        {"not yet replayed", "what the files of an entry claim; nobody has played it again, and it has no rank."},
+        {"claimed by", "somebody says so; the maintainers have not confirmed it."},
+        {"answers",
+         "whose words say what matters: recorded with the benchmark, or a file that the entry brings and "
+         "that is used as submitted."},
+        {"the truth stands in for people",
+         "the row needs people’s answers, and was given the true features: an upper "
+         "bound, without a rank."},
+        {"partly confined, unconfined", "the kernel could not keep the method from some files or calls."},
+        {"n = 10", "success with 10 demonstrations."},
+        {"training s", "seconds of training of one policy, on the submitter’s machine."}}});
+  return section;
 }
 
 report::Document suite_document(const std::string& suite, const std::vector<NamedTable>& tables) {
   Document document;
   document.suite = suite;
   document.title = "lgabench leaderboard: " + suite;
+  document.question = report::about_suite(suite).question;
   document.headline = {Span::link("All suites", "index.html"),
                        ". Success is the mean over scenarios of the share of successful episodes, over all arms and "
-                       "numbers of demonstrations, with its 95 % interval. An entry's rank is 1 plus the number of "
-                       "entries significantly better by the paired test on these scenes (Holm): equal ranks are ties. "
-                       "A click on a number shows the episodes behind it."};
+                       "numbers of demonstrations, with its 95 % interval. A click on a number shows the episodes "
+                       "behind it."};
   std::size_t first_row = 0, number = 0;
   for (const NamedTable& table : tables) {
     const std::string id = fmt::format("table{}", ++number);
@@ -317,6 +385,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     document.sections.push_back(std::move(heat));
     first_row += table.standings.size();
   }
+  document.sections.push_back(words_of_the_board());
   return document;
 }
 
@@ -332,7 +401,8 @@ Json suite_data(const std::vector<NamedTable>& tables) {
       const Json& source = entry.about.at("source");
       entries.push_back(
           {{"table", settings.size() - 1},
-           {"name", display_name(table.names[i])},
+           {"name", table.labels[i]},
+           {"row", display_name(table.names[i])},
            {"id", entry.id()},
            {"place", entry.place().string()},
            {"learns", learns(entry.identity.row)},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/standings.hpp>
 #include <lgabench/report/document.hpp>
 
@@ -13,12 +14,14 @@ namespace lgabench::leaderboard {
 struct NamedTable {
   Setting setting;
   std::vector<Standing> standings;
-  std::vector<std::string> names;  // of each standing, as report/names.hpp takes them; no two alike
-  std::vector<Standing> waiting;   // not yet replayed
-  std::vector<std::string> waiting_names;
+  std::vector<std::string> names;   // of each standing, as report/names.hpp takes them; no two alike
+  std::vector<std::string> labels;  // what readers are shown in place of the names; no two alike
+  std::vector<bool> best;           // of each standing, whether it is the first of its method
+  std::vector<Standing> waiting;    // not yet replayed
+  std::vector<std::string> waiting_labels;
   int withdrawn = 0;
 };
-NamedTable named_table(const std::vector<const Entry*>& table);
+NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels = {});
 
 /// "q1, preset leaderboard"
 std::string title_of(const Setting& setting);
@@ -34,6 +37,9 @@ std::optional<report::Paragraph> below_random_note(const std::vector<Standing>& 
 /// What else is known of an entry: "replayed; fresh", "recomputed; partly confined; 2 cells failed; claimed by B.
 /// Reader: replayed"
 std::string tier_and_marks(const Standing& standing);
+
+/// What ranks, marks and tiers mean, for readers who have read nothing else.
+report::Section words_of_the_board();
 
 /// Entries whose files are all that is known of them, and what they claim; none where there is none. `board` is where
 /// links find the board.

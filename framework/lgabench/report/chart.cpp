@@ -23,6 +23,7 @@ class Drawing {
     const double fits = 13 * (chart_.width - 16) / (text_width(chart_.title, 13) * spare_width);
     canvas_.text(chart_.title, 8, 18, Anchor::start, std::min(13., fits), true, Ink::ink);
     if (!chart_.subtitle.empty()) canvas_.text(chart_.subtitle, 8, 33, Anchor::start, small_text, false, Ink::soft);
+    if (chart_.rows) return rows();
     axes();
     for (const Series::Kind kind : {Series::reference, Series::published, Series::curve, Series::measured})
       draw_all(kind);
@@ -66,9 +67,48 @@ class Drawing {
     for (const Chart::Tick& tick : chart_.ticks)
       canvas_.text(tick.label, x_of(tick.at), foot + 16, slanted() ? Anchor::end : Anchor::middle, small_text, false,
                    Ink::soft, slanted() ? -20 : 0);
+    if (!chart_.values.empty())
+      canvas_.text(chart_.values, 11, (top_ + foot) / 2, Anchor::middle, small_text, false, Ink::soft, -90);
     if (!chart_.axis.empty())
       canvas_.text(chart_.axis, (left + chart_.width - right) / 2, chart_.height - 8, Anchor::middle, small_text, false,
                    Ink::soft);
+  }
+
+  // A dot plot: methods in their order, then reference rows. Returns the height.
+  double rows() {
+    constexpr double row = 22, between = 12;
+    double names = 0;
+    for (const Series& series : chart_.series)
+      names = std::max(names, spare_width * text_width(series.name, small_text) + 2 * between);
+    const double begin = std::min(names, .45 * chart_.width), end = chart_.width - right - between;
+    const auto x_of_value = [&](double value) {
+      return begin + (value - chart_.bottom) / (chart_.top - chart_.bottom) * (end - begin);
+    };
+    const double foot = top_ + row * static_cast<double>(chart_.series.size());
+    for (int tenth = 0; tenth <= 10; tenth += 2) {
+      const double value = chart_.bottom + (chart_.top - chart_.bottom) * tenth / 10, x = x_of_value(value);
+      canvas_.path({{'m', {x, top_}}, {'l', {x, foot}}}, grid);
+      canvas_.text(fmt::format("{:.1f}", value), x, foot + 16, Anchor::middle, small_text, false, Ink::soft);
+    }
+    canvas_.text(chart_.axis, (begin + end) / 2, foot + 34, Anchor::middle, small_text, false, Ink::soft);
+    double y = top_ + row / 2;
+    for (const bool references : {false, true})
+      for (const Series& series : chart_.series) {
+        if ((series.kind == Series::reference) != references || series.points.empty()) continue;
+        const ChartPoint& point = series.points.front();
+        canvas_.open(series);
+        canvas_.text(series.name, begin - between, y + 4, Anchor::end, small_text, false,
+                     references ? Ink::soft : Ink::ink);
+        canvas_.open(point, series.kind);
+        const Ink ink = references ? Ink::soft : Ink::series;
+        canvas_.path({{'m', {x_of_value(point.low), y}}, {'l', {x_of_value(point.high), y}}}, {ink, Ink::none, 1.3});
+        canvas_.path(mark_path(series.style, x_of_value(point.y), y, references ? 3 : radius),
+                     references ? Pen{Ink::soft, Ink::soft} : mark_pen(series.style));
+        canvas_.close();
+        canvas_.close();
+        y += row;
+      }
+    return foot + 42;
   }
 
   void draw_all(Series::Kind kind) {

@@ -35,12 +35,14 @@ struct Chart {
   };
   std::string file;  // in RUN/figures, without its ending; "" for one that stands on the page alone
   std::string title, subtitle, axis, alternative;  // alternative: the text for those who do not see it
+  std::string values;                              // what they are, beside them; "" says nothing
   double width = 640, height = 400;                // in points, without the legend
   double left = 0, right = 1;                      // of the axis
   double bottom = 0, top = 1;                      // of the values
   std::vector<Tick> ticks{}, levels{};  // along the axis; of the values, where five equal steps are not wanted
   std::vector<Series> series{};
   bool legend = true;
+  bool rows = false;  // a row for each series, named beside it, its first point along the width: no ticks, no legend
 };
 
 /// The chart as an SVG element. `standalone`: as a file, with the name space that a page must not have.

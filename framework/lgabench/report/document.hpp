@@ -78,6 +78,7 @@ struct Grid {
     TableCell group;
     std::vector<TableCell> cells;
     bool reference = false;  // set apart from the rows above
+    bool more = false;       // a page shows it only when asked for all rows
   };
   std::string name;  // of its files: letters, digits, "_" and "-"
   std::string caption, group_head;
@@ -140,11 +141,20 @@ struct Note {
   std::string log{};  // of an error, relative to the run
 };
 
+/// An arm of the test, what its scenes are, and one of them.
+struct ArmLine {
+  std::string name, text;
+  std::string png;  // in base64; "" where there is none
+};
+
 struct Document {
   std::string suite, title;
   Spans headline{};  // the result, in a sentence
   std::vector<Note> notes;
   std::vector<Section> sections;
+  std::string question{};       // that the suite asks; "" where none is known
+  std::vector<ArmLine> arms{};  // what the columns of arms are
+  Spans setting{};              // what all rows share
 
   /// Every table that has files of its own, in order; every chart that has.
   std::vector<const Grid*> grids() const;

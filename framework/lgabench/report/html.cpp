@@ -83,14 +83,19 @@ std::set<std::string> groups_of(const Grid& grid) {
   return texts;
 }
 
-// Words that every row repeats in one column, as "layout cells": the caption says them once.
+// Heads of settings, never of what was measured: only these may leave a table.
+constexpr std::array settings_heads{"layout", "engine", "arm", "version", "table", "suite", "preset", "about"};
+
+// Words that every row repeats in a column of settings, as "layout cells": the caption says them once.
 std::vector<std::string> repeated(const Grid& grid) {
   std::vector<std::string> words(grid.heads.size());
   if (grid.rows.size() < 2) return words;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const TableCell& first = grid.rows.front().cells[i];
-    const bool plain = !first.style && !first.episodes && first.bar_of == 0 && !first.text().empty() &&
-                       !grid.heads[i].text().empty() && !first.spans.front().numeric;
+    const bool of_settings =
+        std::find(settings_heads.begin(), settings_heads.end(), grid.heads[i].text()) != settings_heads.end();
+    const bool plain = of_settings && !first.style && !first.episodes && first.bar_of == 0 && !first.text().empty() &&
+                       !first.spans.front().numeric;
     if (plain && std::all_of(grid.rows.begin(), grid.rows.end(),
                              [&](const Grid::Row& row) { return row.cells[i].text() == first.text(); }))
       words[i] = grid.heads[i].text() + " " + first.text();
@@ -124,7 +129,7 @@ std::string grid_html(const Grid& grid) {
     std::size_t headed = 0;
     while (headed < row.cells.size() && !row.cells[headed].style) ++headed;
     if (headed == row.cells.size()) headed = 0;  // no method: the first column
-    body += row.reference ? "<tr class=reference>" : "<tr>";
+    body += row.reference ? "<tr class=reference>" : row.more ? "<tr class=more>" : "<tr>";
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       if (said[i].empty())
         body += fmt::format(i <= headed ? "<th scope=row>{}</th>" : "<td>{}</td>", cell_html(row.cells[i]));
@@ -133,7 +138,7 @@ std::string grid_html(const Grid& grid) {
   return fmt::format(
       "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n"
       "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n",
-      caption, grid.rows.size() > 5 ? " class=sortable" : "", heads, body);
+      caption, grid.rows.size() > 1 ? " class=sortable" : "", heads, body);
 }
 
 std::string charts_html(const Charts& charts) {
@@ -184,9 +189,24 @@ std::string notes_html(const Document& document) {
   const std::size_t errors = static_cast<std::size_t>(
       std::count_if(document.notes.begin(), document.notes.end(), [](const Note& n) { return n.kind == Note::error; }));
   return fmt::format(
-      "<details class=notes{}><summary>{} notes on how this came about{}</summary>\n<ul "
+      "<details class=notes{}><summary>Notes about this run ({}{})</summary>\n<ul "
       "class=notes>\n{}</ul></details>\n",
       errors ? " open" : "", document.notes.size(), errors ? fmt::format(", {} of them errors", errors) : "", text);
+}
+
+// The arms' names, what their scenes are, and one of these each.
+std::string arms_html(const Document& document) {
+  std::string text;
+  for (const ArmLine& arm : document.arms) {
+    const std::string picture = arm.png.empty() ? ""
+                                                : fmt::format(
+                                                      "<img width=160 height=80 alt=\"A scene of the arm {0}\" "
+                                                      "src=\"data:image/png;base64,{1}\">",
+                                                      escaped(arm.name), arm.png);
+    if (arm.text.empty() && picture.empty()) continue;
+    text += fmt::format("<div>{}<dt>{}</dt><dd>{}</dd></div>\n", picture, escaped(arm.name), escaped(arm.text));
+  }
+  return text.empty() ? "" : "<dl class=arms aria-label=\"Arms of the test\">\n" + text + "</dl>\n";
 }
 
 // JSON inside a script element: no text of it may end the element.
@@ -212,8 +232,10 @@ std::string escaped(const std::string& text) {
 
 std::string html(const Document& document, const Json& data, const std::string& script) {
   std::string body;
+  if (!document.question.empty()) body += "<p class=question>" + escaped(document.question) + "</p>\n";
   if (!document.headline.empty()) body += "<p class=headline>" + spans_html(document.headline) + "</p>\n";
-  body += notes_html(document);
+  if (!document.setting.empty()) body += "<p class=hint>" + spans_html(document.setting) + "</p>\n";
+  body += arms_html(document) + notes_html(document);
   for (const Section& section : document.sections) {
     if ((section.in & on_page) == 0) continue;
     std::string blocks;

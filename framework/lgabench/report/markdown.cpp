@@ -78,7 +78,12 @@ std::string markdown(const Section& section) {
 
 std::string markdown(const Document& document) {
   std::string text = fmt::format("# {}\n\n", plain(document.title));
+  if (!document.question.empty()) text += plain(document.question) + "\n\n";
   if (!document.headline.empty()) text += markdown_text(document.headline) + "\n\n";
+  if (!document.setting.empty()) text += markdown_text(document.setting) + "\n\n";
+  for (const ArmLine& arm : document.arms)
+    if (!arm.text.empty()) text += fmt::format("- `{}`: {}\n", arm.name, plain(arm.text));
+  if (!document.arms.empty()) text += '\n';
   for (const Note& note : document.notes)
     if (note.kind != Note::source)
       text +=

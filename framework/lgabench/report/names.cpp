@@ -86,7 +86,8 @@ bool ByRank::operator()(const std::string& a, const std::string& b) const {
   return std::tuple(display_rank(a), a) < std::tuple(display_rank(b), b);
 }
 
-MethodStyles::MethodStyles(const std::vector<std::string>& methods) {
+MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std::string, std::string> told)
+    : told_(std::move(told)) {
   std::vector<std::string> ordered = methods, strange;
   std::sort(ordered.begin(), ordered.end(), ByRank());
   std::map<std::string, std::size_t> variants;  // so far, by id
@@ -110,6 +111,11 @@ MethodStyles::MethodStyles(const std::vector<std::string>& methods) {
     style.turned = drawn.turned;
     style.hollow = variant % 2 == 1;
   }
+}
+
+std::string MethodStyles::name(const std::string& method) const {
+  const auto found = told_.find(method);
+  return display_name(found == told_.end() ? method : found->second);
 }
 
 const MethodStyle& MethodStyles::operator()(const std::string& method) const {

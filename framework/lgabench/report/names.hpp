@@ -36,12 +36,16 @@ struct MethodStyle {
 /// none of its own takes a spare one.
 class MethodStyles {
  public:
-  explicit MethodStyles(const std::vector<std::string>& methods = {});
+  /// `told`: a row's name -> the name that readers are shown in its place.
+  explicit MethodStyles(const std::vector<std::string>& methods = {}, std::map<std::string, std::string> told = {});
+  /// What readers are shown of a row's name.
+  std::string name(const std::string& method) const;
   /// That of a reference row for a name that is none of them.
   const MethodStyle& operator()(const std::string& method) const;
 
  private:
   std::map<std::string, MethodStyle> styles_;
+  std::map<std::string, std::string> told_;
 };
 
 /// A Selection's provenance in words for a reader, e.g. "true φ̂: no human data"; "" for none.

@@ -32,8 +32,8 @@ Json places_of(const std::string& id, const Action& action) {
   return all;
 }
 
-std::string title_of(const Table& table, const Row& row) {
-  return fmt::format("{}, {}, {}, arm {}, {}", display_name(row.method), table.title(row.scenario),
+std::string title_of(const MethodStyles& styles, const Table& table, const Row& row) {
+  return fmt::format("{}, {}, {}, arm {}, {}", styles.name(row.method), table.title(row.scenario),
                      row.demonstrations ? table.demonstrations_text(row.demonstrations) : "no demonstrations", row.arm,
                      table.title());
 }
@@ -58,7 +58,7 @@ Json page_data(const Material& material) {
   for (const Table& table : material.summary.tables)
     for (const Row& row : table.rows) {
       rows[place(row.layout, row.engine, row.arm, row.scenario, row.method, row.demonstrations)] = row.index;
-      titles.push_back(title_of(table, row));
+      titles.push_back(title_of(material.styles, table, row));
     }
 
   const std::vector<std::string> words = failure_words();

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <set>
 
+#include <lgabench/report/headline.hpp>
+#include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
@@ -24,12 +26,12 @@ std::string pictures_note(const Pictures& pictures) {
 }
 
 // Who said which features matter, a line each: what is a measurement of people or of a language model, and what is not.
-std::set<std::string> sources(const Summary& summary) {
+std::set<std::string> sources(const Summary& summary, const MethodStyles& styles) {
   std::set<std::string> lines;
   for (const PhiOfRow& of : distinct_phi(summary)) {
     const PhiOfCommand& phi = of.row->phi[of.command];
     const std::string words = provenance_words(phi.provenance);
-    lines.insert(fmt::format("φ̂ of {}: {}{}.", display_name(of.row->method), words.empty() ? phi.provenance : words,
+    lines.insert(fmt::format("φ̂ of {}: {}{}.", styles.name(of.row->method), words.empty() ? phi.provenance : words,
                              phi.source.empty() ? "" : ", " + phi.source));
   }
   return lines;
@@ -40,41 +42,9 @@ std::vector<Note> all_notes(const Material& material) {
   for (const std::string& line : settings(material.run)) all.push_back({Note::setting, line});
   for (const std::string& line : notes(material.run, material.summary)) all.push_back({Note::note, line});
   for (const MethodError& error : method_errors(material.run)) all.push_back({Note::error, error.text, error.log});
-  for (const std::string& line : sources(material.summary)) all.push_back({Note::source, line});
+  for (const std::string& line : sources(material.summary, material.styles)) all.push_back({Note::source, line});
   if (const std::string line = pictures_note(material.pictures); !line.empty()) all.push_back({Note::source, line});
   return all;
-}
-
-// "Mean over 13 scenarios, 50 demonstrations: LGA 0.57, ...; random visible object 0.43. C1: undecided." Of the first
-// table: the most demonstrations, or the last arm that all scenarios have.
-Spans headline(const Material& material) {
-  if (material.summary.tables.empty()) return {};
-  const Table& table = material.summary.tables.front();
-  const std::vector<View> all = views(table);
-  if (all.empty() || all.back().columns.empty()) return {};
-  const std::vector<Column>& columns = all.back().columns;
-  const auto of_all_scenarios = [&](const Column& c) { return table.arm_title(c.arm) == c.arm; };
-  const auto last = std::find_if(columns.rbegin(), columns.rend(), of_all_scenarios);
-  const Column& column = last == columns.rend() ? columns.back() : *last;
-  Spans spans{
-      {fmt::format("Success, {}, {}{}: ", table.title(mean_scenario), table.demonstrations_text(column.demonstrations),
-                   table.arms.size() > 1 ? ", arm " + table.arm_title(column.arm) : "")}};
-  const auto add = [&](const std::string& id, const char* before) {
-    const Row* row = table.find(column.arm, mean_scenario, id, column.demonstrations);
-    if (!row || !row->success) return false;
-    spans.emplace_back(before + display_name(id) + " ");
-    spans.push_back(Span::number(fixed(*row->success), place_of(*row, "success"), Emphasis::strong));
-    return true;
-  };
-  bool any = false;
-  for (const std::string& id : table.methods(mean_scenario)) any |= add(id, any ? ", " : "");
-  if (!any) return {};
-  add("random_object", "; ");
-  spans.emplace_back(".");
-  for (const Claim& claim : material.claims)
-    if (claim.verdict != Verdict::not_tested)
-      spans.emplace_back(fmt::format(" {}: {}.", claim.id, to_string(claim.verdict)));
-  return spans;
 }
 
 Section how_to_read() {
@@ -102,16 +72,16 @@ Section how_to_read() {
 
 }  // namespace
 
-MethodStyles styles_of(const Summary& summary) {
+MethodStyles styles_of(const Summary& summary, const RunResults& run) {
   std::vector<std::string> names;
   for (const Table& table : summary.tables)
     for (const Row& row : table.rows) names.push_back(row.method);
   for (const CellResult& cell : summary.failed) names.push_back(cell.method);
-  return MethodStyles(names);
+  return MethodStyles(names, told_names(run));
 }
 
 TableCell named(const Material& material, const std::string& method, Emphasis emphasis) {
-  TableCell cell(Span(display_name(method), emphasis));
+  TableCell cell(Span(material.styles.name(method), emphasis));
   cell.style = material.styles(method);
   return cell;
 }
@@ -140,17 +110,22 @@ std::string success_title(const Material& material) {
 }
 
 Document report_document(const Material& material) {
+  const AboutSuite about = about_suite(material.run.suite);
   Document document{material.run.suite,
                     material.run.suite + ": " + success_title(material),
-                    headline(material),
+                    headline(material, about),
                     all_notes(material),
-                    {}};
+                    {},
+                    about.question,
+                    arm_lines(material, about),
+                    setting_line(material.run)};
   const auto add = [&document](Section section) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   for (Section& section : success(material)) add(std::move(section));
   add(claims_section(material.claims, material.styles, "The paper's claims"));
   add(phi(material));
+  add(selection_errors(material));
   add(failures(material));
   add(attribution(material));
   add(learning_curves(material));

@@ -13,7 +13,7 @@
 namespace lgabench::report {
 
 /// Those of a run's rows.
-MethodStyles styles_of(const Summary& summary);
+MethodStyles styles_of(const Summary& summary, const RunResults& run);
 
 /// What a report is made of; refers to its parts, which must outlive it.
 struct Material {
@@ -23,7 +23,7 @@ struct Material {
   const std::vector<EngineAgreement>& agreements;
   const PaperValues& paper;
   const Pictures& pictures;
-  MethodStyles styles = styles_of(summary);
+  MethodStyles styles = styles_of(summary, run);
 };
 
 /// A report has the same sections in every form. The same material gives the same document.

@@ -26,7 +26,7 @@ struct Placed {
 // The columns that say which difference a row is of.
 std::vector<TableCell> place_cells(const MethodStyles& styles, const Placed& of) {
   const ClaimedDifference& d = of.difference;
-  TableCell rows(display_name(d.above) + " − " + display_name(d.below));
+  TableCell rows(styles.name(d.above) + " − " + styles.name(d.below));
   rows.style = styles(d.above);
   return {of.claim.id,
           of.claim.layout,
@@ -119,7 +119,7 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
 
 Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
   Grid grid = differences_grid("claims_differences", "The differences behind the claims");
-  for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict", "based on"})
+  for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict on those", "based on"})
     grid.heads.emplace_back(head);
   grid.align += "lllll";
   for (const Placed& of : all) {
@@ -144,20 +144,26 @@ std::string with_reason(Verdict verdict, const std::string& reason, bool rehears
 Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title) {
   Section section{"claims", title, reading};
   if (claims.empty()) return section;
-  Grid verdicts;
+  Grid verdicts, untested;
   verdicts.name = "claims";
   verdicts.caption = "Verdicts";
   verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
+  untested.name = "claims_not_tested";
+  untested.caption = "Claims that this run does not test";
+  untested.heads = {"claim", "statement", "layout", "engine", "why"};
+  untested.align = "lllll";
   List lines;
   std::vector<Placed> all, tested;
   for (std::size_t c = 0; c < claims.size(); ++c) {
     const Claim& claim = claims[c];
-    verdicts.rows.push_back(
-        {{},
-         {claim.id, claim.statement, claim.layout, claim.engine,
-          verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
-          claim.differences.empty() ? TableCell() : verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
+    if (claim.verdict == Verdict::not_tested)
+      untested.rows.push_back({{}, {claim.id, claim.statement, claim.layout, claim.engine, claim.reason}});
+    else
+      verdicts.rows.push_back({{},
+                               {claim.id, claim.statement, claim.layout, claim.engine,
+                                verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
+                                verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
     lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});
@@ -171,14 +177,17 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   }
   section.add(in_terminal, std::move(lines));
   if (!all.empty()) section.add(in_terminal, details(styles, all));
-  section.add(reading, std::move(verdicts));
+  if (!verdicts.rows.empty()) section.add(reading, std::move(verdicts));
+  const bool folds = !tested.empty() || untested.rows.size() > 1;
+  const std::string caption = untested.caption;
+  if (!untested.rows.empty()) section.add(reading, std::move(untested), folds ? caption : "");
   if (tested.empty()) return section;
 
   section.add(
       reading,
-      Paragraph{{"A claim's verdict is that on these scenarios: would other test scenes and training seeds of "
-                 "theirs say the same? Beside it stands the harder question, whether other scenarios like these "
-                 "would: Student's t over their differences. Each difference is that of the mean over scenarios, "
+      Paragraph{{"“These scenarios”: would new test scenes and training seeds give the same verdict? “Scenarios like "
+                 "these”: would new scenarios (Student's t over the scenarios' differences; six are needed)? Each "
+                 "difference is that of the mean over scenarios, "
                  "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over "
                  "the rows compared in one arm at one number of demonstrations, for each of the two by itself."}});
   section.add(reading, details(styles, tested));

@@ -80,7 +80,7 @@ Section times(const Material& material) {
     grid.rows.push_back(std::move(row));
   }
   section.add(in_markdown, Paragraph{{"Mean seconds of each phase."}});
-  section.add(reading, std::move(grid));
+  section.add(reading, std::move(grid), "Mean seconds of each phase");
   return section;
 }
 
@@ -121,7 +121,7 @@ Section provenance(const Material& material) {
                            fmt::format("{} {}, sha256 {:.16}", plugin.kind, plugin.version, plugin.sha256));
   for (const auto& [name, value] : run.record.build.items())
     if (value.is_string()) all.items.emplace_back(name, "sha256 " + value.get<std::string>().substr(0, 16));
-  section.add(on_page, std::move(all));
+  section.add(on_page, std::move(all), "Command, versions, checksums, machine");
   return section;
 }
 

@@ -1,6 +1,7 @@
 // Success: of each method and reference row, its change between arms, what of it may have been learned by heart.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include <lgabench/report/sections.hpp>
@@ -26,11 +27,15 @@ TableCell with_interval(const Row& row, double value, const Interval& interval,
 
 TableCell success_cell(const Row* row) {
   if (!row) return {};
-  const std::string marks = marks_text(*row) + (acts_the_same(*row) ? " =" : "");
-  if (!row->success) return Span::number("–" + marks);
+  const Spans marks = marks_spans(*row);
+  if (!row->success) {
+    Spans none{Span::number("–")};
+    none.insert(none.end(), marks.begin(), marks.end());
+    return none;
+  }
   TableCell cell =
       with_interval(*row, *row->success, row->interval, {"success", "low", "high"}, rate_text, Emphasis::none);
-  if (!marks.empty()) cell.spans.push_back(Span::number(marks));
+  cell.spans.insert(cell.spans.end(), marks.begin(), marks.end());
   cell.episodes = row->index;
   cell.rate = *row->success;
   return cell;
@@ -121,8 +126,23 @@ Grid success_grid(const Material& material, const Table& table, const std::vecto
   return grid;
 }
 
-// Success of a mean or a scenario along the demonstrations or, with a single number of them, over the arms: as points,
-// not bars, so that a method has the same mark in every figure.
+// Without the rows that have no value.
+Grid told(Grid grid) {
+  const auto says_nothing = [](const TableCell& cell) { return cell.spans.empty() || cell.text() == "–"; };
+  grid.rows.erase(std::remove_if(grid.rows.begin(), grid.rows.end(),
+                                 [&](const Grid::Row& row) {
+                                   return std::all_of(row.cells.begin() + 1, row.cells.end(), says_nothing);
+                                 }),
+                  grid.rows.end());
+  return grid;
+}
+
+bool any_seen_input(const Table& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.inputs_seen > 0; });
+}
+
+// Success of a mean or a scenario along the demonstrations, or over the arms with a single number of them, or with a
+// single arm as well a row for each method: as points, not bars, so that a method has the same mark in every figure.
 Chart chart_of(const Material& material, const Table& table, const std::string& arm, const std::string& scenario) {
   const std::vector<int> demonstrations = table.demonstrations();
   const bool joined = demonstrations.size() > 1;
@@ -144,11 +164,11 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
   for (const Place& place : places) chart.ticks.push_back({place.x, place.label});
 
   const auto add = [&](const std::string& id, Series::Kind kind) {
-    Series series{kind, display_name(id), material.styles(id), joined};
+    Series series{kind, material.styles.name(id), material.styles(id), joined};
     for (const Place& place : places) {
       if (kind == Series::published) {
-        const auto rate = material.paper.find(scenario, series.name, place.n);
-        const double error = material.paper.error(scenario, series.name, place.n).value_or(0);
+        const auto rate = material.paper.find(scenario, display_name(id), place.n);
+        const double error = material.paper.error(scenario, display_name(id), place.n).value_or(0);
         if (rate && joined)
           series.points.push_back({place.x, *rate, *rate - error, *rate + error,
                                    fmt::format("{}, the paper’s, at {}: {}{}", series.name, place.label,
@@ -171,12 +191,18 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
   for (const std::string& id : table.references(scenario)) add(id, Series::reference);
 
   const bool one_of_arms = joined && table.arms.size() > 1;
-  chart.title = table.title(scenario);
-  chart.subtitle =
-      fmt::format("success in {}, {}{}", material.run.suite, table.title(), one_of_arms ? ", arm " + arm : "");
-  chart.axis = joined ? "demonstrations" : "arm, " + table.demonstrations_text(demonstrations.front());
-  chart.alternative =
-      fmt::format("{}, against {}: {}", chart.subtitle, joined ? "demonstrations" : "arms", chart.title);
+  chart.rows = places.size() == 1;
+  const std::string where = fmt::format("{}, {}", material.run.suite, table.title());
+  chart.title = one_of_arms ? table.arm_title(arm) : table.title(scenario);
+  chart.subtitle = one_of_arms ? table.title(scenario) + ", " + where : where;
+  const std::string one_number = table.demonstrations_text(demonstrations.front());
+  chart.values = "success";
+  chart.axis = chart.rows ? "success, " + one_number : joined ? "demonstrations" : "arm, " + one_number;
+  chart.alternative = fmt::format("success in {}{}, {}: {}", where, one_of_arms ? ", arm " + arm : "",
+                                  chart.rows ? "a row for each method"
+                                  : joined   ? "against demonstrations"
+                                             : "against arms",
+                                  table.title(scenario));
   return chart;
 }
 
@@ -201,7 +227,8 @@ Charts scenario_charts(const Material& material, const Table& table, const std::
   if (table.demonstrations().size() < 2) return all;
   for (const std::string& scenario : scenarios) {
     Chart chart = chart_of(material, table, table.arms.front(), scenario);
-    chart.subtitle = chart.axis = "";
+    chart.title = table.title(scenario);
+    chart.subtitle = chart.axis = chart.values = "";
     chart.width = 300, chart.height = 180;
     chart.legend = false;
     all.charts.push_back(std::move(chart));
@@ -209,17 +236,18 @@ Charts scenario_charts(const Material& material, const Table& table, const std::
   return all;
 }
 
-void add_view(const Material& material, const Table& table, const View& view, const std::string& name,
-              Section& section) {
+void add_view(const Material& material, const Table& table, const View& view, const std::string& name, bool first,
+              bool last, Section& section) {
   const bool arms = table.arms.size() > 1;
   const std::vector<std::string> all = table.scenarios(), each(all.begin(), all.end() - 1);
   const std::string field = fmt::format("{}, {}", material.summary.suite, table.title()),
                     columns = arms ? view.corner : "columns: number of demonstrations";
-  const auto add = [&](Media media, Grid grid, const char* file, const std::string& caption) {
+  const auto add = [&](Media media, Grid grid, const char* file, const std::string& caption,
+                       const std::string& folded = "") {
     if (media != in_terminal) grid.name = name + "_" + file;
     grid.caption = caption;
     if (media == in_terminal) grid.heads.front() = view.corner;
-    section.add(media, std::move(grid));
+    section.add(media, std::move(grid), folded);
   };
   const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
                        const std::vector<std::string>& scenarios,
@@ -235,25 +263,30 @@ void add_view(const Material& material, const Table& table, const View& view, co
   add(in_terminal, own(success_cell, view.columns, all, true), "",
       field + ": success [95 % interval over test scenes and training seeds]");
   section.add(in_markdown, Paragraph{{"Each scenario:"}});
-  if (Charts small = scenario_charts(material, table, each); !small.charts.empty())
+  if (Charts small = scenario_charts(material, table, each); first && !small.charts.empty())
     section.add(on_page, std::move(small));
   add(reading, success_grid(material, table, view.columns, each), "scenarios",
-      fmt::format("Success in each scenario, {}; {}", table.title(), columns));
+      fmt::format("Success in each scenario, {}; {}", table.title(), columns), "Each scenario, as a table");
   if (!view.shifted.empty()) {
-    const std::string& first = table.arms.front();
-    section.add(in_markdown, Paragraph{{fmt::format("Change against {}, scene by scene:", first)}});
-    add(reading, own(shift_cell, view.shifted, all, false), "change",
-        fmt::format("Change against {}, scene by scene, {}; {}", first, table.title(), columns));
-    add(in_terminal, own(shift_cell, view.shifted, all, true), "",
-        fmt::format("{}: change against {} [95 % interval]", field, first));
+    const std::string& control = table.arms.front();
+    section.add(in_markdown, Paragraph{{fmt::format("Change against {}, scene by scene:", control)}});
+    add(reading, told(own(shift_cell, view.shifted, all, false)), "change",
+        fmt::format("Change against {}, scene by scene, {}; {}", control, table.title(), columns),
+        "Change against " + control);
+    add(in_terminal, told(own(shift_cell, view.shifted, all, true)), "",
+        fmt::format("{}: change against {} [95 % interval]", field, control));
   }
-  if (any_seen(table)) {
-    section.add(in_markdown, Paragraph{{"Test inputs seen in training, share:"}});
-    add(reading, own(seen_cell, view.columns, all, false), "seen",
-        fmt::format("Test inputs seen in training, share, {}; {}", table.title(), columns));
-    add(in_terminal, own(seen_cell, view.columns, {mean_scenario}, true), "",
-        field + ": test inputs seen in training, share");
+  if (!any_seen(table)) return;
+  if (!any_seen_input(table)) {
+    if (last) section.add(everywhere, Paragraph{{"No test input occurred in training."}});
+    return;
   }
+  section.add(in_markdown, Paragraph{{"Test inputs that occurred in training, share:"}});
+  add(reading, told(own(seen_cell, view.columns, all, false)), "seen",
+      fmt::format("Test inputs that occurred in training, share, {}; {}", table.title(), columns),
+      "Test inputs that occurred in training");
+  add(in_terminal, told(own(seen_cell, view.columns, {mean_scenario}, true)), "",
+      field + ": test inputs that occurred in training, share");
 }
 
 }  // namespace
@@ -268,11 +301,12 @@ std::vector<Section> success(const Material& material) {
       section.add(reading, std::move(drawn));
     else
       section.add(reading, Paragraph{{"No figure: no cell has finished."}});
-    for (const View& view : views(table)) {
+    const std::vector<View> all = views(table);
+    for (const View& view : all) {
       const int n = view.columns.front().demonstrations;
       const std::string name = fmt::format("{}_{}{}", slug(table.layout), slug(table.engine),
                                            table.arms.size() > 1 ? fmt::format("_{}", n) : "");
-      add_view(material, table, view, name, section);
+      add_view(material, table, view, name, &view == &all.front(), &view == &all.back(), section);
     }
   }
   const PaperValues& paper = material.paper;

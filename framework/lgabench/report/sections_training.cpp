@@ -63,7 +63,7 @@ Chart chart_of(const Material& material, const std::string& name, const std::vec
       by_method[cell->method].push_back(&found->second);
   double low = INFINITY, high = -INFINITY;
   for (const auto& [method, curves] : by_method) {
-    Series series{Series::curve, display_name(method), material.styles(method), true};
+    Series series{Series::curve, material.styles.name(method), material.styles(method), true};
     for (const auto& [epoch, value] : mean_curve(curves)) {
       series.points.push_back({static_cast<double>(epoch), value, value, value, ""});
       low = std::min(low, value);
@@ -131,7 +131,7 @@ Section learning_curves(const Material& material) {
       }
     }
     if (large.charts.empty()) continue;
-    section.add(reading, std::move(large));
+    section.add(reading, std::move(large), "Mean over the scenarios");
     if (small.charts.size() > 1) section.add(on_page, std::move(small), "Each scenario");
   }
   if (!section.blocks.empty())

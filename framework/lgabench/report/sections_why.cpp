@@ -26,7 +26,7 @@ Span phi_number(const Row& row, const std::string& place, std::optional<double> 
 
 // A chip for each name; too many are counted.
 TableCell chips(const std::vector<std::string>& names, std::size_t known, Emphasis emphasis) {
-  return names.empty() ? TableCell("–") : TableCell(Span(listed(names, known), emphasis));
+  return names.empty() ? TableCell("none") : TableCell(Span(listed(names, known), emphasis));
 }
 
 // The words of each distinct φ̂: what it has of the truth, what it lacks, what it has beside it.
@@ -35,7 +35,7 @@ Grid words_grid(const Material& material, bool tell) {
   grid.name = "phi_words";
   grid.caption = "What was selected, in words, beside what the scenario means";
   grid.group_head = "scenario";
-  grid.heads = {"command", "method", "about", "feature", "selected, true", "missed", "selected, not true"};
+  grid.heads = {"command", "method", "about", "feature", "correct", "missed", "wrong"};
   grid.align = std::string(grid.heads.size() + 1, 'l');
   std::set<std::vector<std::string>> shown;
   for (const CellResult& cell : material.run.cells)
@@ -121,11 +121,11 @@ Section phi(const Material& material) {
                 "answered by",
                 "source",
                 "types: precision",
-                "recall",
-                "selected",
+                "types: recall",
+                "types: selected",
                 "textures: precision",
-                "recall",
-                "selected",
+                "textures: recall",
+                "textures: selected",
                 "queries",
                 "a person's seconds"};
   grid.align = "llllllrrrrrrrr";
@@ -154,10 +154,10 @@ Section phi(const Material& material) {
   }
   if (grid.rows.empty()) return section;
   if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add(on_page, std::move(in_words));
-  section.add(reading,
+  section.add(in_markdown,
               Paragraph{{"Against the scenario's true distribution: precision and recall of what was selected, "
                          "and how many were selected of how many that are true."}});
-  section.add(reading, std::move(grid));
+  section.add(reading, std::move(grid), "Precision, recall, queries and seconds");
   if (known.empty()) return section;
   for (const std::string& wording : known) wordings.items.push_back({wording});
   section.add(reading, Paragraph{{"Where the question was worded otherwise than the command:"}});

@@ -61,6 +61,21 @@ std::string marks_text(const Row& row) {
   return text;
 }
 
+Spans marks_spans(const Row& row) {
+  Spans spans;
+  const auto add = [&spans](const std::string& sign, const std::string& meaning) {
+    spans.push_back(Span::number(sign));
+    spans.back().title = meaning;
+  };
+  for (const Mark& mark : table_marks)
+    if (row.marked(mark.word)) add(mark.sign, mark.meaning);
+  if (acts_the_same(row)) {
+    spans.push_back(Span::number(" "));
+    add("=", "the same actions as in " + row.shift->against);
+  }
+  return spans;
+}
+
 bool acts_the_same(const Row& row) { return !row.is_reference() && row.shift && row.shift->same_actions; }
 
 bool any_seen(const Table& table) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/report/document.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
@@ -38,6 +39,8 @@ constexpr std::ptrdiff_t failure_colours = 14;
 
 /// "†§": the row's.
 std::string marks_text(const Row& row);
+/// The same, each with its meaning; with "=" where the row acted exactly as in the first arm.
+Spans marks_spans(const Row& row);
 
 /// Whether the row acted exactly as in the first arm. Reference rows act alike whatever they see: it says something of
 /// methods alone.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include <lgabench/report/writers.hpp>
 
@@ -18,19 +19,9 @@ std::string padded(const std::string& text, std::size_t width) {
 
 std::string text_of(const Spans& spans) { return TableCell(spans).text(); }
 
-std::string terminal_block(const Block& block) {
-  if (const Grid* grid = std::get_if<Grid>(&block.content)) return terminal(*grid) + '\n';
-  std::string text;
-  if (const List* list = std::get_if<List>(&block.content))
-    for (const Spans& item : list->items) text += text_of(item) + '\n';
-  if (const Paragraph* paragraph = std::get_if<Paragraph>(&block.content)) text = text_of(paragraph->spans) + '\n';
-  return text;
-}
+constexpr std::size_t indent = 2, gap = 2, widest = 132;  // columns of a terminal
 
-}  // namespace
-
-std::string terminal(const Grid& grid) {
-  constexpr std::size_t indent = 2, gap = 2;
+std::vector<std::size_t> widths(const Grid& grid) {
   std::vector<std::size_t> wide(grid.heads.size());
   for (std::size_t i = 0; i < wide.size(); ++i) {
     wide[i] = display_width(grid.heads[i].text());
@@ -38,6 +29,35 @@ std::string terminal(const Grid& grid) {
     for (const Grid::Row& row : grid.rows) wide[i] = std::max(wide[i], display_width(row.cells[i].text()));
     wide[i] += gap;
   }
+  return wide;
+}
+
+// A table that is too wide as several, of about as many columns each, below each other.
+std::vector<Grid> narrow(const Grid& grid) {
+  const std::vector<std::size_t> wide = widths(grid);
+  const std::size_t all = std::accumulate(wide.begin(), wide.end(), indent), columns = wide.size() - 1;
+  if (all <= widest || columns < 2 || grid.group_head.empty()) return {grid};
+  const std::size_t room = widest - std::min(widest - 1, wide.front() + indent),
+                    parts = std::min(columns, (all - wide.front() - indent + room - 1) / room);
+  std::vector<Grid> grids;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const auto begin = static_cast<std::ptrdiff_t>(1 + part * columns / parts),
+               end = static_cast<std::ptrdiff_t>(1 + (part + 1) * columns / parts);
+    const auto some = [&](const std::vector<TableCell>& cells) {
+      std::vector<TableCell> kept{cells.front()};
+      kept.insert(kept.end(), cells.begin() + begin, cells.begin() + end);
+      return kept;
+    };
+    Grid& one = grids.emplace_back(grid);
+    if (part > 0) one.caption.clear();
+    one.heads = some(grid.heads);
+    for (std::size_t i = 0; i < grid.rows.size(); ++i) one.rows[i].cells = some(grid.rows[i].cells);
+  }
+  return grids;
+}
+
+std::string one_table(const Grid& grid) {
+  const std::vector<std::size_t> wide = widths(grid);
   std::string text = grid.caption.empty() ? "" : grid.caption + "\n\n";
   const auto line = [&](const std::vector<TableCell>& cells, std::size_t inset) {
     std::string row;
@@ -59,6 +79,27 @@ std::string terminal(const Grid& grid) {
   }
   return text;
 }
+
+}  // namespace
+
+std::string terminal(const Grid& grid) {
+  std::string text;
+  for (const Grid& one : narrow(grid)) text += (text.empty() ? "" : "\n") + one_table(one);
+  return text;
+}
+
+namespace {
+
+std::string terminal_block(const Block& block) {
+  if (const Grid* grid = std::get_if<Grid>(&block.content)) return terminal(*grid) + '\n';
+  std::string text;
+  if (const List* list = std::get_if<List>(&block.content))
+    for (const Spans& item : list->items) text += text_of(item) + '\n';
+  if (const Paragraph* paragraph = std::get_if<Paragraph>(&block.content)) text = text_of(paragraph->spans) + '\n';
+  return text;
+}
+
+}  // namespace
 
 std::string terminal(const Section& section) {
   std::string text;

@@ -2,18 +2,36 @@
 // What a leaderboard's page does: rows are filtered, and a click on a number shows an entry's episodes.
 const many = 1000;  // a data-row is the entry's number times this, and its scenario's + 1
 
-for (const table of document.querySelectorAll("table.sortable")) {
-  const wanted = document.createElement("input");
+// One filter for a page's rankings and their scenarios: rows that have all of the words. A word that some row has as it
+// stands is a whole one: "lga" does not find LGA-S. Without words, the best row of each method, or all.
+const boards = [...document.querySelectorAll("[id^=table] table.sortable")]
+  .filter((table) => !table.closest("section").id.includes("-") || table.closest("section").id.endsWith("-scenarios"));
+if (boards.length) {
+  const rows = boards.flatMap((table) => [...table.tBodies].flatMap((body) => [...body.rows]));
+  const wordsOf = (row) => row.textContent.toLowerCase().split(/[\s,;]+/);
+  const wanted = document.createElement("input"), all = document.createElement("input"), label = document.createElement("label");
   wanted.type = "search";
-  wanted.placeholder = wanted.ariaLabel = "Filter rows: lga replayed";
-  wanted.oninput = () => {
-    const said = wanted.value.toLowerCase().split(/\s+/);
-    for (const row of table.tBodies[0].rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = !said.every((word) => text.includes(word));
-    }
+  wanted.placeholder = wanted.ariaLabel = "Find rows: words of their names";
+  all.type = "checkbox";
+  const apply = () => {
+    const said = wanted.value.toLowerCase().split(/\s+/).filter((word) => word);
+    const known = rows.map((row) => [row, wordsOf(row)]);
+    const whole = said.filter((word) => known.some(([, words]) => words.includes(word)));
+    for (const [row, words] of known)
+      row.hidden = said.length
+        ? !said.every((word) => words.some((one) => whole.includes(word) ? one === word : one.includes(word)))
+        : row.classList.contains("more") && !all.checked;
   };
-  table.closest(".frame").before(wanted);
+  const more = boards.filter((table) => !table.closest("section").id.includes("-"))
+    .flatMap((table) => [...table.querySelectorAll("tr.more")]).length;
+  label.append(all, more ? ` all rows (${more} more), not only the best of each method` : "");
+  label.hidden = !more;
+  wanted.oninput = all.onchange = apply;
+  const box = document.createElement("p");
+  box.className = "filter";
+  box.append(wanted, label);
+  boards[0].closest(".frame").before(box);
+  apply();
 }
 
 // Cells of a table in the order of their bits: [scenario, layout, demonstrations, training seed, arm].
@@ -55,7 +73,7 @@ function fill(body, entry, setting, scenario) {
   body.innerHTML = `<p>The same cells again, one of them with <code>--demos N --seeds S</code>` +
     `${entry.learns ? ", a method of your own with <code>--plugin-path</code>" : ""}:</p>` +
     `<pre>${escaped(`${entry.command} --scenarios ${scenario} --out again`)}</pre>` +
-    `<p>What each episode failed of, and everything else: <a href="${escaped(entry.place)}/cells.jsonl">cells.jsonl</a>, ` +
+    `<p>Why each episode failed, and everything else: <a href="${escaped(entry.place)}/cells.jsonl">cells.jsonl</a>, ` +
     `<a href="${escaped(entry.place)}/entry.json">entry.json</a>.</p>` +
     `<div class="frame"><table><caption>Episodes in their order: a whole bar is a success</caption><thead><tr>` +
     ["layout", "arm", "demonstrations", "training seed", "successes", "episodes"].map((head) => `<th scope="col">${head}</th>`).join("") +
@@ -67,7 +85,7 @@ function show(row) {
   if (!entry) return;
   const setting = data.settings[entry.table], at = Math.max(0, row % many - 1);
   $("panel-title").textContent = entry.name;
-  const facts = [["authors", entry.authors.join(", ")], ["license", entry.license], ["source", entry.source],
+  const facts = [["options", entry.row], ["authors", entry.authors.join(", ")], ["license", entry.license], ["source", entry.source],
     ["version", entry.version], ["answers", entry.answers], ["computed by", entry.program], ["processor", entry.processor],
     ["tier", entry.tier], ["id", entry.id]];
   const body = document.createElement("div"), about = document.createElement("dl"), choice = $("outcome");

@@ -9,10 +9,15 @@ const words = (text) => text.replaceAll("_", " ");
 // Dark or light: the system's wish until the button is pressed, then what was chosen.
 const root = document.documentElement;
 try { root.dataset.theme = localStorage.getItem("lgabench-theme") || ""; } catch { /* a browser that keeps nothing */ }
+const system = matchMedia("(prefers-color-scheme: dark)");
+const isDark = () => root.dataset.theme ? root.dataset.theme === "dark" : system.matches;
+const nameTheme = () => { $("theme").textContent = isDark() ? "Light colours" : "Dark colours"; };
 $("theme").hidden = false;
+nameTheme();
+system.onchange = nameTheme;
 $("theme").onclick = () => {
-  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-  root.dataset.theme = dark ? "light" : "dark";
+  root.dataset.theme = isDark() ? "light" : "dark";
+  nameTheme();
   try { localStorage.setItem("lgabench-theme", root.dataset.theme); } catch { /* likewise */ }
 };
 
@@ -27,7 +32,10 @@ for (const table of document.querySelectorAll("table.sortable")) {
   heads.forEach((head, column) => {
     head.innerHTML = `<button type="button">${head.innerHTML}</button>`;
     head.firstChild.onclick = () => {
-      const descending = head.getAttribute("aria-sort") === "ascending";
+      // Numbers begin with the largest, words with the first of the alphabet.
+      const begins = [...table.tBodies].flatMap((body) => [...body.rows]).find((row) => row.className !== "group");
+      const before = head.getAttribute("aria-sort");
+      const descending = before ? before === "ascending" : head.textContent !== "rank" && !isNaN(numberOf(begins.cells[column].textContent.trim()));
       heads.forEach((other) => other.removeAttribute("aria-sort"));
       head.setAttribute("aria-sort", descending ? "descending" : "ascending");
       const key = (row) => row.cells[column].textContent.trim();
@@ -56,11 +64,14 @@ function fit(within = document) {
     const list = lists && wide.includes(frame), scrolls = !lists && wide.includes(frame);
     const heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
     for (const row of list ? frame.querySelectorAll("tbody tr:not(.group)") : [])
-      [...row.cells].forEach((cell, i) => cell.tagName === "TD" && (cell.dataset.head = heads[i]));
+      [...row.cells].forEach((cell, i) => {
+        if (cell.tagName === "TD") cell.dataset.head = heads[i];
+        cell.classList.toggle("none", cell.textContent.trim() === "–");
+      });
     frame.classList.toggle("list", list);
-    scrolls ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
+    scrolls || (!list && frame.scrollHeight > frame.clientHeight + 1) ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
     const first = frame.querySelector("tbody tr:not(.group)");
-    const name = scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
+    const name = !list && scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
     for (const row of frame.querySelectorAll("tr:not(.group)"))
       [...row.cells].forEach((cell, i) => cell.classList.toggle("pinned", i === name));
     // A display of their own costs rows and cells their roles.

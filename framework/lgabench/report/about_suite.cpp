@@ -1,0 +1,40 @@
+#include <lgabench/report/about_suite.hpp>
+
+#include <algorithm>
+#include <cctype>
+
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench::report {
+
+std::string AboutSuite::arm(const std::string& name) const {
+  if (const auto own = arms.find(name); own != arms.end()) return own->second;
+  std::string text, longest;
+  for (const auto& [arm, words] : arms)
+    if (name.rfind(arm + "_", 0) == 0 && arm.size() > longest.size()) longest = arm, text = words;
+  return text;
+}
+
+AboutSuite about_suite(const std::string& id) {
+  AboutSuite about;
+  const bool is_name = !id.empty() && std::all_of(id.begin(), id.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-';
+  });
+  const fs::path file = data_directory() / "suites" / (id + ".json");
+  if (!is_name || !fs::exists(file)) return about;
+  const Json json = read_json(file);
+  const JsonReader suite(json, file.string());
+  if (suite.has("options")) about.options = suite.at("options").json();
+  if (!suite.has("about")) return about;
+  const JsonReader words = suite.at("about");
+  about.question = words.at("question").string();
+  if (words.has("main_arm")) about.main_arm = words.at("main_arm").string();
+  if (words.has("main_demonstrations"))
+    about.main_demonstrations = static_cast<int>(words.at("main_demonstrations").integer(1, 1'000'000));
+  if (words.has("arms"))
+    for (const auto& arm : words.at("arms").json().items())
+      about.arms[arm.key()] = words.at("arms").at(arm.key()).string();
+  return about;
+}
+
+}  // namespace lgabench::report

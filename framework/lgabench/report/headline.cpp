@@ -1,0 +1,161 @@
+#include <lgabench/report/headline.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include <lgabench/report/claims_field.hpp>
+#include <lgabench/report/pairs.hpp>
+#include <lgabench/report/row_names.hpp>
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+constexpr std::size_t most_compared = 3;  // beside the random visible object
+constexpr const char* random_row = "random_object";
+
+// The column that the suite's question is about: its main arm and number of demonstrations, else the last arm that all
+// scenarios have and the most demonstrations.
+std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
+  const std::vector<int> all = table.demonstrations();
+  if (table.arms.empty() || all.empty()) return {};
+  Column column{"", table.arms.back(), all.back()};
+  for (const std::string& arm : table.arms)
+    if (table.arm_title(arm) == arm) column.arm = arm;
+  if (std::find(table.arms.begin(), table.arms.end(), about.main_arm) != table.arms.end()) column.arm = about.main_arm;
+  if (about.main_demonstrations && std::find(all.begin(), all.end(), *about.main_demonstrations) != all.end())
+    column.demonstrations = *about.main_demonstrations;
+  return column;
+}
+
+// The rows that the first one is compared with: methods that the paper does not have, then its baselines.
+std::vector<std::string> compared(const std::vector<std::string>& methods) {
+  std::vector<std::string> others(methods.begin() + 1, methods.end());
+  const auto rank = [](const std::string& row) {
+    constexpr std::array order{"gcbc_seg", "human", "gcbc_dart", "lga_s", "lga_l", "lga_hill"};
+    const std::string id = row.substr(0, row.find('+'));
+    const auto found = std::find(order.begin(), order.end(), id);
+    return found == order.end() ? -1 : found - order.begin();
+  };
+  std::stable_sort(others.begin(), others.end(),
+                   [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
+  if (others.size() > most_compared) others.resize(most_compared);
+  return others;
+}
+
+std::optional<Change> against_method(const Material& material, const Table& table, const std::string& first,
+                                     const std::string& other, const Column& column) {
+  Field field;
+  for (const CellResult& cell : material.run.cells)
+    if (cell.layout == table.layout && cell.engine == table.engine && (cell.method == first || cell.method == other))
+      field.add(cell);
+  if (!field.find(first, column.demonstrations) || !field.find(other, column.demonstrations)) return {};
+  return measured_rows(field, "headline", first, other, column.arm, column.demonstrations).these.change;
+}
+
+// The reference row learns nothing: each policy is paired with the reference in the same scenes.
+std::optional<Change> against_random(const Material& material, const Table& table, const std::string& first,
+                                     const Column& column) {
+  PairedRow pairs;
+  for (const CellResult& cell : material.run.cells) {
+    if (cell.method != first || cell.demonstrations != column.demonstrations || cell.layout != table.layout ||
+        cell.engine != table.engine || !has_arm(cell, column.arm))
+      continue;
+    const auto same = std::find_if(material.run.cells.begin(), material.run.cells.end(), [&](const CellResult& other) {
+      return other.id == random_row && !other.failed && other.scenario == cell.scenario &&
+             other.layout == cell.layout && other.engine == cell.engine && has_arm(other, column.arm) && !cell.failed &&
+             why_unpaired(other, cell, column.arm).empty();
+    });
+    if (cell.failed || same == material.run.cells.end()) return {};
+    pairs.add(cell.scenario, pair_policies(*same, cell, column.arm), cell.participant);
+  }
+  if (pairs.policies() == 0) return {};
+  return pairs.change(
+      fmt::format("headline/{}/{}/{}/{}/{}", table.layout, table.engine, first, column.arm, column.demonstrations));
+}
+
+void add_difference(Spans& spans, const Change& change, const std::string& other, const char* before) {
+  const bool less = change.difference < 0;
+  const Interval low_high = less ? Interval{-change.interval.high, -change.interval.low} : change.interval;
+  spans.emplace_back(before);
+  spans.push_back(Span::number(fixed(std::abs(change.difference)), "", Emphasis::strong));
+  spans.push_back(
+      Span::number(fmt::format(" [{}, {}]", fixed(low_high.low), fixed(low_high.high)), "", Emphasis::detail));
+  const bool alike = fixed(std::abs(change.difference)) == fixed(0.);
+  spans.emplace_back(fmt::format(" {} {}", alike ? "from" : less ? "less than" : "more than", other));
+}
+
+}  // namespace
+
+Spans headline(const Material& material, const AboutSuite& about) {
+  if (material.summary.tables.empty()) return {};
+  const Table& table = material.summary.tables.front();
+  const std::optional<Column> column = main_column(table, about);
+  std::vector<std::string> methods = table.methods(mean_scenario);
+  const auto row_of = [&](const std::string& id) {
+    const Row* row = table.find(column->arm, mean_scenario, id, column->demonstrations);
+    return row && row->success ? row : nullptr;
+  };
+  methods.erase(std::remove_if(methods.begin(), methods.end(), [&](const std::string& id) { return !row_of(id); }),
+                methods.end());
+  if (!column || methods.empty()) return {};
+  const std::string& first = methods.front();
+  const Row& row = *row_of(first);
+  Spans spans{
+      {fmt::format("{}, {}{}: {} succeeds in ", table.title(mean_scenario),
+                   table.demonstrations_text(column->demonstrations),
+                   table.arms.size() > 1 ? ", arm " + table.arm_title(column->arm) : "", material.styles.name(first))},
+      Span::number(fixed(*row.success), place_of(row, "success"), Emphasis::strong),
+      {" of the episodes"}};
+  spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
+  bool any = false;
+  for (const std::string& other : compared(methods))
+    if (const auto change = against_method(material, table, first, other, *column)) {
+      add_difference(spans, *change, material.styles.name(other), any ? ", " : ": ");
+      any = true;
+    }
+  if (const auto change = against_random(material, table, first, *column)) {
+    add_difference(spans, *change, "the " + display_name(random_row), any ? ", " : ": ");
+    any = true;
+  }
+  spans.emplace_back(any ? " (95 % intervals of the paired differences)." : ".");
+  std::vector<std::string> verdicts;
+  for (const Claim& claim : material.claims)
+    if (claim.verdict != Verdict::not_tested)
+      verdicts.push_back(fmt::format("{} {}", claim.id, to_string(claim.verdict)));
+  if (!verdicts.empty()) {
+    spans.emplace_back(" ");
+    spans.push_back(Span::link("The paper’s claims", "#claims"));
+    spans.emplace_back(fmt::format(": {}.", fmt::join(verdicts, ", ")));
+  }
+  return spans;
+}
+
+std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about) {
+  std::vector<ArmLine> lines;
+  for (const Table& table : material.summary.tables)
+    for (const std::string& arm : table.arms) {
+      if (std::any_of(lines.begin(), lines.end(), [&arm](const ArmLine& line) { return line.name == arm; })) continue;
+      ArmLine& line = lines.emplace_back(ArmLine{arm, about.arm(arm), ""});
+      for (const CellResult& cell : material.run.cells) {
+        if (cell.failed || !has_arm(cell, arm) || !line.png.empty()) continue;
+        for (const Episode& episode : cell.episodes.at(arm))
+          if (const auto scene = material.pictures.scenes.find(episode.scene);
+              line.png.empty() && scene != material.pictures.scenes.end())
+            line.png = scene->second;
+      }
+    }
+  return lines;
+}
+
+Spans setting_line(const RunResults& run) {
+  std::vector<std::string> texts;
+  for (const auto& [option, value] : shared_options(run)) texts.push_back(option + "=" + value);
+  if (texts.empty()) return {};
+  return {{fmt::format("Every row: {}, beside the plugins’ defaults.", fmt::join(texts, ", "))}};
+}
+
+}  // namespace lgabench::report

@@ -1,0 +1,19 @@
+// The first sentences of a report: what its suite asks, and what the run answers.
+#pragma once
+#include <lgabench/report/about_suite.hpp>
+#include <lgabench/report/report_document.hpp>
+
+namespace lgabench::report {
+
+/// "Mean over 13 scenarios, 50 demonstrations: LGA succeeds in 0.57 of the episodes, 0.41 [0.32, 0.50] more than
+/// GCBC-SEG, ...": paired differences of the first method of the first table to others and to the random visible
+/// object, in the suite's main arm; "The paper's claims: C1 held". Empty where no method has finished.
+Spans headline(const Material& material, const AboutSuite& about);
+
+/// The arms of the run, what their test scenes are, and one of these scenes.
+std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about);
+
+/// "Every row: policy=heat_map, ...": what all rows share beside the plugins' defaults; empty where that is nothing.
+Spans setting_line(const RunResults& run);
+
+}  // namespace lgabench::report

@@ -1,0 +1,20 @@
+// What a run's rows are called for readers: no option that tells two of them apart is hidden.
+#pragma once
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/report/results.hpp>
+
+namespace lgabench::report {
+
+/// A row's name -> the name with every option that readers must know, as display_name() takes it: options in which two
+/// rows of the run differ, at each row that has them, and options beside the plugin's default that neither the suite's
+/// own design sets nor all rows share. "lga" -> "lga+policy=heat_map".
+std::map<std::string, std::string> told_names(const RunResults& run);
+
+/// Options beside the plugins' defaults that all methods of the run share: ("policy", "heat_map").
+std::vector<std::pair<std::string, std::string>> shared_options(const RunResults& run);
+
+}  // namespace lgabench::report

@@ -1,0 +1,181 @@
+// What a reader needs before the numbers: the suite's question, its arms, what rows are, the result as a difference.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+
+#include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/about_suite.hpp>
+#include <lgabench/report/report.hpp>
+#include <lgabench/report/row_names.hpp>
+
+#include "report_run.hpp"
+
+namespace lgabench {
+namespace {
+
+using Spec = FabricatedRun::Spec;
+
+std::string page_of(FabricatedRun& run) {
+  report::write_report(run.save().path);
+  return read_file(run.path / "report.html");
+}
+
+TEST(Readers, AnOptionThatTwoRowsDifferInStandsAtEachThatHasIt) {
+  FabricatedRun run;
+  for (const auto& [method, policy] : {std::pair("erase+policy=heat_map", ""),
+                                       {"erase_gated", "heat_map"},
+                                       {"lga", "regression"},
+                                       {"gcbc_dart", ""}}) {
+    Spec spec{method, 10};
+    if (*policy) spec.options = {{"policy", policy}};
+    run.add(spec);
+  }
+  const auto names = report::told_names(report::read_run(run.save().path));
+  EXPECT_EQ(names.at("erase_gated"), "erase_gated+policy=heat_map");
+  EXPECT_EQ(names.at("erase+policy=heat_map"), "erase+policy=heat_map");
+  EXPECT_EQ(names.at("lga"), "lga+policy=regression");
+  EXPECT_EQ(names.at("gcbc_dart"), "gcbc_dart") << "has no such option";
+  const std::string page = page_of(run);
+  EXPECT_SAYS(page, "erase_gated policy=heat_map</b>");
+  EXPECT_SAYS(read_file(run.path / "tables/cells_mujoco_mean.csv"), "erase_gated policy=heat_map");
+}
+
+TEST(Readers, AnOptionBesideTheDefaultIsNamedAtItsRowOrOnceForAll) {
+  FabricatedRun run;
+  for (const char* method : {"lga", "gcbc_dart"}) {
+    Spec spec{method, 10};
+    spec.options = {{"policy", "heat_map"}};
+    if (std::string(method) == "gcbc_dart") spec.options["dart"] = "none";
+    run.run["settings"][method] = spec.options;
+    run.add(spec);
+  }
+  const std::string page = page_of(run);
+  EXPECT_SAYS(page, "GCBC-DART dart=none</b>");
+  EXPECT_SAYS(page, "Every row: policy=heat_map, beside the plugins’ defaults.");
+  EXPECT_SILENT(page, "LGA policy=heat_map");
+}
+
+TEST(Readers, ThePageSaysWhatTheSuiteAsksAndWhatItsArmsAre) {
+  FabricatedRun run;
+  run.run["suite"] = "q2";
+  Spec spec{"lga", 0, "q2_heart"};
+  spec.arms = {{"control", 10}, {"hard", 5}};
+  run.add(spec);
+  const report::AboutSuite about = report::about_suite("q2");
+  ASSERT_FALSE(about.question.empty());
+  const std::string page = page_of(run);
+  for (const std::string& text : {about.question, about.arm("control"), about.arm("hard")}) EXPECT_SAYS(page, text);
+  EXPECT_SILENT(page, about.arm("texture")) << "an arm that the run does not have";
+  EXPECT_EQ(report::about_suite("few_members").arm("seen_near_members_2"),
+            report::about_suite("few_members").arm("seen_near"));
+  EXPECT_EQ(report::about_suite("none").question, "");
+  EXPECT_EQ(report::about_suite("../suites/q1").question, "") << "a name, no path";
+}
+
+TEST(Readers, EveryShippedSuiteHasAQuestionAndWordsForEachOfItsArms) {
+  for (const auto& file : fs::directory_iterator(data_directory() / "suites")) {
+    const report::AboutSuite about = report::about_suite(file.path().stem().string());
+    EXPECT_FALSE(about.question.empty()) << file.path();
+    const Json suite = read_json(file.path());
+    for (const Json& arm : suite.value("arms", Json::array()))
+      EXPECT_FALSE(about.arm(arm.at("arm").get<std::string>()).empty()) << file.path() << arm.at("arm");
+    for (const Json& id : suite.at("scenarios")) {
+      if (suite.value("only_arms", false)) break;
+      const Json scenario = read_json(data_directory() / "scenarios" / (id.get<std::string>() + ".json"));
+      for (const Json& arm : scenario.at("tests"))
+        EXPECT_FALSE(about.arm(arm.at("arm").get<std::string>()).empty()) << file.path() << arm.at("arm");
+    }
+  }
+}
+
+// 15 of 20 against 5 of the same 20 scenes, in the suite's main arm, not its last.
+TEST(Readers, TheHeadlineIsThePairedDifferenceInTheMainArm) {
+  FabricatedRun run;
+  run.run["suite"] = "mobile";
+  for (const auto& [method, won] : {std::pair("lga", 15), {"gcbc_seg", 5}})
+    for (const int n : {1, 10}) {
+      Spec spec{method, 0, "heart", n};
+      spec.arms = {{"same_place", n == 1 ? won : 20}, {"moved", 0}};
+      run.add(spec);
+    }
+  Spec random{"random_object", 0, "heart", 0, 0, "reference"};
+  random.arms = {{"same_place", 18}, {"moved", 3}};
+  run.add(random);
+  const std::string page = page_of(run);
+  const std::size_t begin = page.find("<p class=headline>");
+  ASSERT_NE(begin, page.npos);
+  const std::string line =
+      std::regex_replace(page.substr(begin, page.find("</p>", begin) - begin), std::regex("<[^>]*>"), "");
+  EXPECT_SAYS(line, "1 demonstration, arm same_place: LGA succeeds in 0.75 of the episodes: 0.50 [");
+  EXPECT_SAYS(line, "] more than GCBC-SEG, 0.15 [");
+  EXPECT_SAYS(line, "] less than the random visible object (95 % intervals of the paired differences)");
+}
+
+TEST(Readers, ATableOfZerosIsOneLineAndAMeasuredColumnStays) {
+  for (const int seen : {0, 3}) {
+    FabricatedRun run;
+    for (const char* scenario : {"heart", "letter"}) {
+      Spec spec{"lga", 10, scenario};
+      spec.inputs_seen = seen;
+      spec.attribution = "policy";
+      run.add(spec);
+    }
+    const std::string page = page_of(run);
+    EXPECT_EQ(page.find("No test input occurred in training.") != page.npos, seen == 0);
+    EXPECT_EQ(page.find("cells_mujoco_seen") != page.npos || page.find("Test inputs that occurred") != page.npos,
+              seen > 0);
+    EXPECT_SAYS(page, "<th scope=col>types: recall</th>");
+  }
+}
+
+TEST(Readers, MarksSayWhatTheyMeanAndNoTableHasAHeadTwice) {
+  FabricatedRun run;
+  Spec lga{"lga", 4};
+  lga.arms = {{"control", 4}, {"hard", 4}};
+  run.add(lga);
+  Spec random{"random_object", 0, "heart", 0, 0, "reference"};
+  random.arms = {{"control", 9}, {"hard", 9}};
+  run.add(random);
+  const std::string page = page_of(run);
+  EXPECT_SAYS(page, "<span title=\"below the random visible object, which needs no demonstration\">§</span>");
+  EXPECT_SAYS(page, "<span title=\"the same actions as in control\">=</span>");
+  const std::regex table("<thead>(.*?)</thead>"), head("<th scope=col>(.*?)</th>");
+  int tables = 0;
+  for (std::sregex_iterator it(page.begin(), page.end(), table), end; it != end; ++it, ++tables) {
+    std::set<std::string> heads;
+    const std::string row = it->str(1);
+    for (std::sregex_iterator cell(row.begin(), row.end(), head), last; cell != last; ++cell)
+      EXPECT_TRUE(heads.insert(cell->str(1)).second) << cell->str(1) << " twice in " << row;
+  }
+  EXPECT_GT(tables, 3);
+}
+
+TEST(Readers, EveryClassOfThePageIsInTheStyleSheetOrTheScript) {
+  FabricatedRun run;
+  Spec lga{"lga", 4};
+  lga.attribution = "perception";
+  run.add(lga);
+  run.add({"constant_action", 3, "heart", 20, 0, "reference"});
+  run.add_failed({"lga", 0, "heart", 10, 2}, "host");
+  const std::string page = page_of(run),
+                    body = page.substr(page.find("<body>"), page.find("<script") - page.find("<body>"));
+  std::string rules = read_file(data_directory() / "page/page.css");
+  for (const char* script : {"page.js", "episodes.js"}) rules += read_file(data_directory() / "page" / script);
+  std::set<std::string> classes;
+  const std::regex quoted("class=(\"([^\"]*)\"|([\\w-]+))"), word("[\\w-]+");
+  for (std::sregex_iterator it(body.begin(), body.end(), quoted), end; it != end; ++it) {
+    const std::string all = it->str(2) + it->str(3);
+    for (std::sregex_iterator one(all.begin(), all.end(), word), last; one != last; ++one) classes.insert(one->str());
+  }
+  EXPECT_EQ(classes.count("perception"), 1u);
+  // Drawn by attributes alone: a file of a figure has no style sheet.
+  for (const char* drawn : {"s-none", "f-none", "s-series", "f-series", "s-ink", "s-paper"}) classes.erase(drawn);
+  for (const std::string& name : classes)
+    EXPECT_TRUE(std::regex_search(rules, std::regex("\\." + name + "\\b")) ||
+                std::regex_search(rules, std::regex("[\"' ]" + name + "[\"' ]")))
+        << name;
+}
+
+}  // namespace
+}  // namespace lgabench
