@@ -17,8 +17,9 @@ struct NamedTable {
   std::vector<Standing> waiting;   // not yet replayed
   std::vector<std::string> waiting_names;
   int withdrawn = 0;
+  Track track{};
 };
-NamedTable named_table(const std::vector<const Entry*>& table);
+NamedTable named_table(const std::vector<const Entry*>& table, const Tracks& tracks);
 
 /// "q1, preset leaderboard"
 std::string title_of(const Setting& setting);
