@@ -145,8 +145,10 @@ Suite load_suite(const std::string& id) {
     if (!suite.variants.is_object() || suite.variants.empty()) reader.at("variants").fail("an object with a member");
     for (const auto& [name, ignored] : suite.variants.items()) {
       const JsonReader variant = reader.at("variants").at(name);
-      variant.only({"train"});
-      if (!variant.at("train").json().is_object()) variant.at("train").fail("an object");
+      variant.only({"train", "commands"});
+      if (variant.has("commands")) variant.at("commands").integer(1, most);
+      if (variant.has("train") && !variant.at("train").json().is_object()) variant.at("train").fail("an object");
+      if (variant.json().empty()) variant.fail("\"train\" or \"commands\"");
     }
   }
   if (reader.has("references"))

@@ -33,7 +33,7 @@ Track track_of(const Tracks& tracks, const Setting& setting) {
 std::string words_of(const Track& track) {
   if (track.kind == Track::abstraction)
     return "Abstraction track: rows selected_by:METHOD differ in what is selected alone; the shipped policy learns and "
-           "acts. \"Where it decides\" is success over the arms with near misses that tracks.json names; \"gap "
+           "acts. \"Where it decides\" is success over the arms that tracks.json names; \"gap "
            "closed\" "
            "the part of the distance there from the mask of any object to that of the truth. Answers to commands whose "
            "truth is public prove nothing, so no row has a rank.";
