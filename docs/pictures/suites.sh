@@ -21,3 +21,7 @@ for arm in seen new seen_near new_near; do
   draw something_to_drink_water_out_of_members_2 ${arm}_members_2 25% continuous few_members
   mv something_to_drink_water_out_of_members_2-${arm}_members_2.png few_members-$arm.png
 done
+for arm in seen unseen; do
+  draw many_hearts_commands_4 ${arm}_commands_4 25% continuous many_commands
+  mv many_hearts_commands_4-${arm}_commands_4.png many_commands-$arm.png
+done

@@ -18,7 +18,7 @@ void read_choice(const JsonReader& scenes, const std::string& second, const Feat
   constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
   for (const std::string& drawn : {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
                                    std::string("later_letters"), std::string("near_miss"), std::string("members"),
-                                   second.empty() ? std::string("target") : second})
+                                   std::string("decoys"), second.empty() ? std::string("target") : second})
     if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
   const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
@@ -119,14 +119,15 @@ const Content& content_of(const Scenario& scenario, const std::string& arm) {
 }
 
 std::vector<std::string> scenario_members(const Task& task) {
-  std::vector<std::string> names{"never_distractor"};
+  std::vector<std::string> names{"never_distractor", "decoys"};
   append(names, task.scenario_members());
   return names;
 }
 
 std::vector<std::string> scene_members(const Task& task) {
-  std::vector<std::string> names{"target",    "distractors", "outside_all_commands", "hard",
-                                 "near_miss", "members",     "later_letters",        "choice"};
+  std::vector<std::string> names{"target",        "distractors", "outside_all_commands",
+                                 "hard",          "near_miss",   "members",
+                                 "later_letters", "choice",      "decoys"};
   if (const auto second = task.second()) names.push_back(second->id);
   append(names, task.scene_members());
   return names;
@@ -137,7 +138,16 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
   if (training) content.distractors = {1, 1};
   if (file.has("never_distractor"))
     content.never_distractor = read_feature_set(file.at("never_distractor"), scenario.space);
+  std::vector<FeatureSet> decoys;
+  if (file.has("decoys"))
+    for (const JsonReader& set : file.at("decoys").elements()) decoys.push_back(read_feature_set(set, scenario.space));
   if (scenes) read_scenes(*scenes, scenario, content);
+  if (scenes && scenes->has("decoys") && scenes->at("decoys").boolean()) {
+    for (const char* other : {"hard", "later_letters", "near_miss"})
+      if (scenes->has(other)) scenes->at(other).fail("no such member beside \"decoys\"");
+    if (decoys.empty()) scenes->at("decoys").fail("\"decoys\", a list of sets, in the scenario");
+    content.decoys = decoys;
+  }
   if (scenes && scenes->has("members")) read_members(*scenes, file, scenario, training, content);
   find_task(scenario.task).read(file, scenes, content);
   if (training && scenes && scenario.as_method_asks && (content.target || content.second))

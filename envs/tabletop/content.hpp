@@ -34,6 +34,8 @@ struct Content : SceneContent {
   /// All of these types stand there, once each, in any texture; the command's truth says which are right (targets, or
   /// the second set where the task has one), the others are distractors.
   std::vector<std::string> choice;
+  /// Others are of these sets, each of another one as far as they go: what further commands mean. Empty: of any.
+  std::vector<FeatureSet> decoys;
   std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 

@@ -75,6 +75,37 @@ struct Request {
   double widest_m() const { return std::min(layout.widest_m, content.widest_m()); }
 };
 
+// What further commands mean and this one does not: of each set one, in random order, over and over.
+std::vector<Features> sample_decoys(const Request& request, const std::vector<const FeatureSet*>& excluded,
+                                    const std::vector<bool>& allowed, int count, RandomStream& random) {
+  constexpr int tries = 50, rounds = 8;
+  const FeatureSpace& space = request.scenario.space;
+  const std::vector<FeatureSet>& sets = request.content.decoys;
+  std::vector<Features> decoys;
+  for (int round = 0; round < rounds; ++round)
+    for (const int i : random.permutation(static_cast<int>(sets.size()))) {
+      const FeatureSet& set = sets[static_cast<std::size_t>(i)];
+      std::vector<std::string> types;
+      for (std::size_t type = 0; type < allowed.size(); ++type)
+        if (allowed[type] && std::count(set.object_types.begin(), set.object_types.end(), space.object_types[type]) > 0)
+          types.push_back(space.object_types[type]);
+      for (int n = 0; n < tries && !types.empty() && !set.textures.empty(); ++n) {
+        if (static_cast<int>(decoys.size()) == count) return decoys;
+        const std::string& type = any_of(types, random);
+        const Features one{type, any_of(set.textures, random)};
+        if (std::any_of(excluded.begin(), excluded.end(),
+                        [&one](const FeatureSet* all) { return all->contains(one.type, one.texture); }))
+          continue;
+        decoys.push_back(one);
+        break;
+      }
+    }
+  if (static_cast<int>(decoys.size()) < count)
+    throw NothingToShow(fmt::format("decoys: expected sets that hold what the command of scenario \"{}\" leaves out",
+                                    request.scenario.id));
+  return decoys;
+}
+
 // docs/protocol.md, section 3: objects that don't satisfy the command.
 std::vector<Features> sample_distractors(const Request& request, const Features& target, RandomStream& random) {
   const FeatureSpace& space = request.scenario.space;
@@ -120,6 +151,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
     };
     distractors = near_misses(near, count, random);
   }
+  if (!content.decoys.empty()) distractors = sample_decoys(request, excluded, allowed, count, random);
   for (int i = static_cast<int>(distractors.size()); i < count; ++i) {
     if (!later_letters.empty() && random.coin()) {
       const std::string& type = any_of(later_letters, random);

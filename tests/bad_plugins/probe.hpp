@@ -67,7 +67,7 @@ std::string share_memory(std::size_t bytes) {
   void* memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) return outcome(-1);
   std::memset(memory, 1, bytes);
-  ::sleep(2);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
   return "reached";
 }
 
@@ -81,13 +81,13 @@ std::string fill_disk(bool deleted) {
       if (::write(file, block.data(), block.size()) < 0) return outcome(-1);
     if (deleted) ::unlink(name.c_str());
   }
-  ::sleep(2);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
   return "reached";
 }
 
 std::string make_files(int count) {
   for (int i = 0; i < count; ++i) ::close(::open(("file" + std::to_string(i)).c_str(), O_WRONLY | O_CREAT, 0600));
-  ::sleep(2);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
   return "reached";
 }
 
@@ -96,7 +96,7 @@ std::string fill_pipes() {
   int ends[2];
   for (int i = 0; i < 9000; ++i)
     if (::pipe(ends) < 0 || ::write(ends[1], block.data(), block.size()) < 0) return "no more descriptors";
-  ::sleep(2);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
   return "reached";
 }
 

@@ -6,6 +6,7 @@
 namespace lgabench {
 
 void register_training();
+void register_heat_map();
 /// The training step of a network with these pictures, as Python makes it: skipped where Python has no PyTorch.
 void register_pytorch(const std::string& name, const std::vector<int>& channels, bool text);
 void register_environment();

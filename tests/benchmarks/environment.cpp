@@ -1,11 +1,15 @@
 // A whole episode, a reset and a picture.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <map>
 
 #include <common/objects.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/harness/expand.hpp>
+#include <lgabench/plugin/loader.hpp>
 #include <mobile/renderer.hpp>
 #include <mobile/sampler.hpp>
 #include <mujoco/mujoco_world.hpp>
@@ -135,6 +139,25 @@ void picture(benchmark::State& state) {
   });
 }
 
+// Near misses of the suite clutter, as many as the arm says, on an engine's own world.
+void crowd(benchmark::State& state, const PluginInfo& engine, const std::string& arm) {
+  const Scenario scenario = suite_scenario(load_suite("clutter"), "heart", Truth::released);
+  const auto environment = make_environment(scenario, load_engine(engine));
+  std::vector<std::pair<Scene, Action>> all;
+  for (int i = 0; i < scenes; ++i) {
+    const Scene scene = test_scene(scenario, "continuous", arm, 0, i);
+    environment->reset(scene);
+    all.emplace_back(scene, environment->expert_action());
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const auto& [scene, action] = all[i++ % all.size()];
+    benchmark::DoNotOptimize(environment->reset(scene));
+    benchmark::DoNotOptimize(environment->step(action));
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
 // A table with six objects, 480 x 640.
 void mobile_picture(benchmark::State& state) {
   const Scene scene = mobile::sample_scene(load_scenario("bring_fruit"), {mobile::layout, "test", "crowd", 0}, 0);
@@ -153,6 +176,11 @@ void register_environment() {
     benchmark::RegisterBenchmark((std::string("episode/") + scenario + "/bare").c_str(), bare_episode, scenario);
   }
   benchmark::RegisterBenchmark("episode/sweep_block_without_touching_pan", episode, "sweep_block_without_touching_pan");
+  for (const PluginInfo& plugin : scan_plugins(plugin_directories()).plugins)
+    if (plugin.kind == "engine")
+      for (const char* arm : {"near_2", "near_6"})
+        benchmark::RegisterBenchmark(fmt::format("crowd/{}/{}", plugin.id, arm).c_str(),
+                                     [plugin, arm](benchmark::State& state) { crowd(state, plugin, arm); });
   benchmark::RegisterBenchmark("reset", reset);
   benchmark::RegisterBenchmark("reset/bare", bare_reset);
   benchmark::RegisterBenchmark("picture", picture);

@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
 
   lgabench::flush_denormals();
   lgabench::register_training();
+  lgabench::register_heat_map();
   lgabench::register_environment();
 #if defined(LGABENCH_HAS_EGL)
   lgabench::register_llvmpipe();

@@ -19,6 +19,24 @@ USUAL = [sys.executable] + [path for path in ("/usr/bin/python3",) if os.access(
 PYTHON = os.environ.get("LGABENCH_TEST_PYTHON") or next((path for path in USUAL if has(path, "numpy")), sys.executable)
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples/python"
 HAS_NUMPY = has(PYTHON, "numpy") or os.environ.get("CI") == "true"
+ALONE = '''
+import pathlib
+from lgabench_method import select_features
+
+class Alone:
+    version = "1"
+    summary = "selects, and throws whatever else it is asked"
+
+    def needs(self, options):
+        raise ValueError("asked for its needs")
+
+    def select(self, command, space, services):
+        (pathlib.Path(services.files) / "asked").write_text(command.utterance)
+        return select_features(command, space, services.lm)
+
+    def learn(self, demonstrations, services):
+        raise ValueError("asked to learn")
+'''
 RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "3", "--no-reference",
        "--python", PYTHON]
 METHOD = '''
@@ -278,6 +296,27 @@ class PythonMethods(Case):
         self.assertIn("expected rows x columns", (self.dir / "without/cells" / key / "log.txt").read_text())
         self.assertEqual((self.dir / "without/cells" / key / "episodes.jsonl").read_bytes(),
                          (cells["late"] / "episodes.jsonl").read_bytes())
+
+    def test_what_selects_alone_is_asked_for_nothing_else(self):
+        (self.dir / "alone.py").write_text(ALONE)
+        rows = "lga,selected_by:lga,selected_by:alone.py:Alone,selected_by:late.py:Late"
+        (self.dir / "late.py").write_text(LATE)
+        self.call(*RUN, "--methods", rows, "--set", "*.policy=heat_map", "--out", "out")
+        self.assert_matches_schemas("out")
+        cells = {cell["method"]["name"]: (self.dir / "out/cells" / key, cell, status)
+                 for key, (cell, status) in self.cells("out").items()}
+        self.assertEqual(sorted(cells), ["lga", "selected_by:alone", "selected_by:late", "selected_by:lga"])
+        directory, cell, status = cells["selected_by:alone"]
+        self.assertEqual(cell["method"]["acts"]["options"]["policy"], "heat_map")
+        self.assertEqual(len(status["build"]["acts"]), 64)
+        for row in "selected_by:alone", "selected_by:lga":
+            for name in "selection.json", "training.jsonl", "episodes.jsonl":
+                self.assertEqual((cells[row][0] / name).read_bytes(), (cells["lga"][0] / name).read_bytes(), (row, name))
+        self.assertEqual((directory / "files/asked").read_text(), "Bring me the heart.")
+        command, = json.loads((cells["selected_by:late"][0] / "selection.json").read_text())["commands"]
+        self.assertEqual(command["selection"]["target"]["textures"], ["red"], "it is asked to revise")
+        self.assertIn("selected by LGA", (self.dir / "out/report.html").read_text())
+        self.call("verify", "out", "--all", "--methods", "selected_by:alone.py:Alone,late.py:Late", "--python", PYTHON)
 
     def test_a_user_and_places_to_write(self):
         """As PyTorch's compiler wants them when an optimiser is imported; the system's list of users cannot be read."""

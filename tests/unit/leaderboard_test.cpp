@@ -338,6 +338,39 @@ TEST(Standings, TiesShareARankAndOnlyASignificantlyBetterEntryComesBefore) {
   EXPECT_DOUBLE_EQ(*all[1].precision, .5);
 }
 
+TEST(Standings, OnlyTheOpenTrackRanksAcrossPoliciesAndTheAbstractionTrackNobody) {
+  const Setting setting = small_setting();
+  std::vector<Entry> entries{replayed_entry(setting, "a", .8), replayed_entry(setting, "b", .3),
+                             replayed_entry(setting, "c", .5)};
+  entries[0].identity.row.options["policy"] = "heat_map";
+  entries[0].identity.row.id = "human";
+  entries[1].identity.row.id = "factorial";
+  entries[1].identity.row.options["policy"] = "heat_map";
+  entries[1].identity.row.options["input"] = "object_mask";
+  std::vector<const Entry*> table;
+  for (const Entry& entry : entries) table.push_back(&entry);
+  const auto rank_of_c = [&table](const Track& track) { return standings(table, track)[1].rank; };
+  EXPECT_EQ(rank_of_c({}), 1) << "the only one with its policy";
+  EXPECT_EQ(rank_of_c({Track::open}), 2);
+  EXPECT_FALSE(rank_of_c({Track::abstraction, {"test"}}));
+  const std::vector<Standing> all = standings(table, {Track::abstraction, {"test"}});
+  EXPECT_NEAR(*all[0].gap_closed, 1, 1e-12);
+  EXPECT_NEAR(*all[2].gap_closed, 0, 1e-12);
+  EXPECT_NEAR(*all[1].gap_closed, (*all[1].in_track - *all[2].in_track) / (*all[0].in_track - *all[2].in_track), 1e-12);
+  EXPECT_FALSE(standings(table).front().gap_closed);
+}
+
+TEST(Tracks, AreReadAndRefuseAPresetInTwo) {
+  TemporaryDirectory board;
+  EXPECT_TRUE(read_tracks(board.path).empty());
+  write_file(board.path / "tracks.json", R"({"abstraction": {"s-a": ["near"]}, "open": ["s-l"]})");
+  const Tracks tracks = read_tracks(board.path);
+  EXPECT_EQ(tracks.at("s-a").arms, std::vector<std::string>{"near"});
+  EXPECT_EQ(tracks.at("s-l").kind, Track::open);
+  write_file(board.path / "tracks.json", R"({"abstraction": {"s-l": []}, "open": ["s-l"]})");
+  EXPECT_SAYS(message_of<InputError>([&] { read_tracks(board.path); }), "/open/0: expected each preset in one track");
+}
+
 TEST(Standings, EpisodesOfAFailedCellAreLost) {
   Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.cells[0].failed = "signal 11";

@@ -305,5 +305,36 @@ TEST(Variants, AreScenariosOfTheirOwn) {
               "few_members.json: /test_scenes: expected per_seed beside \"members\"");
 }
 
+TEST(ManyCommands, DecoysAreWhatOtherCommandsMeanAndVariantsHearTheFirstOnes) {
+  constexpr int scenes = 60;
+  const Suite suite = load_suite("many_commands");
+  const std::size_t all = load_scenario("many_hearts").commands.size();
+  for (const auto& [variant, heard] : {std::pair("commands_1", 1u), {"commands_4", 4u}, {"commands_7", 7u}})
+    for (const std::string& world : suite.design.scenarios) {
+      const Scenario scenario = suite_scenario(suite, fmt::format("{}_{}", world, variant), Truth::released);
+      ASSERT_EQ(scenario.commands.size(), heard + 1);
+      EXPECT_EQ(scenario.commands_of("train").size(), heard);
+      const std::vector<FeatureSet>& sets = content_of(*scenario.train).decoys;
+      EXPECT_EQ(sets.size(), all);
+      double share = 0;
+      for (const std::string& arm :
+           {std::string("train"), fmt::format("seen_{}", variant), fmt::format("unseen_{}", variant)})
+        for (int i = 0; i < scenes; ++i) {
+          const Scene scene = scene_of(scenario, arm, i);
+          const FeatureSet& meant = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target;
+          const std::vector<SceneObject> decoys = others(scene);
+          EXPECT_EQ(decoys.size(), arm == "train" ? 3u : 4u);
+          for (const SceneObject& decoy : decoys) {
+            EXPECT_FALSE(meant.contains(decoy.object_type, decoy.texture));
+            EXPECT_TRUE(std::any_of(sets.begin(), sets.end(), [&decoy](const FeatureSet& set) {
+              return set.contains(decoy.object_type, decoy.texture);
+            }));
+          }
+          if (arm != "train") share += share_of_target(scene) / (2 * scenes);
+        }
+      EXPECT_NEAR(share, .2, .13) << world << ", " << variant << ": what shares most is the target by chance";
+    }
+}
+
 }  // namespace
 }  // namespace lgabench::tabletop

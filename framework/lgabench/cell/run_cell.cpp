@@ -14,6 +14,7 @@
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
 #include <lgabench/cell/runs_below.hpp>
+#include <lgabench/cell/selected_by.hpp>
 #include <lgabench/cell/showing.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
@@ -63,23 +64,35 @@ class Phases {
   Json seconds_{{"total_s", 0.0}};
 };
 
-// The plugin's method in a process of its own, the constant action, or none for a row that learns nothing.
+// A plugin's method in a process of its own.
+std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugin, const Json& options,
+                                     const fs::path& scratch) {
+  HostJob host{plugin,
+               job.cell.environment,
+               options,
+               job.cell.training_seed,
+               scratch,
+               job.confined,
+               {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
+               job.limits.data_bytes};
+  const std::vector<fs::path> earlier = runs_below(plugin.file.parent_path());
+  host.hidden.insert(host.hidden.end(), earlier.begin(), earlier.end());
+  if (job.live) host.hidden.push_back(job.live->cassette);
+  host.debugger = job.debugger;
+  return std::make_unique<HostedMethod>(host);
+}
+
+// The cell's method, or two of which one selects; the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
-  if (job.method) {
-    HostJob host{*job.method,
-                 job.cell.environment,
-                 job.cell.method.options,
-                 job.cell.training_seed,
-                 job.scratch,
-                 job.confined,
-                 {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
-                 job.limits.data_bytes};
-    const std::vector<fs::path> earlier = runs_below(job.method->file.parent_path());
-    host.hidden.insert(host.hidden.end(), earlier.begin(), earlier.end());
-    if (job.live) host.hidden.push_back(job.live->cassette);
-    host.debugger = job.debugger;
-    return std::make_unique<HostedMethod>(host);
+  if (job.method && job.acts) {
+    const auto own = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
+      fs::create_directory(job.scratch / name);
+      return hosted(job, plugin, options, job.scratch / name);
+    };
+    return std::make_unique<SelectedBy>(own(*job.method, job.cell.method.options, "selects"),
+                                        [&job, own] { return own(*job.acts, job.cell.method.acts->options, "acts"); });
   }
+  if (job.method) return hosted(job, *job.method, job.cell.method.options, job.scratch);
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
 }
@@ -283,12 +296,16 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
-  auto* const hosted = dynamic_cast<HostedMethod*>(method.get());
-  const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
+  auto* const one = dynamic_cast<HostedMethod*>(method.get());
+  auto* const two = dynamic_cast<SelectedBy*>(method.get());
+  const Files of_method = one   ? one->files()
+                          : two ? two->files()
+                                : Files();  // from now on the method may be told the truth
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
   if (job.attributed && selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
-  if (hosted) guarded(id, [&] { hosted->end(); });
+  if (one) guarded(id, [&] { one->end(); });
+  if (two) guarded(id, [&] { two->end(); });
 
   // 6 record: no clock but in timing.json.
   record(job, self,

@@ -220,7 +220,10 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option(
       "--preset", a.preset,
       "A setting of the suite, of those that `lgabench list presets --of SUITE` prints; paper: the suite's own");
-  list("--methods", a.methods, "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE");
+  list("--methods", a.methods,
+       "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE; selected_by:METHOD for "
+       "one "
+       "that selects alone, while the shipped lga+policy=heat_map learns and acts");
   list("--engines", a.engines, "Engines, by plugin id");
   list("--scenarios", a.scenarios, "Scenarios");
   list("--layout", a.layouts, "Ways to place objects: lgabench list layouts --of SUITE; several with commas");

@@ -11,7 +11,7 @@ namespace {
 
 // The options of the row as written.
 Json own_options(const std::string& method) {
-  const std::vector<std::string> words = row_words(method);
+  const std::vector<std::string> words = row_words(without_selected_by(method));
   Json options = Json::object();
   for (auto word = words.begin() + 1; word != words.end(); ++word) {
     const std::size_t equals = word->find('=');
@@ -71,8 +71,24 @@ bool is_reference_row(const std::string& id) {
          id == "never_demonstrated";
 }
 
-std::string named(const PluginInfo& info, const Json& options, const Json& usual, const std::set<std::string>& told) {
-  std::string name = info.id;
+// The row that a written one is an example of: its id, and whether it selects alone.
+std::string group_of(const std::string& written) {
+  const std::string id = row_words(without_selected_by(written)).front();
+  return selects_alone(written) ? selected_by + id : id;
+}
+
+// What learns and acts with the Selections of a method that selects alone: the shipped LGA, with the policy that finds
+// places where the mask has them.
+ActingMethod acting_method(const Layer& of_suite, const Layer& of_command, const Catalogue& catalogue) {
+  const PluginInfo& lga = catalogue.find("method", "lga");
+  Json given = of_suite.of(lga);
+  given.update(of_command.of(lga));
+  given["policy"] = "heat_map";
+  return {lga.id, lga.version, resolve_options(lga, given)};
+}
+
+std::string named(const std::string& group, const Json& options, const Json& usual, const std::set<std::string>& told) {
+  std::string name = group;
   for (const std::string& option : told)
     if (const Json& value = options.at(option); value != usual.at(option))
       name += fmt::format("+{}={}", option, option_text(value));
@@ -85,13 +101,15 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
                                     const Catalogue& catalogue) {
   std::vector<const PluginInfo*> infos;
   std::vector<Competitor> methods;
-  std::map<std::string, Json> usual;                  // id -> options of its row without options of its own
-  std::map<std::string, std::set<std::string>> told;  // id -> options in which its rows differ
+  std::map<std::string, Json> usual;                  // group -> options of its row without options of its own
+  std::map<std::string, std::set<std::string>> told;  // group -> options in which its rows differ
+  std::vector<std::string> groups;
   for (const std::string& written : design.methods) {
-    const std::string id = row_words(written).front();
+    const std::string id = row_words(without_selected_by(written)).front();
     if (is_reference_row(id))  // tables find a row by its name
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));
+    groups.push_back(group_of(written));
   }
   const Layer of_suite{design.options, suite.file, design.options_place, Layer::Reach::framework};
   const Layer of_command{settings, "--set", "", Layer::Reach::all};
@@ -101,24 +119,27 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
     const PluginInfo& info = *infos[i];
     Json given = of_suite.of(info);
     given.update(of_command.of(info));
-    usual[info.id] = check_options(info, JsonReader(given, info.id));
+    const std::string& group = groups[i];
+    usual[group] = check_options(info, JsonReader(given, info.id));
     given.update(own_options(design.methods[i]));
     methods.push_back({"method", info.id, info.id, info.version, resolve_options(info, given), info.asks});
-    for (const Competitor& other : methods)
-      if (other.id == info.id)
-        for (const auto& [option, value] : other.options.items())
-          if (value != methods.back().options.at(option)) told[info.id].insert(option);
+    if (selects_alone(design.methods[i])) methods.back().acts = acting_method(of_suite, of_command, catalogue);
+    for (std::size_t before = 0; before < i; ++before)
+      if (groups[before] == group)
+        for (const auto& [option, value] : methods[before].options.items())
+          if (value != methods.back().options.at(option)) told[group].insert(option);
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     Competitor& method = methods[i];
-    method.name = named(*infos[i], method.options, usual.at(method.id), told[method.id]);
+    method.name = named(groups[i], method.options, usual.at(groups[i]), told[groups[i]]);
     for (std::size_t before = 0; before < i; ++before)
       if (methods[before].name == method.name)
         throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",
                                      design.methods[before], design.methods[i], method.name));
   }
   for (const auto& item : settings.items())
-    if (item.key() != "*" && usual.count(item.key()) == 0)
+    if (item.key() != "*" &&
+        std::none_of(methods.begin(), methods.end(), [&](const Competitor& one) { return one.id == item.key(); }))
       throw InputError(
           fmt::format("--set {}: expected a method of this run: {}", item.key(), fmt::join(design.methods, ", ")));
   return methods;

@@ -70,7 +70,7 @@ std::string measured_on(const Cell& cell) {
 
 double usual_seconds(const Cell& cell) {
   const Entry* const entry = entry_of(cell);
-  const Json& options = cell.method.options;
+  const Json& options = cell.method.acts ? cell.method.acts->options : cell.method.options;
   double learn_ms = cell.method.is_reference() ? 0 : (entry ? *entry : measured().others).learn_ms;
   if (options.value("network", Json()) == "plain") learn_ms *= network_plain;
   const Json epochs = options.value("epochs", Json(750));

@@ -45,6 +45,17 @@ void expect_own_scenes(const Suite& suite, const Design& design, const Scenario&
                     suite.file));
 }
 
+// The first `count` of those that are demonstrated, and all others.
+Json first_commands(const Json& commands, std::size_t count) {
+  Json some = Json::array();
+  for (const Json& command : commands) {
+    const bool demonstrated = command.value("seen", true);
+    if (!demonstrated || count > 0) some.push_back(command);
+    if (demonstrated && count > 0) --count;
+  }
+  return some;
+}
+
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string>& there = layouts_of(scenario);
@@ -92,7 +103,9 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) 
                                  scenario.environment, suite.environment));
   Json json = scenario.json;
   if (!suite.train.empty()) json["train"].update(suite.train);
-  if (!variant.empty()) json["train"].update(suite.variants[variant]["train"]);
+  if (!variant.empty()) json["train"].update(suite.variants[variant].value("train", Json::object()));
+  if (!variant.empty() && suite.variants[variant].contains("commands"))
+    json["commands"] = first_commands(json["commands"], suite.variants[variant]["commands"].get<std::size_t>());
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
   for (const Json& arm : suite.arms) {

@@ -29,8 +29,14 @@ const PluginInfo* method_plugin(const Cell& cell, const Catalogue& catalogue) {
   return cell.method.is_reference() ? nullptr : &catalogue.find("method", cell.method.id);
 }
 
+const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
+  return cell.method.acts ? &catalogue.find("method", cell.method.acts->id) : nullptr;
+}
+
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
-  return build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue));
+  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue));
+  if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
+  return build;
 }
 
 std::string processor() {
@@ -112,6 +118,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
     name(catalogue.find("engine", cell.engine));
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
+      if (const PluginInfo* acts = acting_plugin(cell, catalogue)) name(*acts);
       for (const auto& [option, value] : cell.method.options.items()) {
         const auto known = method->options.find(option);  // none: of a plugin that had it when its run was recorded
         if (known == method->options.end() || value != known->at("default"))
@@ -120,7 +127,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
     }
     run.build = build_of(cell, catalogue);
   }
-  for (const char* plugin : {"engine", "method", "python"}) run.build.erase(plugin);
+  for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
   run.suite = plan.request.at("suite");
   run.preset = plan.request.at("preset");
   run.smoke = plan.cells.front().smoke;
@@ -302,7 +309,9 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               plan.live};
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {
     job.method = *method;
-    job.attributed = plan.attributes_others || is_own(*method, catalogue);
+    const PluginInfo* acts = acting_plugin(cell, catalogue);  // which alone is told the truth
+    if (acts) job.acts = *acts;
+    job.attributed = plan.attributes_others || is_own(acts ? *acts : *method, catalogue);
   }
   return job;
 }

@@ -48,7 +48,7 @@ const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
-  for (const std::string& method : methods) known.push_back(row_words(method).front());
+  for (const std::string& method : methods) known.push_back(row_words(without_selected_by(method)).front());
   options.only(known);
   for (const auto& method : options.json().items()) {
     const JsonReader values = options.at(method.key());
@@ -156,8 +156,10 @@ Suite load_suite(const std::string& id) {
     if (!suite.variants.is_object() || suite.variants.empty()) reader.at("variants").fail("an object with a member");
     for (const auto& [name, ignored] : suite.variants.items()) {
       const JsonReader variant = reader.at("variants").at(name);
-      variant.only({"train"});
-      if (!variant.at("train").json().is_object()) variant.at("train").fail("an object");
+      variant.only({"train", "commands"});
+      if (variant.has("commands")) variant.at("commands").integer(1, most);
+      if (variant.has("train") && !variant.at("train").json().is_object()) variant.at("train").fail("an object");
+      if (variant.json().empty()) variant.fail("\"train\" or \"commands\"");
     }
   }
   if (reader.has("references"))

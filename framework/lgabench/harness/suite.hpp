@@ -43,8 +43,9 @@ struct Suite {
   bool only_arms = false;           // instead of the scenario's own
   Json train = Json::object();      // members that replace the "train" of every scenario
   Json near_miss = Json::object();  // scenario -> "near_miss" of its arms that have one, in place of true
-  /// Name -> {"train": members that replace those of every scenario's "train"}: in place of each scenario ID there is
-  /// one ID_NAME for each, with arms ARM_NAME.
+  /// Name -> {"train": members that replace those of every scenario's "train", "commands": how many of its demonstrated
+  /// commands are left, the first ones}: in place of each scenario ID there is one ID_NAME for each, with arms
+  /// ARM_NAME.
   Json variants = Json::object();
   std::vector<std::string> references;  // rows of that kind beside those that every suite has
   Json presets;                         // name -> members of Design

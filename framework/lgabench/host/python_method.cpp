@@ -128,6 +128,7 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
 }
 
 std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue) {
+  if (selects_alone(row)) return selected_by + with_python_method(without_selected_by(row), interpreter, catalogue);
   if (!is_python_method(row)) return row;
   const std::string written = row_words(row).front();
   const PluginInfo plugin = describe_python(written, interpreter);

@@ -87,6 +87,7 @@ Json to_json(const CellJob& job) {
             {"attributed", job.attributed},
             {"limits", to_json(job.limits)}};
   if (job.method) json["method"] = plugin_json(*job.method);
+  if (job.acts) json["acts"] = plugin_json(*job.acts);
   if (job.live) json["live"] = to_json(*job.live);
   if (job.debugger) json["debugger"] = *job.debugger;
   return json;
@@ -106,6 +107,8 @@ CellJob read_cell_job(const JsonReader& reader) {
   if (reader.has("method")) job.method = plugin_of(reader.at("method"));
   if (job.cell.method.is_reference() == job.method.has_value())
     reader.at("cell").fail("a plugin for a method, and only there");
+  if (reader.has("acts")) job.acts = plugin_of(reader.at("acts"));
+  if (job.cell.method.acts.has_value() != job.acts.has_value()) reader.at("cell").fail("a plugin for what acts");
   job.attributed = reader.at("attributed").boolean();
   if (reader.has("live")) job.live = live_of(reader.at("live"));
   if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();

@@ -44,6 +44,7 @@ struct CellJob {
   bool confined = true;              // the method's process, see host/confine.hpp
   Limits limits{};                   // of the worker; of the method's process likewise
   std::optional<LiveModel> live{};   // that the cell asks
+  std::optional<PluginInfo> acts{};  // the cell's acting method, where it has one
   bool attributed = true;            // whether the method is told the truth in the end, to find causes
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
 };

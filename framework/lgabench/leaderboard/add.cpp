@@ -120,9 +120,10 @@ std::string published(const std::string& command) {
 Json evidence_of(const RunResults& run, const Identity& identity, const Json& data, const Json& about) {
   Json plugins = Json::array();
   const RunRecord& record = run.record;
+  const auto& acts = identity.row.acts;
   for (const RunRecord::Plugin& plugin : record.plugins)
     if ((plugin.kind == "engine" && plugin.id == identity.engine) ||
-        (plugin.kind == "method" && plugin.id == identity.row.id))
+        (plugin.kind == "method" && (plugin.id == identity.row.id || (acts && plugin.id == acts->id))))
       plugins.push_back(
           {{"kind", plugin.kind}, {"id", plugin.id}, {"version", plugin.version}, {"sha256", plugin.sha256}});
   return {{"by", about.at("by")},
@@ -158,7 +159,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Row& row
   entry.about = about;
   entry.failures = failure_words();
   entry.identity.row = first.method;
-  entry.identity.row.name = first.method.id;
+  entry.identity.row.name = first.method.own_name();
   entry.identity.answers = first.answers;
   entry.identity.answers_sha256 = answers_hash(run.directory, installed, first, reasons);
   entry.identity.engine = first.engine;

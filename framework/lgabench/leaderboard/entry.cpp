@@ -18,6 +18,7 @@ Json to_json(const Identity& identity) {
             {"engine", {{"id", identity.engine}, {"version", identity.engine_version}}},
             {"preset", identity.preset_sha256},
             {"scene_seed", identity.scene_seed}};
+  if (identity.row.acts) json["acts"] = to_json(*identity.row.acts);
   if (!identity.row.asks.empty()) json["asks"] = identity.row.asks;
   return json;
 }
@@ -113,7 +114,7 @@ int Entry::fresh() const {
 }
 
 std::string Entry::spec() const {
-  std::string text = identity.row.id;
+  std::string text = identity.row.own_name();
   for (const auto& [option, value] : identity.row.options.items())
     text += fmt::format("+{}={}", option, option_text(value));
   return text;

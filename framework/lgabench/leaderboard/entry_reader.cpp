@@ -36,11 +36,13 @@ void expect_time(const JsonReader& reader) {
 }
 
 Identity read_identity(const JsonReader& reader) {
-  reader.only({"method", "kind", "version", "options", "asks", "answers", "engine", "preset", "scene_seed"});
+  reader.only({"method", "kind", "version", "options", "asks", "acts", "answers", "engine", "preset", "scene_seed"});
   Identity identity;
   identity.row.kind = reader.at("kind").string();
   if (identity.row.kind != "method" && identity.row.kind != "reference") reader.at("kind").fail("method or reference");
-  identity.row.id = identity.row.name = reader.at("method").string();
+  identity.row.id = reader.at("method").string();
+  if (reader.has("acts")) identity.row.acts = read_acting_method(reader.at("acts"));
+  identity.row.name = identity.row.own_name();
   identity.row.version = reader.at("version").string();
   identity.row.options = reader.at("options").json();
   if (!identity.row.options.is_object()) reader.at("options").fail("an object");

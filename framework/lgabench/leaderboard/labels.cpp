@@ -32,11 +32,11 @@ std::string label_of(const Labels& labels, const Entry& entry, const std::vector
   const Competitor& row = entry.identity.row;
   const Labels::RowLabel* best = nullptr;
   for (const Labels::RowLabel& label : labels.rows) {
-    bool fits = label.id == row.id;
+    bool fits = label.id == row.own_name();
     for (const auto& [option, value] : label.options.items()) fits = fits && row.options.value(option, Json()) == value;
     if (fits && (!best || label.options.size() > best->options.size())) best = &label;
   }
-  std::string text = best ? best->label : entry.about.value("label", report::display_name(row.id));
+  std::string text = best ? best->label : entry.about.value("label", report::display_name(row.own_name()));
   for (const std::string& option : telling) {
     if (!row.options.contains(option) || (best && best->options.contains(option))) continue;
     const std::string said = option + "=" + option_text(row.options.at(option));

@@ -127,7 +127,7 @@ std::string csv_of(const Suites& suites) {
                             identity.preset_sha256.substr(0, 8),
                             std::to_string(identity.scene_seed),
                             s.entry->id(),
-                            identity.row.id,
+                            identity.row.own_name(),
                             display_name(table.names[i]),
                             identity.row.version,
                             identity.engine,
@@ -182,13 +182,13 @@ bool ranks_entries(const NamedTable& table) {
 }
 
 // In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
-Suites suites_of(const std::vector<Entry>& entries, const Labels& labels) {
-  constexpr std::array order{"q1", "clutter", "q2", "q3", "few_members", "mobile", "robustness"};
+Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks) {
+  constexpr std::array order{"q1", "clutter", "q2", "q3", "few_members", "many_commands", "mobile", "robustness"};
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   for (const auto& table : tables(entries)) {
     const std::string& suite = table.front()->setting.suite;
     by_place[{std::find(order.begin(), order.end(), suite) - order.begin(), suite}].push_back(
-        named_table(table, labels));
+        named_table(table, labels, tracks));
   }
   Suites suites;
   for (auto& [place, named] : by_place) suites.emplace_back(place.second, std::move(named));
@@ -202,7 +202,7 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels) {
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents) {
-  const Suites suites = suites_of(entries, read_labels(board));
+  const Suites suites = suites_of(entries, read_labels(board), read_tracks(board));
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(index(suites, all_rows));
   files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");

@@ -30,6 +30,12 @@ void expect_method(const Competitor& row, const Catalogue& catalogue) {
   const auto named = [](const std::string& asks) { return asks.empty() ? "nobody" : asks; };
   expect_same("version of " + row.id, installed.version, row.version);
   expect_same("whom " + row.id + " asks", named(installed.asks), named(row.asks));
+  if (row.acts) {
+    const PluginInfo& acts = catalogue.find("method", row.acts->id);
+    expect_same("version of " + acts.id, acts.version, row.acts->version);
+    expect_same("options of " + acts.id, canonical(resolve_options(acts, row.acts->options)),
+                canonical(row.acts->options));
+  }
   expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
 }
 

@@ -135,7 +135,7 @@ std::vector<Cell> cells_of_row(const Installed& installed, const Competitor& row
     cell.layout = place.layout;
     cell.engine = engine;
     cell.method = row;
-    cell.method.name = row.id;
+    cell.method.name = row.own_name();
     cell.demonstrations = place.demonstrations;
     cell.training_seed = place.seed;
     cells.push_back(cell);

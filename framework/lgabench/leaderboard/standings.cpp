@@ -95,14 +95,44 @@ void add_costs(Standing& standing) {
   standing.recall = mean_share(entry, &NameQuality::recall);
 }
 
+// Which learner, of the framework's; any other method's is the paper's network or takes its place.
+std::string policy_of(const Standing& standing) {
+  const Json policy = standing.entry->identity.row.options.value("policy", Json());
+  return policy.is_string() ? policy.get<std::string>() : "regression";
+}
+
+// Success over the arms of the abstraction track.
+std::optional<double> in_track(const Standing& standing, const Track& track) {
+  std::vector<double> rates;
+  for (const std::string& arm : track.arms)
+    if (const auto found = standing.in_arm.find(arm); found != standing.in_arm.end()) rates.push_back(found->second);
+  return rates.empty() ? std::nullopt : std::optional(mean(rates));
+}
+
+// What the abstraction track says beside success over all arms.
+void add_gaps(std::vector<Standing>& all, const Track& track) {
+  std::optional<double> any, truth;
+  for (Standing& standing : all) {
+    standing.in_track = in_track(standing, track);
+    const Competitor& row = standing.entry->identity.row;
+    if (row.acts || policy_of(standing) != "heat_map") continue;
+    if (row.id == "factorial" && row.options.value("input", Json()) == "object_mask") any = standing.in_track;
+    if (row.id == "human") truth = standing.in_track;
+  }
+  if (!any || !truth || *truth <= *any) return;
+  for (Standing& standing : all)
+    if (standing.in_track) standing.gap_closed = (*standing.in_track - *any) / (*truth - *any);
+}
+
 // Each entry's rank among those that are ranked, given all entries' shared resamples.
-void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamples) {
+void add_ranks(std::vector<Standing>& all, const report::SharedResamples& resamples, bool across_policies) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i].not_ranked.empty()) continue;
     std::vector<double> p;
     std::vector<bool> better;
     for (std::size_t j = 0; j < all.size(); ++j) {
       if (j == i || !all[j].not_ranked.empty()) continue;
+      if (!across_policies && policy_of(all[j]) != policy_of(all[i])) continue;
       p.push_back(resamples.p(i, j));
       better.push_back(all[j].score > all[i].score);
     }
@@ -131,7 +161,7 @@ std::string why_not_ranked(const Entry& entry) {
   return "";
 }
 
-std::vector<Standing> standings(const std::vector<const Entry*>& table) {
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track) {
   std::vector<Standing> all;
   std::vector<std::vector<std::vector<std::vector<double>>>> rates;
   for (const Entry* entry : table) {
@@ -139,6 +169,8 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table) {
     Standing& standing = all.emplace_back();
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry);
+    if (standing.not_ranked.empty() && track.kind == Track::abstraction)
+      standing.not_ranked = "ranks of this track wait for commands that are drawn";
     add_rates(standing);
     add_costs(standing);
     rates.push_back(rates_of(*entry));
@@ -148,7 +180,8 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table) {
   const report::SharedResamples resamples(rates, setting.shared_scenes(),
                                           fmt::format("leaderboard/{}/{}", hash(setting), setting.scene_seed));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].interval = resamples.interval(i);
-  add_ranks(all, resamples);
+  add_ranks(all, resamples, track.kind == Track::open);
+  if (track.kind == Track::abstraction) add_gaps(all, track);
   const bool ranks = std::any_of(all.begin(), all.end(), [](const Standing& s) { return s.rank; });
   const auto is_reference = [](const Standing& s) { return s.entry->identity.row.is_reference(); };
   const auto order = [&](const Standing& s) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/leaderboard/entry.hpp>
+#include <lgabench/leaderboard/tracks.hpp>
 #include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -21,6 +22,9 @@ struct Standing {
   bool below_random = false;  // its score is below that of the reference row random_object
   std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
   std::map<std::string, double> in_arm, in_scenario;
+  /// In the abstraction track: success over the arms that its file names, and how much of the distance from the mask of
+  /// any object to that of the truth it closes there; none where one of those two is no row of the table.
+  std::optional<double> in_track, gap_closed;
   int episodes = 0, failed_cells = 0;
   std::optional<double> precision, recall;            // of its Selections, mean over commands and kinds of features
   double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
@@ -32,9 +36,10 @@ std::string why_not_ranked(const Entry& entry);
 /// The entries of one table by score, reference rows among them; where entries are ranked, methods that are not come
 /// last. Entries that were withdrawn, or not yet replayed, are left out.
 /// All share their resamples of test scenes and training seeds (report/bootstrap.hpp), which makes the paired test of
-/// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Deterministic.
+/// every two of them as cheap as a difference. Holm's correction is over the comparisons of each entry. Outside of the
+/// open track only entries with one policy (the option of that name) are compared. Deterministic.
 /// @pre the entries have one setting
-std::vector<Standing> standings(const std::vector<const Entry*>& table);
+std::vector<Standing> standings(const std::vector<const Entry*>& table, const Track& track = {});
 
 /// The entries of one table whose files are all that is known of them: what they claim, without interval and costs.
 std::vector<Standing> not_yet_replayed(const std::vector<const Entry*>& table);

@@ -52,7 +52,7 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
   std::map<std::pair<std::string, std::string>, std::set<Json>> values;  // by id and option
   for (const Standing& s : all)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
-      values[{s.entry->identity.row.id, option}].insert(value);
+      values[{s.entry->identity.row.own_name(), option}].insert(value);
   std::set<std::string> telling;
   for (const auto& [key, different] : values)
     if (different.size() > 1) telling.insert(key.second);
@@ -61,7 +61,7 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
   std::map<std::string, int> times, labelled;
   for (const Standing& s : all) {
     const Identity& identity = s.entry->identity;
-    std::string name = identity.row.id;
+    std::string name = identity.row.own_name();
     for (const auto& [option, value] : identity.row.options.items())
       if (telling.count(option) > 0) name += fmt::format("+{}={}", option, option_text(value));
     names.push_back(name);
@@ -86,7 +86,7 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
 std::vector<bool> best_of(const std::vector<Standing>& all) {
   std::set<std::string> known;
   std::vector<bool> best;
-  for (const Standing& s : all) best.push_back(known.insert(s.entry->identity.row.id).second);
+  for (const Standing& s : all) best.push_back(known.insert(s.entry->identity.row.own_name()).second);
   return best;
 }
 
@@ -124,6 +124,9 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   grid.heads = {"rank", "entry", "success"};
   const std::vector<int> numbers = setting.demonstrations.size() > 1 ? setting.demonstrations : std::vector<int>();
   for (const int n : numbers) grid.heads.emplace_back(fmt::format("n = {}", n));
+  const bool selects = table.track.kind == Track::abstraction;
+  if (selects)
+    for (const char* head : {"where it decides", "gap closed"}) grid.heads.emplace_back(head);
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(arm);
   for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
@@ -141,6 +144,9 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
       const auto at = s.at.count(n) ? s.at.find(n) : s.at.find(0);
       row.cells.emplace_back(at == s.at.end() ? TableCell("") : TableCell(Span::number(fixed(at->second))));
     }
+    if (selects)
+      for (const auto& value : {s.in_track, s.gap_closed})
+        row.cells.emplace_back(Span::number(value ? fixed(*value) : "–"));
     if (arms.size() > 1)
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
     for (const auto& part : {s.precision, s.recall}) row.cells.emplace_back(Span::number(part ? fixed(*part) : "–"));
@@ -247,8 +253,10 @@ std::string command_of(const Entry& entry) {
 
 }  // namespace
 
-NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels) {
-  NamedTable named{table.front()->setting, standings(table), {}, {}, {}, not_yet_replayed(table), {}, 0};
+NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels, const Tracks& tracks) {
+  const Setting& setting = table.front()->setting;
+  const Track track = track_of(tracks, setting);
+  NamedTable named{setting, standings(table, track), {}, {}, {}, not_yet_replayed(table), {}, 0, track};
   Names names = names_of(named.standings, labels);
   named.names = std::move(names.names);
   named.labels = std::move(names.labels);
@@ -367,6 +375,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     const std::string id = fmt::format("table{}", ++number);
     Section section{id, title_of(table.setting)};
     section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
+    section.add<Paragraph>(reading, {{words_of(table.track)}});
     if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
     if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
     if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));

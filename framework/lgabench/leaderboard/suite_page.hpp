@@ -20,8 +20,9 @@ struct NamedTable {
   std::vector<Standing> waiting;    // not yet replayed
   std::vector<std::string> waiting_labels;
   int withdrawn = 0;
+  Track track{};
 };
-NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels = {});
+NamedTable named_table(const std::vector<const Entry*>& table, const Labels& labels, const Tracks& tracks);
 
 /// "q1, preset leaderboard"
 std::string title_of(const Setting& setting);

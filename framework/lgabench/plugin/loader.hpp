@@ -73,6 +73,12 @@ std::string option_text(const Json& value);
 /// first '+' another one separates only at the end and before a letter, so that a value may be 1e+30.
 std::vector<std::string> row_words(const std::string& row);
 
+/// What a row begins with whose plugin selects alone, while the shipped policy learns and acts: "selected_by:ROW".
+constexpr const char* selected_by = "selected_by:";
+bool selects_alone(const std::string& row);
+/// ROW of such a row; any other as it is.
+std::string without_selected_by(const std::string& row);
+
 /// Every option of the plugin: those of `overrides` (an object), defaults for the rest. A whole number given for an
 /// option with a fractional default becomes fractional.
 /// @throws InputError for an unknown option, a value of another type than the default's or not among its values, and

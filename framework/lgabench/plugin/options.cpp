@@ -41,6 +41,12 @@ std::vector<std::string> row_words(const std::string& row) {
   return words;
 }
 
+bool selects_alone(const std::string& row) { return row.rfind(selected_by, 0) == 0; }
+
+std::string without_selected_by(const std::string& row) {
+  return selects_alone(row) ? row.substr(std::string(selected_by).size()) : row;
+}
+
 Json check_options(const PluginInfo& plugin, const JsonReader& given) {
   const Json& overrides = given.json();
   std::vector<std::string> known;

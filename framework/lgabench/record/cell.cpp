@@ -36,6 +36,17 @@ std::optional<std::uint64_t> Cell::scenes_of_seed() const {
   return test_scenes == TestScenes::per_seed ? std::optional(training_seed) : std::nullopt;
 }
 
+Json to_json(const ActingMethod& acts) {
+  return {{"id", acts.id}, {"version", acts.version}, {"options", acts.options}};
+}
+
+ActingMethod read_acting_method(const JsonReader& reader) {
+  reader.only({"id", "version", "options"});
+  ActingMethod acts{reader.at("id").string(), reader.at("version").string(), reader.at("options").json()};
+  if (!acts.options.is_object()) reader.at("options").fail("an object");
+  return acts;
+}
+
 Json to_json(const Cell& cell) {
   Json json{{"suite", cell.suite},
             {"environment", cell.environment},
@@ -57,6 +68,7 @@ Json to_json(const Cell& cell) {
             {"data", cell.data},
             {"smoke", cell.smoke}};
   if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
+  if (cell.method.acts) json["method"]["acts"] = to_json(*cell.method.acts);
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
   if (!cell.selection_errors.none()) json["selection_errors"] = to_json(cell.selection_errors);
   if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
@@ -68,7 +80,7 @@ Cell read_cell(const Json& json, const std::string& file) {
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
                "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "data", "smoke"});
   const JsonReader method = reader.at("method");
-  method.only({"kind", "id", "name", "version", "options", "asks"});
+  method.only({"kind", "id", "name", "version", "options", "asks", "acts"});
   constexpr long long most = std::numeric_limits<int>::max();
 
   Cell cell;
@@ -82,6 +94,7 @@ Cell read_cell(const Json& json, const std::string& file) {
                  method.at("version").string(), method.at("options").json()};
   if (!cell.method.options.is_object()) method.at("options").fail("an object");
   if (method.has("asks")) cell.method.asks = method.at("asks").string();
+  if (method.has("acts")) cell.method.acts = read_acting_method(method.at("acts"));
   if (cell.method.kind != "method" && cell.method.kind != "reference") method.at("kind").fail("method or reference");
   cell.demonstrations = static_cast<int>(reader.at("demonstrations").integer(0, most));
   cell.training_seed = seed_at(reader.at("training_seed"));

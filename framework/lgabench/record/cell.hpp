@@ -15,6 +15,12 @@
 
 namespace lgabench {
 
+/// The method that learns and acts with what another one selects.
+struct ActingMethod {
+  std::string id, version;
+  Json options = Json::object();  // every option
+};
+
 /// A method, or a row of the table that a method is measured against.
 struct Competitor {
   std::string kind = "method";  // or "reference": constant_action, random_object, oracle
@@ -23,8 +29,11 @@ struct Competitor {
   std::string version;
   Json options = Json::object();  // every option, defaults included
   std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
+  std::optional<ActingMethod> acts{};  // another method, where this one selects alone
 
   bool is_reference() const { return kind == "reference"; }
+  /// As a run of this row alone names it, and a command line writes it but for options.
+  std::string own_name() const { return (acts ? "selected_by:" : "") + id; }
 };
 
 /// A person whose answers a cell is based on.
@@ -54,6 +63,10 @@ struct Cell {
   /// The training seed where the test scenes are its own.
   std::optional<std::uint64_t> scenes_of_seed() const;
 };
+
+Json to_json(const ActingMethod& acts);
+/// @throws InputError with file and place.
+ActingMethod read_acting_method(const JsonReader& reader);
 
 Json to_json(const Cell& cell);
 /// What cells of 0.1 lack takes the value that held then. @throws InputError with `file` and place.

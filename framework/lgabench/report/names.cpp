@@ -64,15 +64,16 @@ const std::map<std::string, Known>& known() {
 
 // nullptr for an id that methods.json does not have.
 const Known* find(const std::string& method) {
-  const auto it = known().find(row_words(method).front());
+  const auto it = known().find(row_words(without_selected_by(method)).front());
   return it == known().end() ? nullptr : &it->second;
 }
 
 }  // namespace
 
 std::string display_name(const std::string& method) {
-  std::vector<std::string> words = row_words(method);
+  std::vector<std::string> words = row_words(without_selected_by(method));
   if (const Known* own = find(method)) words.front() = own->name;
+  if (selects_alone(method)) words.front() = "selected by " + words.front();
   return fmt::format("{}", fmt::join(words, " "));
 }
 
@@ -93,7 +94,7 @@ MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std
   std::map<std::string, std::size_t> variants;  // so far, by id
   for (const std::string& method : ordered) {
     if (styles_.count(method) != 0) continue;
-    const std::string id = row_words(method).front();
+    const std::string id = row_words(without_selected_by(method)).front();
     const std::size_t variant = variants[id]++;
     std::size_t mark = 0;
     MethodStyle& style = styles_[method];

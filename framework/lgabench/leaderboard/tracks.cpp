@@ -1,0 +1,44 @@
+#include <lgabench/leaderboard/tracks.hpp>
+
+#include <lgabench/core/files.hpp>
+
+namespace lgabench::leaderboard {
+
+Tracks read_tracks(const fs::path& board) {
+  const fs::path file = board / "tracks.json";
+  if (!fs::exists(file)) return {};
+  const Json json = read_json(file, Links::refused);
+  const JsonReader reader(json, file.string());
+  reader.only({"abstraction", "open"});
+  Tracks tracks;
+  const auto add = [&tracks](const JsonReader& place, const std::string& preset, Track track) {
+    if (!tracks.emplace(preset, std::move(track)).second) place.fail("each preset in one track");
+  };
+  if (reader.has("abstraction")) {
+    const JsonReader presets = reader.at("abstraction");
+    if (!presets.json().is_object()) presets.fail("an object: arms by preset");
+    for (const auto& [preset, ignored] : presets.json().items())
+      add(presets.at(preset), preset, {Track::abstraction, presets.at(preset).strings()});
+  }
+  if (reader.has("open"))
+    for (const JsonReader& preset : reader.at("open").elements()) add(preset, preset.string(), {Track::open, {}});
+  return tracks;
+}
+
+Track track_of(const Tracks& tracks, const Setting& setting) {
+  const auto found = tracks.find(setting.name());
+  return found == tracks.end() ? Track() : found->second;
+}
+
+std::string words_of(const Track& track) {
+  if (track.kind == Track::abstraction)
+    return "Abstraction track: rows selected_by:METHOD differ in what is selected alone; the shipped policy learns and "
+           "acts. \"Where it decides\" is success over the arms that tracks.json names; \"gap "
+           "closed\" "
+           "the part of the distance there from the mask of any object to that of the truth. Answers to commands whose "
+           "truth is public prove nothing, so no row has a rank.";
+  if (track.kind == Track::open) return "Open track: all that acts is ranked together.";
+  return "Only rows with one policy are ranked against each other.";
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,31 @@
+// Tracks: which presets of the board ask for what, in tracks.json of the board.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <lgabench/leaderboard/setting.hpp>
+
+namespace lgabench::leaderboard {
+
+/// What competes in a table. abstraction: what is selected, while the shipped policy learns and acts; open: all that
+/// acts; reproduction, every preset that is in no track: methods with one policy among themselves.
+struct Track {
+  enum Kind { reproduction, abstraction, open } kind = reproduction;
+  std::vector<std::string> arms{};  // of the abstraction track: where an abstraction decides
+};
+
+/// By preset, as "clutter-abstraction".
+using Tracks = std::map<std::string, Track>;
+
+/// Those of the board's tracks.json; none where there is no such file. @throws InputError with file and place.
+Tracks read_tracks(const std::filesystem::path& board);
+
+/// The setting's.
+Track track_of(const Tracks& tracks, const Setting& setting);
+
+/// What a page says of it.
+std::string words_of(const Track& track);
+
+}  // namespace lgabench::leaderboard
