@@ -39,7 +39,7 @@ class Factorial : public lgabench::CloningMethod {
 LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
                        "LGA with the training scenes or the policy's input replaced, to tell their effects apart",
                        Factorial,
-                       "{" LGABENCH_CLONING_OPTIONS R"(,
+                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS R"(,
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
              "source": "docs/protocol.md, section 4"},

@@ -12,4 +12,5 @@ class Lga : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga", "0.1", "Behaviour cloning on a goal mask that a language model selected", Lga,
-                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")
+                "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION
+                "," LGABENCH_MASK_OPTIONS "}")

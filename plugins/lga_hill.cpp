@@ -13,4 +13,5 @@ class LgaHill : public lgabench::CloningMethod {
 
 LGABENCH_METHOD_ASKING("edit", "lga_hill", "0.1",
                        "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
-                       "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")
+                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION
+                       "," LGABENCH_MASK_OPTIONS "}")

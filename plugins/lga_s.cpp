@@ -18,4 +18,4 @@ class LgaS : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga_s", "0.1", "Behaviour cloning on a language model's goal mask and the picture", LgaS,
-                "{" LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")
+                "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")

@@ -180,6 +180,7 @@ class TabletopType final : public EnvironmentType {
     }
     return commands;
   }
+  std::string goal_type() const override { return tabletop::goal_type; }
   std::string world_of(const Scenario& scenario) const override {
     const int bodies = bodies_of(scenario);
     return bodies == most_bodies ? "" : fmt::format("{} bodies", bodies);

@@ -36,4 +36,4 @@ class MaskedRgb : public CloningMethod {
 }  // namespace
 
 LGABENCH_METHOD("masked_rgb", "0.1", "Behaviour cloning on the colours of what a language model selected", MaskedRgb,
-                "{" LGABENCH_CLONING_OPTIONS "}")
+                "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "}")

@@ -10,6 +10,7 @@ from lgabench_method import FeatureSet, Selection, goal_mask, select_features
 
 class Forest:
     version = "0.1"
+    questionnaire = True
     summary = "a random forest on the moments of the goal mask"
     options = {
         "trees": {"default": 100, "min": 1, "help": "trees of the forest", "source": "scikit-learn"},

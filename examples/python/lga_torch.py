@@ -15,6 +15,7 @@ ROWS, COLUMNS = 36, 72  # of what the network sees
 
 class Lga:
     version = "0.1"
+    questionnaire = True
     summary = "LGA in PyTorch: behaviour cloning on a goal mask that a language model selected"
     options = {
         "epochs": {"default": 750, "min": 1, "help": "passes over the training data", "source": "paper, appendix"},

@@ -15,12 +15,23 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
 
 Needs NumPy alone. One thread; the same seed must give the same bytes.
 """
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any, Literal, Optional, Protocol, Union
 
 import numpy
+import numpy.typing
 
-__all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "Instance", "Instruction", "Needs", "Observation",
-           "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Shown", "Step", "goal_mask", "select_features"]
+__all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Instance", "Instruction", "LanguageModel",
+           "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Shown",
+           "Step", "TrainingLog", "goal_mask", "select_features"]
+
+Bytes = numpy.typing.NDArray[numpy.uint8]
+Numbers = numpy.typing.NDArray[numpy.float64]
+Picture = Union[tuple[str, numpy.typing.ArrayLike], tuple[str, numpy.typing.ArrayLike, str]]
+Question = tuple[str, str, str]  # about "target" or SecondRole.id, group "object_type" or "texture", candidate
 
 
 class Refused(RuntimeError):
@@ -39,24 +50,24 @@ class Command:
     """What a method is told of the task: the words, the task's id, and what they speak of beside the target, if anything."""
     utterance: str
     task: str
-    second: SecondRole = None
+    second: Optional[SecondRole] = None
 
 
 @dataclass(frozen=True)
 class FeatureSpace:
     """What a scene can be described with (paper, section 4.1): object types x textures."""
     id: str
-    object_types: list
-    textures: list
+    object_types: list[str]
+    textures: list[str]
 
 
 @dataclass
 class FeatureSet:
     """Object types and textures; an object belongs if both of its features do."""
-    object_types: list = field(default_factory=list)
-    textures: list = field(default_factory=list)
+    object_types: list[str] = field(default_factory=list)
+    textures: list[str] = field(default_factory=list)
 
-    def contains(self, object_type, texture):
+    def contains(self, object_type: str, texture: str) -> bool:
         return object_type in self.object_types and texture in self.textures
 
 
@@ -73,12 +84,12 @@ class Selection:
     `provenance`, `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
     """
     target: FeatureSet = field(default_factory=FeatureSet)
-    second: SecondSet = None
+    second: Optional[SecondSet] = None
     provenance: str = "none"
     source: str = ""
     asked_as: str = ""
 
-    def keeps(self, object_type, texture):
+    def keeps(self, object_type: str, texture: str) -> bool:
         """The object is kept in the goal mask."""
         return (self.target.contains(object_type, texture)
                 or (self.second is not None and self.second.contains(object_type, texture)))
@@ -103,29 +114,29 @@ class Instance:
 @dataclass(frozen=True)
 class Observation:
     """The camera's picture: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object."""
-    rgb: numpy.ndarray
-    ids: numpy.ndarray
-    instances: list
+    rgb: Bytes
+    ids: Bytes
+    instances: list[Instance]
 
 
 @dataclass(frozen=True)
 class Step:
     """An observation with the oracle's action for it: a double for each of layout["action"]["numbers"]."""
     observation: Observation
-    label: numpy.ndarray
+    label: Numbers
 
 
 @dataclass(frozen=True)
 class Demonstration:
     """The oracle's episode for one instruction; with Needs.noisy_per_clean the recovery steps follow the first."""
     instruction: Instruction
-    steps: list
+    steps: list[Step]
 
 
 @dataclass
 class Needs:
     """What a method asks of the data it learns from, as lgabench::Needs in core/method.hpp."""
-    targets: str = "selected"  # or "truth"
+    targets: Literal["selected", "truth"] = "selected"
     noisy_per_clean: int = 0
     noise_max: float = 0.0
 
@@ -137,24 +148,71 @@ class Shown:
     `pictures` are (name, array) or (name, array, how it is read). An array of rows x columns is a mask: above 0 is white,
     below red, 0 black. One of rows x columns x 3 has colours: bytes, or numbers from 0 to 1.
     """
-    pictures: list = field(default_factory=list)
-    texts: list = field(default_factory=list)   # read beside them, in words for a caption
-    unread: list = field(default_factory=list)  # of the method's inputs, what this policy leaves out
+    pictures: Sequence[Picture] = field(default_factory=list)
+    texts: Sequence[str] = field(default_factory=list)   # read beside them, in words for a caption
+    unread: Sequence[str] = field(default_factory=list)  # of the method's inputs, what this policy leaves out
+
+
+class LanguageModel(Protocol):
+    """Whoever answers which features matter: recorded answers, or a server's. lgabench counts what is asked."""
+
+    def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
+        """In order of the questions. Raises Refused."""
+
+
+class HumanAnswers(Protocol):
+    """A person's answers, for methods that declare that they ask people; for others every call raises Refused."""
+
+    def specify(self, command: Command) -> Selection:
+        """Which features the person says that the command means."""
+
+    def edit(self, command: Command, proposal: Selection) -> Selection:
+        """What the person makes of a proposal."""
+
+
+class TrainingLog(Protocol):
+    """Where a method reports its training, while learn() runs."""
+
+    def epoch(self, epochs: int, steps: int, loss: float, **curves: float) -> None:
+        """After each pass over the data: passes so far, optimiser steps so far, mean loss of the pass, and other values of it
+        by name, as validation=0.2: a report draws a curve of each."""
 
 
 @dataclass
 class Services:
     """What lgabench lends to a method for the length of a call."""
-    lm: object       # answer(command, space, questions) -> [bool]; a question is (about, group, candidate)
-    human: object    # specify(command), edit(command, proposal): for methods that declare that they ask people
-    options: dict    # every one
-    seed: int        # governs all that is random
-    log: object      # epoch(epochs, steps, loss), in learn() after each pass over the data
-    files: str       # a directory for pictures and curves of the method's own; kept with the cell
-    layout: dict     # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places
+    lm: LanguageModel
+    human: HumanAnswers
+    options: dict[str, Any]  # every one
+    seed: int                # governs all that is random
+    log: TrainingLog
+    files: str               # a directory for pictures and curves of the method's own; kept with the cell
+    layout: dict[str, Any]   # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places
 
 
-def select_features(command, space, lm):
+class Policy(Protocol):
+    """What was learned. It may also have reset(), called before each episode, and shown() -> Shown; and an attribute
+    seen_in_training, whether the last act() read, to the byte, an input that was learned from."""
+
+    def act(self, observation: Observation, instruction: Instruction) -> numpy.typing.ArrayLike:
+        """The one action of an episode: a number for each of layout["action"]["numbers"]."""
+
+
+class Method(Protocol):
+    """What is called of a method's class, in this order; needs(options) -> Needs and revise(command, selected,
+    demonstrations, services) -> Selection may be there as well."""
+    version: str
+    summary: str
+    options: dict[str, dict[str, Any]]
+
+    def select(self, command: Command, space: FeatureSpace, services: Services) -> Selection:
+        """Which features could the command mean (paper, section 3.1)? Called for each command of the scenario."""
+
+    def learn(self, demonstrations: list[Demonstration], services: Services) -> Policy:
+        """Learns from the demonstrations, the cell's number of them for each seen command."""
+
+
+def select_features(command: Command, space: FeatureSpace, lm: LanguageModel) -> Selection:
     """Asks of every object type and texture whether the target, and the task's second set, could have it."""
     abouts = ["target"] + ([command.second.id] if command.second else [])
     questions = [(about, group, name) for about in abouts
@@ -162,12 +220,12 @@ def select_features(command, space, lm):
     selection = Selection(second=SecondSet(role=command.second.id) if command.second else None)
     for (about, group, name), yes in zip(questions, lm.answer(command, space, questions)):
         if yes:
-            chosen = selection.target if about == "target" else selection.second
+            chosen = selection.second if selection.second and about != "target" else selection.target
             (chosen.object_types if group == "object_type" else chosen.textures).append(name)
     return selection
 
 
-def goal_mask(observation, selection):
+def goal_mask(observation: Observation, selection: Selection) -> Bytes:
     """rows x columns of 0 and 1: 1 on every object that the Selection keeps (paper, section 3.1)."""
     kept = [one.id for one in observation.instances if one.pixels > 0 and selection.keeps(one.object_type, one.texture)]
     return numpy.isin(observation.ids, kept).astype(numpy.uint8)

@@ -128,5 +128,6 @@ def describe(written):
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
+            "questionnaire": found.get("questionnaire") is True,
             "sha256": hashlib.sha256(source).hexdigest(),
             "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})}}

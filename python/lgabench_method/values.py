@@ -1,6 +1,8 @@
 """What frames and shared memory hold, as Python values and back."""
 import mmap
 import os
+from collections.abc import Mapping
+from typing import Any
 
 import numpy
 
@@ -39,7 +41,7 @@ def _set_json(value):
 SELECTION = ("target", "provenance", "source", "asked_as")  # its members beside the second set, which is named by its role
 
 
-def selection(json):
+def selection(json: Mapping[str, Any]) -> Selection:
     roles = [name for name in json if name not in SELECTION]
     second = json[roles[0]] if roles else None
     return Selection(_set(json["target"]),

@@ -294,7 +294,8 @@ class Probe : public fixture::FixtureMethod<fixture::StayPolicy> {
     throw std::runtime_error(how + ": " + found);
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
-    const Command heart{"Bring me the heart.", "pick_and_place"};
+    const std::string words = services.options.at("path");
+    const Command heart{words.empty() ? "Bring me the heart." : words, "pick_and_place"};
     if (services.options.at("how") == "ask_in_learn")
       services.lm.answer(heart, {"tabletop", {"heart", "star"}, {"red"}}, {{{}, {}, "heart"}, {{}, {}, "star"}});
     return FixtureMethod::learn(demonstrations, services);

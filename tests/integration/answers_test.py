@@ -12,11 +12,14 @@ import re
 import shlex
 import shutil
 import signal
+import subprocess
+import textwrap
 import threading
 import time
 import unittest
 
-from case import BUILD, Case, FIXTURES
+from case import BUILD, Case, FIXTURES, command_line, with_options
+from python_test import PYTHON, has
 
 DATA = BUILD / "share/lgabench"
 SECRET = "sk-secret-1234567890"
@@ -208,7 +211,7 @@ class Cassettes(Asking):
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):
-            self.assertIn("--answers: expected recorded, claude, claude_clutter, gpt4_released, gpt4_study, openai, none or cassette:FILE",
+            self.assertIn("--answers: expected recorded, claude, claude_clutter, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
@@ -290,6 +293,55 @@ class Live(Asking):
         kept.write_bytes(tape.replace(b"Final answer: no", b"Final answer: yes", 1))
         self.assertIn("does not have the bytes that its name says", self.call("verify", "out", expect=2).stderr)
 
+    def test_declared_questions_are_asked_before_any_cell(self):
+        """So their time is no cell's, and how many there are is said beforehand and meanwhile."""
+        dry = ["--dry-run", "--concurrency", "8"]
+        self.assertIn("before the cells: 224 questions, 0 answered already, 8 at once\n", self.play(*dry).stdout)
+        self.server.seconds = .5
+        said = self.play("--timeout", "12").stderr  # 14 s of questions a command
+        self.assertIn("224 questions, 0 answered already, 4 at once\n", said)
+        self.assertRegex(said, r"asked 224 of 224 in \d+ s\n")
+        self.assertLess(len(re.findall("asked ", said)), 10)
+        self.assertRegex(self.play(*dry, "--fresh").stdout, r"before the cells: 224 questions, 224 answered already, 8 at once\n")
+        self.assertNotIn("questions", self.call(*self.run_it, "--dry-run", "--out", "other").stdout)
+        self.server.shutdown()
+        self.call(*with_options(self.run_it, "--seeds", "2"), *self.ANSWERS, "--out", "more")  # nothing is asked again
+
+    def test_only_those_of_the_shard_are_asked(self):
+        one_seed = with_options(self.run_it, "--seeds", "0")  # a cell of each scenario
+        for words, questions in ([], 224), (["--shard", "1/2"], 112), (["--scenarios", "heart"], 112):
+            said = self.call(*one_seed, *self.ANSWERS, "--out", "out", "--dry-run", *words).stdout
+            self.assertIn(f"before the cells: {questions} questions, 0 answered", said)
+
+    @unittest.skipUnless(has(PYTHON, "numpy"), "needs NumPy")
+    def test_a_python_method_declares_them_too(self):
+        (self.dir / "mine.py").write_text(textwrap.dedent("""
+            import lgabench_method as lgabench
+
+            class Mine:
+                questionnaire = True
+
+                def select(self, command, space, services):
+                    return lgabench.select_features(command, space, services.lm)
+
+                def learn(self, demonstrations, services):
+                    return None
+            """))
+        words = ["run", self.suite, "--python", PYTHON, "--methods", "mine.py:Mine", "--demos", "10", "--seeds", "0", "--episodes", "2", "--out", "out"]
+        self.assertIn("before the cells: 224 questions", self.call(*words, *self.ANSWERS, "--dry-run").stdout)
+        (self.dir / "mine.py").write_text((self.dir / "mine.py").read_text().replace("questionnaire = True", "pass"))
+        self.assertNotIn("before the cells", self.call(*words, *self.ANSWERS, "--dry-run").stdout)
+
+    def test_waiting_for_others_questions_is_no_time_of_a_cell(self):
+        """Methods that do not declare them ask as they run, in turn: the second of two cells waits, then asks itself."""
+        self.server.seconds = 8
+        rows = "fixture_probe+how=ask_in_learn+path=First,fixture_probe+how=ask_in_learn+path=Second"
+        said = self.call("run", "q1", "--scenarios", "heart", "--methods", rows, "--demos", "10", "--seeds", "0", "--episodes", "2",
+                         "--no-reference", "--plugin-path", FIXTURES / "faulty", "--jobs", "2", "--timeout", "15", "--out", "out",
+                         *self.ANSWERS).stderr
+        self.assertNotIn("before the cells", said)
+        self.assertEqual(len(self.server.asked), 4)
+
     def test_shards_on_one_cassette_are_one_run(self):
         for i in (1, 2):
             self.call(*self.run_it, *self.ANSWERS, "--shard", f"{i}/2", "--out", f"part{i}")
@@ -325,7 +377,8 @@ class Live(Asking):
     def test_a_reply_without_an_answer_is_named_and_the_rest_is_kept(self):
         self.server.odd = {"star": {"message": {"content": "It is"}, "finish_reason": "length"}}
         said = self.play(expect=3).stderr
-        self.assertIn('1 of 112 questions have no answer from made-up-1: "star"; the first: ', said)
+        self.assertIn('1 of 1 questions have no answer from made-up-1: "star"; the first: ', said)
+        self.assertIn('asking beforehand: 2 questions have no answer; the first: "Bring me the heart.", asked about "star"', said)
         for _, status in self.cells("out").values():
             self.assertEqual((status["state"], status["fault"]), ("failed", "host"))
         self.assertEqual(len((self.dir / "tape.jsonl").read_text().splitlines()), 2 * 111)
@@ -354,14 +407,58 @@ class Live(Asking):
         workers = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
         for worker in workers:
             os.kill(int(worker), signal.SIGKILL)
-        run.communicate(timeout=120)
-        self.assertEqual(run.returncode, 3)
-        self.server.seconds = 0
-        self.play()
+        said = run.communicate(timeout=300)[1]
+        self.assertEqual(run.returncode, 0, said)
+        self.assertIn("asking beforehand: signal 9 (Killed)", said)
         self.assertLessEqual(len(self.server.asked), 224 + 4 * len(workers), "but for those under way")
         self.assertEqual(len(set(self.server.asked)), 224)
         lines = (self.dir / "tape.jsonl").read_text().splitlines()
         self.assertEqual((len(lines), len({json.loads(line)["key"] for line in lines})), (224, 224))
+
+
+@unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")
+@unittest.skipUnless(os.environ.get("LGABENCH_TEST_SERVER"), "LGABENCH_TEST_SERVER=URL names no server of chat completions")
+class RealServer(Case):
+    """A server that nobody here wrote: LGABENCH_TEST_SERVER is its address up to /v1, LGABENCH_TEST_MODEL a model of its,
+    LGABENCH_TEST_REQUEST its --request, OPENAI_API_KEY its key if it wants one. Whatever the model says, nothing is lost and nothing asked twice."""
+
+    def setUp(self):
+        super().setUp()
+        key = os.environ.get("OPENAI_API_KEY", "")
+        self.environment.update(OPENAI_BASE_URL=os.environ["LGABENCH_TEST_SERVER"], OPENAI_API_KEY=key or SECRET)
+        self.words = ["--answers", "openai", "--model", os.environ.get("LGABENCH_TEST_MODEL", "any"), "--cassette", "tape.jsonl",
+                      "--request", os.environ.get("LGABENCH_TEST_REQUEST", '{"max_tokens": 200}')]
+
+    def lines(self):
+        tape = self.dir / "tape.jsonl"
+        return [json.loads(line) for line in tape.read_text().splitlines()] if tape.exists() else []
+
+    def ask(self):
+        """What is said, and whether every question was answered."""
+        done = subprocess.run(command_line("select", "heart", *self.words), cwd=self.dir, env=self.environment, capture_output=True,
+                              text=True, timeout=3000)
+        self.assertIn(done.returncode, (0, 3), done.stderr)
+        self.assertNotIn(self.environment["OPENAI_API_KEY"], done.stdout + done.stderr + (json.dumps(self.lines())))
+        return done.stderr, done.returncode == 0
+
+    def test_every_reply_is_kept_and_used(self):
+        said, all_answered = self.ask()
+        kept = self.lines()
+        self.assertEqual(len({line["key"] for line in kept}), len(kept))
+        for line in kept:
+            self.assertIn("final answer", line["reply"].lower())
+        if not all_answered:  # a small model: each question without an answer is named, or it is given up early
+            unanswered = re.findall(r"^no answer: ", said, re.M)
+            if "nothing more is asked" in said:
+                self.assertEqual(kept, [])
+                return
+            self.assertEqual(len(kept) + len(unanswered), 112, said)
+            return
+        self.assertEqual(len(kept), 112)
+        self.assertIn("112 questions, 112 answered already", self.ask()[0])
+        self.environment["OPENAI_BASE_URL"] = "http://127.0.0.1:1"  # it is not needed any more
+        self.call("run", "q1", *RUN, "--scenarios", "heart", "--no-reference", "--out", "out", *self.words)
+        self.assertIn("bit-identical", self.call("verify", "out", "--all").stdout)
 
 
 class Recorded(Case):
@@ -419,6 +516,71 @@ class Recorded(Case):
         self.assertEqual(json.loads((self.dir / "out/run.json").read_text())["request"]["truth"], "printed")
         shown = json.loads(self.call("select", "red_heart", "--truth", "printed", "--json").stdout)
         self.assertEqual(shown["quality"]["target"]["textures"]["true_size"], 4)
+
+
+class Written(Case):
+    """A file of answers that somebody wrote, in the format of the recorded ones."""
+    def setUp(self):
+        super().setUp()
+        self.file = self.dir / "mine.json"
+        self.answers = {"model": "me, by hand", "space": "tabletop", "answers": [
+            {"scenario": "heart", "command": "Bring me the heart", "target": {"object_types": ["heart"], "textures": "ALL"}},
+            {"scenario": "sweep_block_without_touching_line", "command": "Sweep the block without touching the line",
+             "target": {"object_types": ["small block"], "textures": "ALL"},
+             "avoid": {"object_types": ["line"], "textures": "ALL"}}]}
+        self.write(self.answers)
+        self.run_it = ["run", "q1", *RUN, "--scenarios", "heart", "--no-reference", "--answers", "mine.json"]
+
+    def write(self, answers):
+        self.file.write_text(json.dumps(answers))
+
+    def test_a_run_is_based_on_it_and_holds_it(self):
+        self.call(*self.run_it, "--out", "out")
+        self.assert_matches_schemas("out")
+        digest = hashlib.sha256(self.file.read_bytes()).hexdigest()
+        record = json.loads((self.dir / "out/run.json").read_text())
+        self.assertEqual(record["answers"], [{"file": "mine.json", "model": "me, by hand", "name": digest + ".json"}])
+        (cell, _), = self.cells("out").values()
+        self.assertEqual(cell["answers"], "file:" + digest)
+        ((selection,),) = selections(self.dir / "out").values()
+        self.assertEqual((selection["target"]["object_types"], selection["source"], selection["provenance"]),
+                         (["heart"], "me, by hand", "recorded"))
+        self.file.unlink()
+        self.assertIn("bit-identical", self.call("verify", "out", "--all").stdout)
+        self.call("merge", "merged", "out")
+        self.assertIn("bit-identical", self.call("verify", "merged", "--all").stdout)
+        self.answers["answers"][0]["target"]["textures"] = ["red"]
+        self.write(self.answers)
+        self.assertIn("out: holds another run (answers", self.call(*self.run_it, "--out", "out", expect=2).stderr)
+
+    def test_select_shows_it(self):
+        shown = self.call("select", "sweep_block_without_touching_line", "--answers", "mine.json").stdout
+        self.assertIn("me, by hand (recorded)", shown)
+        self.assertIn("avoid\n  object types  line\n", shown)
+
+    def test_what_is_malformed_is_refused_with_its_place(self):
+        def answer(**members):
+            return {**self.answers, "answers": [{**self.answers["answers"][0], **members}]}
+
+        twice = {**self.answers, "answers": self.answers["answers"][:1] * 2}
+        for wrong, place in (
+                (answer(target={"object_types": ["hart"], "textures": []}), "/answers/0/target/object_types/0: expected a name of the feature space"),
+                (answer(target={"object_types": ["heart"]}), '/answers/0/target: expected a member "textures"'),
+                (answer(aviod={}), '/answers/0: unknown member "aviod" (did you mean "avoid"?)'), (answer(space="kitchen"), "/answers/0/space: expected a feature space: "),
+                (answer(command=""), "/answers/0/command: expected words"), (twice, "/answers/1: expected each scenario"),
+                ({**self.answers, "model": ""}, "/model: expected words"), ({**self.answers, "answers": []}, "/answers: expected at least one"),
+                ({**self.answers, "modle": 1}, '/: unknown member "modle"')):
+            with self.subTest(place):
+                self.write(wrong)
+                for words in (["run", "q1", *RUN, "--scenarios", "heart", "--out", "out"], ["select", "heart"]):
+                    self.assertIn("mine.json: " + place, self.call(*words, "--answers", "mine.json", expect=2).stderr)
+        self.file.write_text("{")
+        self.assertIn("mine.json: ", self.call(*self.run_it, "--out", "out", expect=2).stderr)
+        self.assertIn("there.json: cannot be read", self.call(*self.run_it[:-1], "there.json", "--out", "out", expect=2).stderr)
+        self.write(self.answers)
+        self.assertIn("--answers mine.json: expected answers for letter; there are those for: heart | sweep_block_without_touching_line",
+                      self.call("run", "q1", *RUN, "--scenarios", "letter", "--answers", "mine.json", expect=2).stderr)
+        self.assertFalse((self.dir / "out").exists())
 
 
 class Humans(Case):

@@ -120,6 +120,20 @@ class Submissions(Board):
         said = self.add(expect=1).stderr
         self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
 
+    def test_a_file_of_answers_goes_with_its_entry(self):
+        self.prepare()
+        (self.dir / "mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": [
+            {"scenario": name, "command": name, "target": {"object_types": ["heart"], "textures": "ALL"}} for name in ("heart", "letter")]}))
+        self.play("out", "--answers", "mine.json", "--no-reference")
+        self.add("out", 0, "--rows", "fixture_constant")
+        kept = hashlib.sha256((self.dir / "mine.json").read_bytes()).hexdigest() + ".json"
+        self.assertEqual((self.dir / "board/answers" / kept).read_bytes(), (self.dir / "mine.json").read_bytes())
+        self.replay()
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
+        self.assertIn(f"--answers answers/{kept}", (self.dir / "board/tiny.html").read_text())
+        (self.dir / "board/answers" / kept).unlink()
+        self.assertIn(f"{kept} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
+
     def test_two_shards_make_the_same_entries(self):
         self.take_run()
         for shard in 1, 2:
@@ -275,6 +289,14 @@ class Refusals(Board):
     def test_a_cell_that_the_host_failed(self):
         self.mark_failed(self.cell(), "host")
         self.assertRegex(self.refused()[0], "^failed by the host, not by the method: fixture_constant.*: ended by signal 11$")
+
+    def test_a_method_of_others_that_was_told_the_truth(self):
+        for member, why in (("policy", 1), (None, 0)):
+            rewrite(self.cell(), "episodes.jsonl", lambda e: e if e["success"] else {**e, "attribution": member})
+            if why:
+                self.assertRegex(" ".join(self.refused()), "^failures have causes, for which the method was told the truth: "
+                                 "add a run that tells none: fixture_constant")
+        self.add()
 
     def test_an_edited_file(self):
         file = self.cell() / "episodes.jsonl"

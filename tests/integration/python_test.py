@@ -461,6 +461,15 @@ class PythonExamples(Case):
         success = [row["success"] for row in json.loads((self.dir / "out/summary.json").read_text())["rows"]]
         self.assertGreaterEqual(max(success), .7, "on masks")
 
+    def test_joblib_falls_back_on_one_process(self):
+        self.need("joblib")
+        (self.dir / "mine.py").write_text(LATE.replace("import numpy\n", "import joblib, numpy\n", 1).replace(
+            "        return Policy(demonstrations[0]", "        print(joblib.Parallel(n_jobs=2)(joblib.delayed(abs)(i) for i in (-3, -4)))\n"
+            "        return Policy(demonstrations[0]", 1))
+        self.call(*with_options(RUN, "--methods", "mine.py:Late", "--out", "out"))
+        log, = [path.read_text() for path in (self.dir / "out").glob("cells/*/log.txt")]
+        self.assertIn("[3, 4]", log)
+
     def test_a_forest_in_scikit_learn(self):
         self.need("sklearn")
         rows, _ = self.beside("lga", "forest_sklearn.py:Forest", "--set", "lga.epochs=1", "--demos", "50", "--episodes",

@@ -35,6 +35,8 @@ class BadInput(Case):
             (["q1", "--scenarios", "nope"], r'--scenarios: no scenario "nope", expected one of: .*heart'),
             (["q1", "--demos=-5"], r"--demos: expected a whole number from 1 .*got -5"),
             (["q1", "--demos", "10,ten"], r"--demos: expected whole numbers.*got \"ten\""),
+            (["q1", "--selection-errors", "missing=0.1,extra=0.1"], r"--selection-errors: expected none, missing=P.*got \"extra=0.1\""),
+            (["q1", "--selection-errors", "missing=1.5"], r"--selection-errors: expected a number from 0 to 1"),
             (["q1", "--demos", "10,10"], r"--demos: expected each value once"),
             (["q1", "--episodes=-1"], r"--episodes: .*got -1"),
             (["q1", "--episodes", "0"], r"--episodes: .*got 0"),
@@ -412,6 +414,36 @@ class Demonstrations(Case):
         self.assertNotEqual((self.dir / "own.hdf5").read_bytes(), (self.dir / "true.hdf5").read_bytes())
         said = self.call("demos", "q3_fruit", "--selection", selection, "--out", "no.hdf5", expect=2).stderr
         self.assertIn("one for each of the 3 commands of q3_fruit", said)
+
+    def test_errors_of_a_selection_are_an_axis(self):
+        grid = ("--scenarios", "heart,tiger_colored_object", "--demos", "2", "--seeds", "0", "--episodes", "2", "--layout", "cells",
+                "--set", "*.epochs=1", "--no-reference")
+        self.call("run", "q1", *grid, "--methods", "human,gcbc_dart", "--out", "out",
+                  "--selection-errors", "none,missing=1,added=0.3,added=0.3+missing=0.1")
+        cells = {(cell["scenario"]["id"], cell["method"]["name"]):
+                 (key, cell, [json.loads(line) for line in (self.dir / "out/cells" / key / "episodes.jsonl").read_text().splitlines()])
+                 for key, (cell, _) in self.cells("out").items()}
+        self.assertEqual(len(cells), 2 * 2 * 4)
+        self.assertNotIn("selection_errors", cells["heart", "human"][1])
+        self.assertEqual(cells["heart", "human+added=0.3+missing=0.1"][1]["selection_errors"], {"added": .3, "missing": .1})
+        for episode in cells["heart", "human+missing=1"][2]:
+            self.assertEqual(episode["failure"], "abstraction_empty")
+        for scenario in "heart", "tiger_colored_object":
+            key = cells[scenario, "human+added=0.3"][0]
+            command = json.loads((self.dir / "out/cells" / key / "selection.json").read_text())["commands"][0]
+            used, before = command["selection"]["target"], command["before_errors"]["target"]
+            for names in "object_types", "textures":
+                self.assertEqual(set(before[names]) - set(used[names]), {"pallet"} & set(before[names]))
+            self.assertNotIn("pallet", used["object_types"])
+            quality = command["quality"]["target"]["textures" if scenario.startswith("tiger") else "object_types"]
+            self.assertLess(quality["precision"], 1)
+            actions = [[e["action"] for e in cells[scenario, name][2]] for name in ("gcbc_dart", "gcbc_dart+added=0.3")]
+            self.assertEqual(*actions, "a method that selects nothing is not affected")
+        self.assert_matches_schemas("out")
+        summary = json.loads((self.dir / "out/summary.json").read_text())
+        self.assertEqual({(c["method"], c["errors"]) for c in summary["error_curves"]},
+                         {(m, e) for m in ("human", "gcbc_dart") for e in ("missing", "added")})
+        self.call("verify", "out", "--sample", "3")
 
     def test_smoke_is_stamped(self):
         for flags, stamped in ([["--limit", "1"], True], [["--scenarios", "heart", "--seeds", "0", "--demos", "10"], False]):

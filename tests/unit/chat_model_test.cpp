@@ -366,6 +366,22 @@ TEST_F(Chat, AnErrorInsideAReplyIsToldInTheServersWords) {
     });
     EXPECT_SAYS(failure(server), "the server says: model is loading");
   }
+  // It may have loaded by the next attempt; an error that is the request's own is not asked again.
+  Server loading([](int request, const auto&, httplib::Response& response) {
+    if (request == 1)
+      response.set_content(R"({"error": {"message": "model is loading", "code": 503}})", "application/json");
+    return request == 1;
+  });
+  const OpenAiOptions options = loading.options();
+  expect_red_hearts(ask(&options, {"m", 1, -1, {}}));
+  EXPECT_EQ(loading.requests, 5 + 1);
+  Server refusing([](int, const auto&, httplib::Response& response) {
+    response.set_content(R"({"error": {"message": "no such field", "code": 400}})", "application/json");
+    return true;
+  });
+  fs::remove(tape());
+  EXPECT_SAYS(failure(refusing), "the server says: no such field");
+  EXPECT_EQ(refusing.requests, 5);
 }
 
 TEST_F(Chat, AWholeReplyIsReadWhateverTheServerCallsIt) {

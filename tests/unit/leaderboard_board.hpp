@@ -8,8 +8,6 @@
 #include <lgabench/core/random.hpp>
 #include <lgabench/leaderboard/entry.hpp>
 
-#include "testing.hpp"
-
 namespace lgabench::leaderboard {
 
 inline Setting small_setting() {

@@ -9,6 +9,7 @@
 #include <lgabench/leaderboard/suite_page.hpp>
 
 #include "leaderboard_board.hpp"
+#include "testing.hpp"
 
 namespace lgabench::leaderboard {
 namespace {

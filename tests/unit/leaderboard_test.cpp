@@ -13,6 +13,7 @@
 
 #include "../schemas.hpp"
 #include "leaderboard_board.hpp"
+#include "testing.hpp"
 
 namespace lgabench::leaderboard {
 namespace {
@@ -373,7 +374,7 @@ TEST(Standings, AnEntryThatNobodyReplayedHasNoInfluence) {
   EXPECT_EQ(rank(), 2);
 }
 
-TEST(Standings, RowsThatAskForTheTruthAreNotRanked) {
+TEST(Standings, RowsThatAskForTheTruthOrTheNetworkAreNotRanked) {
   Entry entry = replayed_entry(small_setting(), "a", 1);
   entry.identity.row.asks = "truth";
   EXPECT_EQ(why_not_ranked(entry), "asks for the truth");

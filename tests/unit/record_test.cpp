@@ -64,8 +64,10 @@ TEST(AnswerSource, EachWordIsOneValue) {
   };
   for (const char* word : {"recorded", "claude", "gpt4_study", "cassette:", "openai:"}) is(word, 0);
   is("cassette:tape.jsonl", 1);
-  for (const char* word : {"openai", "openai:a model:7b"}) is(word, 2);
-  is("none", 3);
+  is("file:mine.json", 2);
+  for (const char* word : {"openai", "openai:a model:7b"}) is(word, 3);
+  is("none", 4);
+  EXPECT_EQ(to_string(read_answer_source("mine.json")), "file:mine.json");
   EXPECT_EQ(std::get<CassetteAnswers>(read_answer_source("cassette:a:b")).file, "a:b");
   EXPECT_EQ(to_string(AnswerSource()), "recorded");
 }
@@ -73,8 +75,9 @@ TEST(AnswerSource, EachWordIsOneValue) {
 TEST(AnswerSource, WordsOnTheCommandLine) {
   for (const std::string& word : answer_words(true)) EXPECT_EQ(answers_complaint(word, true), "");
   EXPECT_EQ(answers_complaint("cassette:tape", false), "");
+  EXPECT_EQ(answers_complaint("my/answers.json", false), "");
   EXPECT_SAYS(answers_complaint("none", false), "expected recorded, ");
-  EXPECT_SAYS(answers_complaint("openai:m", true), "openai, none or cassette:FILE, got openai:m");
+  EXPECT_SAYS(answers_complaint("openai:m", true), "openai, none, cassette:FILE or FILE.json, got openai:m");
 }
 
 TEST(TestScenes, SetsOfTrainingSeeds) {

@@ -57,6 +57,7 @@ class FabricatedRun : public TemporaryDirectory {
     std::string attribution{};                             // of each failure; "": null
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
+    Json selection_errors{};                               // as in cell.json; null: none
     Json options = Json::object();                         // of the method, beside those in its row's name
 
     std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
@@ -110,6 +111,7 @@ class FabricatedRun : public TemporaryDirectory {
     const std::map<std::string, std::string> asks{{"human", "specify"}, {"lga_hill", "edit"}};
     if (const auto whom = asks.find(s.method); whom != asks.end()) cell["method"]["asks"] = whom->second;
     if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
+    if (!s.selection_errors.is_null()) cell["selection_errors"] = s.selection_errors;
     if (s.rehearsal) cell["participant"]["rehearsal"] = true;
     return cell;
   }

@@ -161,5 +161,33 @@ TEST(Index, HasEveryRunAndItsMethodsBestFirst) {
   EXPECT_SAYS(page, "<a href=\"" + link + "\">");
 }
 
+TEST(ErrorCurves, AreOfOneKindOfErrorsAndBeginWithTheRowWithout) {
+  FabricatedRun run;
+  const auto add = [&run](int won, const Json& errors, const std::string& suffix, const char* failure) {
+    Spec spec{"lga" + suffix, won};
+    spec.selection_errors = errors;
+    spec.failure = failure;
+    run.add(spec);
+  };
+  add(20, nullptr, "", "missed_object");
+  add(16, {{"missing", .1}}, "+missing=0.1", "missed_object");
+  add(8, {{"missing", .3}}, "+missing=0.3", "abstraction_empty");
+  add(2, {{"missing", .3}, {"added", .1}}, "+added=0.1+missing=0.3", "missed_object");
+  const report::Report report = report::write_report(run.save().path);
+  const Json summary = read_json(run.path / "summary.json");
+  ASSERT_EQ(summary.at("error_curves").size(), 1u);
+  const Json& curve = summary["error_curves"][0];
+  EXPECT_EQ(curve["method"], "lga");
+  EXPECT_EQ(curve["errors"], "missing");
+  ASSERT_EQ(curve["points"].size(), 3u);
+  EXPECT_EQ(curve["points"][0]["p"], 0);
+  EXPECT_EQ(curve["points"][2]["success"], .4);
+  EXPECT_EQ(curve["points"][2]["empty"], .6);
+  EXPECT_EQ(summary["rows"][curve["points"][1]["row"].get<std::size_t>()]["method"], "lga+missing=0.1");
+  EXPECT_NEAR(curve["slope"].get<double>(), -.2, 1e-12);
+  EXPECT_EQ(chart_named(report.document, "errors_missing_cells_mujoco_test_20").series.size(), 1u);
+  EXPECT_SAYS(read_file(run.path / "report.html"), "What an error of the Selection costs");
+}
+
 }  // namespace
 }  // namespace lgabench

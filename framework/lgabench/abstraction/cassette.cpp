@@ -79,6 +79,13 @@ void Cassette::add(const std::string& key, const Json& request, const ChatReply&
   models_.insert(to_text(AskedModel::of(model, JsonReader(request, "request"))));
 }
 
+double Cassette::mean_seconds() const {
+  const std::lock_guard lock(mutex_);
+  double all = 0;
+  for (const auto& reply : replies_) all += reply.second.seconds;
+  return replies_.empty() ? 0 : all / static_cast<double>(replies_.size());
+}
+
 std::set<std::string> Cassette::models() const {
   const std::lock_guard lock(mutex_);
   return models_;

@@ -52,6 +52,8 @@ class Cassette {
 
   /// Where it lies.
   const std::filesystem::path& file() const { return file_; }
+  /// Of a reply; 0 where there is none.
+  double mean_seconds() const;
   /// Who replied: to_text() of each model and request, sorted.
   std::set<std::string> models() const;
   /// @throws InputError where it is not exactly one.

@@ -152,7 +152,13 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
           "--space {6} --answers openai {7} --cassette {0}",
           cassette_.file().string(), options_.model, command.utterance, missing, questions.size(), command.task,
           space.id, command_words(asked_model_)));
-    const Cassette::Turn turn(cassette_, options_.waiting);
+    bool waited = false;
+    const Cassette::Turn turn(cassette_, [&](const std::string& why) {
+      waited = true;
+      if (options_.in_line) options_.in_line(true);
+      if (options_.waiting) options_.waiting(why);
+    });
+    if (waited && options_.in_line) options_.in_line(false);
     const std::vector<Request> open = without_reply();  // of those whose turn it was before
     if (options_.max_queries >= 0 && asked_ + static_cast<int>(open.size()) > options_.max_queries)
       throw InputError(fmt::format("\"{}\" takes {} queries, expected no more than {}", command.utterance, open.size(),

@@ -42,6 +42,7 @@ struct ChatOptions {
   int max_queries = -1;                                   // to the server, in the model's life; -1: no limit
   std::function<void(int asked, int all)> progress = {};  // called from answer()'s thread alone, every 10 s at least
   std::function<void(const std::string&)> waiting = {};   // told in a line what it waits for; likewise
+  std::function<void(bool begins)> in_line = {};          // told where it waits for another process to have asked
 };
 
 /// Asks what the cassette does not hold, if there is a client; provenance live once a reply came from it, else

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
@@ -80,10 +81,7 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   return response;
 }
 
-bool may_pass(const Response& response) {
-  const long s = response.status;
-  return (s == 0 && !response.final) || s == 408 || s == 409 || s == 429 || s >= 500;
-}
+bool may_pass(long status) { return status == 408 || status == 409 || status == 429 || status >= 500; }
 
 // A server may repeat the key wherever it puts words.
 std::string without_key(std::string text, const std::string& key) {
@@ -98,6 +96,15 @@ std::string error_in(const Json& body) {
   const Json error = body.is_object() ? body.value("error", Json()) : Json();
   const Json message = error.is_object() ? error.value("message", Json()) : error;
   return message.is_string() ? message.get<std::string>() : "";
+}
+
+// An error in the place of a reply, as from a model that is still loading: another attempt may find one, unless the
+// error's code says otherwise. Empty for what is to be read.
+std::string passing_error(const Response& response) {
+  const Json body = response.status == 200 ? json_or_null(response.body) : Json();
+  if (!body.is_object() || body.contains("choices")) return "";
+  const Json error = body.value("error", Json()), code = error.is_object() ? error.value("code", Json()) : Json();
+  return code.is_number_integer() && !may_pass(code.get<long>()) ? "" : error_in(body);
 }
 
 // What went wrong, in a line.
@@ -203,7 +210,8 @@ ChatReply OpenAiClient::complete(const Json& request) {
     CURL* const handle = connections_->take();
     const Response response = post(handle, options_, body);
     connections_->give_back(handle);
-    if (response.status == 200) {
+    const std::string says = passing_error(response);
+    if (response.status == 200 && (says.empty() || attempt >= options_.attempts)) {
       try {
         ChatReply reply = read_completion(response.body);
         reply.text = without_key(std::move(reply.text), options_.api_key);
@@ -214,8 +222,10 @@ ChatReply OpenAiClient::complete(const Json& request) {
       }
     }
     if (response.late) throw NoAnswer(fmt::format("no reply within {} s (--reply-timeout)", options_.timeout_s));
-    const std::string what = complaint(response, options_.api_key);
-    if (!may_pass(response)) throw MethodError(what);
+    const std::string what = says.empty() ? complaint(response, options_.api_key)
+                                          : "the server says: " + without_key(one_line(says), options_.api_key);
+    const bool broke_off = response.status == 0 && !response.final;
+    if (says.empty() && !broke_off && !may_pass(response.status)) throw MethodError(what);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
     const double pause_s =
         std::max(std::min(wait_s, longest_wait_s), std::min(response.retry_after_s, longest_retry_after_s));

@@ -8,8 +8,9 @@
 namespace lgabench {
 
 /// POSTs to BASE/chat/completions. An attempt that finds no server or breaks off, or is answered 408, 409, 429 or 5xx,
-/// is followed by another, after the server's Retry-After where it names seconds (ten minutes at most); one whose reply
-/// takes too long is not. Connections are kept for the next request. No message and no reply holds the key.
+/// or by an error in the place of a reply whose code is none or one of these, is followed by another, after the
+/// server's Retry-After where it names seconds (ten minutes at most); one whose reply takes too long is not.
+/// Connections are kept for the next request. No message and no reply holds the key.
 class OpenAiClient : public ChatClient {
  public:
   /// Longest reply; a longer one ends the request.

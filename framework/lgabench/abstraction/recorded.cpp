@@ -3,14 +3,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/terminal.hpp>
 
 namespace lgabench {
 namespace {
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+constexpr std::size_t most_bytes = 16 << 20;
+
+std::string line(const JsonReader& reader) {
+  std::string text = reader.string();
+  if (text.empty() || text != one_line(text)) reader.fail("words, in a line");
+  return text;
+}
+
+const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, FeatureSpace>& known) {
+  const std::string id = reader.string();
+  if (const auto found = known.find(id); found != known.end()) return found->second;
+  std::error_code none_to_list;
+  const std::vector<std::string> all = json_names(data_directory() / "spaces", none_to_list);
+  if (!contains(all, id)) reader.fail(fmt::format("a feature space: {}", fmt::join(all, ", ")));
+  return known.emplace(id, load_feature_space(id)).first->second;
+}
+
+// Members that are sets belong to the second role of some task; which one, a command says.
+RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space) {
+  std::vector<std::string> roles, members{"space", "scenario", "command", "target", "note", "rationale"};
+  for (const TaskInfo& task : installed_tasks())
+    if (task.second) roles.push_back(task.second->id);
+  members.insert(members.end(), roles.begin(), roles.end());
+  entry.only(members);
+  RecordedAnswer answer{space.id,
+                        entry.has("scenario") ? line(entry.at("scenario")) : "",
+                        line(entry.at("command")),
+                        read_feature_set(entry.at("target"), space),
+                        {}};
+  for (const std::string& role : roles)
+    if (entry.has(role)) answer.second[role] = read_feature_set(entry.at(role), space);
+  return answer;
 }
 
 }  // namespace
@@ -25,38 +63,53 @@ std::string recorded_source(const Scenario& scenario, const std::string& answers
   return to_edit ? scenario.edited : scenario.recorded;
 }
 
+RecordedFile read_recorded(const fs::path& file) {
+  const Json document = parse_json(read_file(file, Links::followed, most_bytes), file.string());
+  const JsonReader reader(document, file.string());
+  reader.only({"model", "space", "answers", "source", "note", "recorded", "how", "reading", "near_coin_flips"});
+  RecordedFile recorded{line(reader.at("model")), {}};
+  std::map<std::string, FeatureSpace> spaces;
+  std::set<std::tuple<std::string, std::string, std::string>> seen;
+  for (const JsonReader& entry : reader.at("answers").elements()) {
+    const JsonReader space = (entry.has("space") ? entry : reader).at("space");
+    recorded.answers.push_back(read_answer(entry, space_of(space, spaces)));
+    const RecordedAnswer& one = recorded.answers.back();
+    if (!seen.insert({one.space, one.scenario, one.scenario.empty() ? one.asked_as : ""}).second)
+      entry.fail("each scenario, and each command without one, once in a space");
+  }
+  if (recorded.answers.empty()) reader.at("answers").fail("at least one");
+  return recorded;
+}
+
 RecordedLanguageModel::RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source)
-    : space_(std::move(space)), scenario_(std::move(scenario)), source_(std::move(source)) {
-  if (const auto sources = recorded_sources(); !contains(sources, source_))
+    : RecordedLanguageModel(OfFile(), std::move(space), std::move(scenario),
+                            data_directory() / "answers" / (source + ".json")) {
+  if (const auto sources = recorded_sources(); !contains(sources, source))
     throw InputError(
-        fmt::format("answers: expected recorded or one of {}, got \"{}\"", fmt::join(sources, ", "), source_));
+        fmt::format("answers: expected recorded or one of {}, got \"{}\"", fmt::join(sources, ", "), source));
+}
+
+RecordedLanguageModel::RecordedLanguageModel(OfFile, FeatureSpace space, std::string scenario, fs::path file)
+    : space_(std::move(space)), scenario_(std::move(scenario)), file_(std::move(file)) {}
+
+RecordedLanguageModel RecordedLanguageModel::of_file(FeatureSpace space, std::string scenario, fs::path file) {
+  return {OfFile(), std::move(space), std::move(scenario), std::move(file)};
 }
 
 void RecordedLanguageModel::read() const {
   if (read_) return;
-  const fs::path file = data_directory() / "answers" / (source_ + ".json");
-  const Json document = read_json(file);
-  const JsonReader reader(document, file.string());
-  model_ = reader.at("model").string();
-  for (const JsonReader& entry : reader.at("answers").elements()) {
-    if ((entry.has("space") ? entry : reader).at("space").string() != space_.id) continue;
-    Recorded recorded{entry.has("scenario") ? entry.at("scenario").string() : "",
-                      entry.at("command").string(),
-                      read_feature_set(entry.at("target"), space_),
-                      {}};
-    for (const auto& item : entry.json().items())
-      if (item.value().is_object() && item.key() != "target")
-        recorded.second[item.key()] = read_feature_set(entry.at(item.key()), space_);
-    all_.push_back(std::move(recorded));
-  }
+  RecordedFile recorded = read_recorded(file_);
+  model_ = recorded.model;
+  for (RecordedAnswer& one : recorded.answers)
+    if (one.space == space_.id) all_.push_back(std::move(one));
   read_ = true;
 }
 
-const RecordedLanguageModel::Recorded* RecordedLanguageModel::find(const std::string& utterance) const {
+const RecordedAnswer* RecordedLanguageModel::find(const std::string& utterance) const {
   read();
-  for (const Recorded& one : all_)
+  for (const RecordedAnswer& one : all_)
     if (!one.scenario.empty() && one.scenario == scenario_) return &one;
-  for (const Recorded& one : all_)
+  for (const RecordedAnswer& one : all_)
     if (one.asked_as == utterance) return &one;
   return nullptr;
 }
@@ -64,22 +117,22 @@ const RecordedLanguageModel::Recorded* RecordedLanguageModel::find(const std::st
 std::vector<std::string> RecordedLanguageModel::known() const {
   read();
   std::vector<std::string> names;
-  for (const Recorded& one : all_) names.push_back(one.scenario.empty() ? one.asked_as : one.scenario);
+  for (const RecordedAnswer& one : all_) names.push_back(one.scenario.empty() ? one.asked_as : one.scenario);
   return names;
 }
 
-const RecordedLanguageModel::Recorded& RecordedLanguageModel::expect(const std::string& utterance) const {
-  if (const Recorded* found = find(utterance)) return *found;
+const RecordedAnswer& RecordedLanguageModel::expect(const std::string& utterance) const {
+  if (const RecordedAnswer* found = find(utterance)) return *found;
   throw InputError(
       fmt::format("answers of {}: expected some for {}\"{}\" in the space {}; there are: {}; a model is "
                   "asked with --answers openai (docs/language-models.md)",
-                  source_, scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance, space_.id,
-                  fmt::join(known(), " | ")));
+                  file_.stem().string(), scenario_.empty() ? "" : fmt::format("scenario {}, ", scenario_), utterance,
+                  space_.id, fmt::join(known(), " | ")));
 }
 
 std::vector<bool> RecordedLanguageModel::answer(const Command& command, const FeatureSpace&,
                                                 const std::vector<Question>& questions) {
-  const Recorded& recorded = expect(command.utterance);
+  const RecordedAnswer& recorded = expect(command.utterance);
   std::vector<bool> answers;
   for (const Question& q : questions) {
     const bool is_type = q.group == Question::Group::object_type;

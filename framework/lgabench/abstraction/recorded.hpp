@@ -1,5 +1,6 @@
 // A language model's published answers, replayed.
 #pragma once
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,6 +17,20 @@ std::vector<std::string> recorded_sources();
 /// be edited by people or used as they are.
 std::string recorded_source(const Scenario& scenario, const std::string& answers, bool to_edit = false);
 
+/// What one command's questions were answered.
+struct RecordedAnswer {
+  std::string space, scenario, asked_as;     // scenario: "" where the answers are those of the words alone
+  FeatureSet target;                         // the candidates answered yes
+  std::map<std::string, FeatureSet> second;  // likewise, by role
+};
+/// A file of recorded answers: one that is shipped, or that somebody wrote (docs/formats: recorded answers).
+struct RecordedFile {
+  std::string model;  // who answered
+  std::vector<RecordedAnswer> answers;
+};
+/// @throws InputError with the file and the first place that is not as docs/formats says.
+RecordedFile read_recorded(const std::filesystem::path& file);
+
 /// One source's answers: a candidate is answered yes exactly if it is listed there. Costs one query a question, as the
 /// live model did, and no seconds: none were published.
 class RecordedLanguageModel : public LanguageModel {
@@ -24,6 +39,8 @@ class RecordedLanguageModel : public LanguageModel {
   /// there is none. @throws InputError where `source` is none of recorded_sources(). Answers are looked up when they
   /// are asked for.
   RecordedLanguageModel(FeatureSpace space, std::string scenario, std::string source);
+  /// Likewise, those of a file, which is read when they are asked for.
+  static RecordedLanguageModel of_file(FeatureSpace space, std::string scenario, std::filesystem::path file);
   /// Knows the scenario's commands.
   RecordedLanguageModel(const Scenario& scenario, const std::string& source)
       : RecordedLanguageModel(scenario.space, scenario.answers_of, source) {}
@@ -44,19 +61,17 @@ class RecordedLanguageModel : public LanguageModel {
   SelectionCost cost() const override { return cost_; }
 
  private:
-  struct Recorded {
-    std::string scenario, asked_as;            // scenario: "" where the paper has none
-    FeatureSet target;                         // the candidates answered yes
-    std::map<std::string, FeatureSet> second;  // likewise, by role
-  };
-  const Recorded* find(const std::string& utterance) const;
-  const Recorded& expect(const std::string& utterance) const;
+  struct OfFile {};
+  RecordedLanguageModel(OfFile, FeatureSpace space, std::string scenario, std::filesystem::path file);
+  const RecordedAnswer* find(const std::string& utterance) const;
+  const RecordedAnswer& expect(const std::string& utterance) const;
   void read() const;
 
   FeatureSpace space_;
-  std::string scenario_, source_;
+  std::string scenario_;
+  std::filesystem::path file_;
   mutable std::string model_;
-  mutable std::vector<Recorded> all_;  // of the space; read once, by the first question
+  mutable std::vector<RecordedAnswer> all_;  // of the space; read once, by the first question
   mutable bool read_ = false;
   SelectionCost cost_;
 };

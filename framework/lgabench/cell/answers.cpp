@@ -49,7 +49,8 @@ class NobodyAnswers : public LanguageModel {
 
 }  // namespace
 
-Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server) {
+Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server,
+                    const std::function<void(bool)>& in_line) {
   const Cell& cell = job.cell;
   Answers answers;
   if (const auto* asked = std::get_if<LiveAnswers>(&cell.answers)) {
@@ -57,6 +58,7 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
     const LiveModel live = job.live.value_or(LiveModel());
     options.max_queries = live.max_queries;
     options.concurrency = live.concurrency;
+    options.in_line = in_line;
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     answers.cassette = std::make_unique<Cassette>(live.cassette);
     answers.lm = std::make_unique<AskedByCells>(*answers.cassette, server, options);
@@ -65,6 +67,9 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
     answers.cassette = std::make_unique<Cassette>(file);
     answers.lm =
         std::make_unique<ChatLanguageModel>(*answers.cassette, nullptr, ChatOptions{answers.cassette->only_model()});
+  } else if (const auto* written = std::get_if<FileAnswers>(&cell.answers)) {
+    answers.lm = std::make_unique<RecordedLanguageModel>(RecordedLanguageModel::of_file(
+        scenario.space, scenario.answers_of, kept_file(job.answers, written->file, ".json")));
   } else if (const auto* recorded = std::get_if<RecordedAnswers>(&cell.answers)) {
     answers.lm = std::make_unique<RecordedLanguageModel>(
         scenario, recorded_source(scenario, recorded->source, cell.method.asks == "edit"));

@@ -41,6 +41,7 @@ class Phases {
     report_(phase, 0);
   }
   void count(long long n) const { report_(phase_, n); }
+  void in_line(bool begins) const { report_(begins ? in_line_phase : phase_, 0); }
   Json seconds() {
     end();
     return seconds_;
@@ -158,9 +159,21 @@ std::string first_error(const std::vector<Episode>& episodes) {
   return "";
 }
 
-// `first`: what select() returned, from which the targets were drawn.
+// What was selected with the errors that the cell asks for: what is learned from and acted on.
+Selected with_errors(Selected selected, const Scenario& scenario, const Cell& cell) {
+  const std::string goal = find_environment(scenario.environment).goal_type();
+  for (std::size_t c = 0; c < selected.instructions.size(); ++c) {
+    Selection& selection = selected.instructions[c].selection;
+    selection = lgabench::with_errors(std::move(selection), scenario, static_cast<int>(c), cell.selection_errors,
+                                      cell.training_seed, goal);
+  }
+  return selected;
+}
+
+// `first`: what select() returned, from which the targets were drawn; `right`: what was selected in the end, without
+// the cell's errors.
 std::string selection_text(const Scenario& scenario, const Cell& cell, const Selected& selected,
-                           const std::vector<Instruction>& first) {
+                           const std::vector<Instruction>& first, const std::vector<Instruction>& right) {
   const Json shown = find_environment(scenario.environment)
                          .shown_members(scenario, {cell.layout, "train", "train", cell.training_seed});
   Json commands = Json::array();
@@ -169,8 +182,10 @@ std::string selection_text(const Scenario& scenario, const Cell& cell, const Sel
     commands.push_back({{"utterance", utterance},
                         {"selection", to_json(selection)},
                         {"quality", to_json(quality(selection, scenario.commands[c].truth))}});
-    if (Json before = distribution_json(first[c].selection); before != distribution_json(selection))
+    if (Json before = distribution_json(first[c].selection); before != distribution_json(right[c].selection))
       commands.back()["before_revision"] = std::move(before);
+    if (!cell.selection_errors.none() && selection.provenance != Provenance::none)
+      commands.back()["before_errors"] = distribution_json(right[c].selection);
     if (!shown.is_null()) commands.back()["shown"] = shown.at(c);
   }
   return canonical({{"commands", commands}}) + '\n';
@@ -216,7 +231,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 1 select: which features does each command make matter?
   phases.begin("select");
   const std::unique_ptr<Method> method = make_method(job);
-  const Answers answers = answers_for(job, scenario, server);
+  const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);
   Services services{*answers.lm,        *answers.human, cell.method.options,
                     cell.training_seed, training,       find_environment(cell.environment).action_space(),
@@ -224,6 +239,8 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
   const std::vector<Instruction> first = selected.instructions;
+  std::vector<Instruction> right = first;  // without the cell's errors, which are made in what is selected last
+  if (!selected.needs.revise) selected = with_errors(std::move(selected), scenario, cell);
   Course course = course_of(method.get(), selected, scenario);
 
   // 2 sample: what will be shown, with targets from the Selection or from the truth?
@@ -242,6 +259,14 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   std::unique_ptr<Policy> policy;
   if (course == Course::trains) {
     revise(*method, id, scenario, demonstrations, scenes, services, selected);
+    if (selected.needs.revise) {
+      right = selected.instructions;
+      selected = with_errors(std::move(selected), scenario, cell);
+      demonstrations = instructed(std::move(demonstrations), scenes, selected);
+      course = course_of(method.get(), selected, scenario);
+    }
+  }
+  if (course == Course::trains) {
     policy = learn(*method, id, demonstrations, services, selected);
   }
   demonstrations.clear();
@@ -268,7 +293,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 6 record: no clock but in timing.json.
   record(job, self,
          {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-          {cell_file::selections, selection_text(scenario, cell, selected, first)},
+          {cell_file::selections, selection_text(scenario, cell, selected, first, right)},
           {cell_file::training, training.lines},
           {cell_file::episodes, episodes_text(episodes)},
           {cell_file::timing, canonical(phases.seconds()) + '\n'}},

@@ -8,7 +8,7 @@
 
 namespace lgabench {
 
-/// Says what the cell is doing: a phase (of cell_phases) and a count within it.
+/// Says what the cell is doing: a phase (of cell_phases, or in_line_phase) and a count within it.
 using PhaseReport = std::function<void(const std::string& phase, long long count)>;
 
 /// Files of docs/formats/README.md, status.json last. The same cell gives the same bytes, but for timing.json and the

@@ -38,6 +38,7 @@ int print_forecast(const RunPlan& plan, const Forecast& all) {
   for (const Forecast::Row& row : all.rows)
     to_stdout("{:<{}}  {:5}  {:5}  {:>10}  {}\n", row.name, width, row.cells, row.there, duration_text(row.seconds),
               row.based_on.empty() ? "all there" : row.based_on);
+  if (all.questions) to_stdout("\nbefore the cells: {}\n", all.questions->text());
   to_stdout("\nabout {} with {} worker{}\n", duration_text(all.wall_s), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
   to_stdout("disk: {} in {}, and at most {} of demonstrations in {}\n", size_text(all.run_bytes), plan.out.string(),
             size_text(all.cache_bytes), plan.cache.string());

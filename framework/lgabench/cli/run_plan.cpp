@@ -44,6 +44,24 @@ Json numbers(const char* option, const Words& words) {
   return all;
 }
 
+// "none", or "added=0.1+missing=0.2" in either order or one of them alone, as an object.
+Json selection_errors(const std::string& words) {
+  Json errors = Json::object();
+  if (words == "none") return errors;
+  for (const std::string& word : row_words(words)) {
+    const std::size_t equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    const Json p = equals == std::string::npos ? Json() : option_value(word.substr(equals + 1));
+    if ((name != "missing" && name != "added") || !p.is_number() || errors.contains(name))
+      throw InputError(
+          fmt::format("--selection-errors: expected none, missing=P, added=P or added=P+missing=P, several with "
+                      "commas; got \"{}\"",
+                      words));
+    errors[name] = p;
+  }
+  return errors;
+}
+
 constexpr const char* command_line_place = "command line";
 
 // "--demos: expected each value once" for "command line: /demonstrations/1: expected each value once".
@@ -54,6 +72,7 @@ std::string by_option(const std::string& complaint) {
                                        {"layouts", "--layout"},
                                        {"demonstrations", "--demos"},
                                        {"seeds", "--seeds"},
+                                       {"selection_errors", "--selection-errors"},
                                        {"episodes", "--episodes"}})
     if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
       return option + complaint.substr(complaint.find(": ", complaint.find('/')));
@@ -72,6 +91,7 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   give("layouts", a.layouts);
   if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
+  for (const std::string& words : a.selection_errors) overrides["selection_errors"].push_back(selection_errors(words));
   if (a.episodes) overrides["episodes"] = *a.episodes;
   Design design = preset_design(suite, a.preset);
   try {
@@ -149,6 +169,9 @@ PlannedRun plan_run(RunArguments a) {
   if (auto* cassette = std::get_if<CassetteAnswers>(&variation.answers)) {
     plan.answers.push_back(check_cassette(cassette->file, design.scenarios));
     cassette->file = fs::path(plan.answers.back().name).stem();
+  } else if (auto* written = std::get_if<FileAnswers>(&variation.answers)) {
+    plan.answers.push_back(check_written(written->file, design.scenarios));
+    written->file = fs::path(plan.answers.back().name).stem();
   } else if (const auto* recorded = std::get_if<RecordedAnswers>(&variation.answers)) {
     check_recorded(*recorded, design.scenarios);
   }
@@ -203,6 +226,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   list("--layout", a.layouts, "Ways to place objects: lgabench list layouts --of SUITE; several with commas");
   list("--demos", a.demonstrations, "Numbers of demonstrations of each seen command: 10,20");
   list("--seeds", a.seeds, "Training seeds: 0,1,2 or 0:3");
+  list("--selection-errors", a.selection_errors,
+       "Errors made in what methods select: each true feature missing, each wrong one added with that probability; "
+       "none, missing=P, added=P or added=P+missing=P");
   verb.add_option("--episodes", a.episodes, "Test scenes of each arm");
   verb.add_option("--jobs", a.jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
   verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and has failed")
@@ -230,7 +256,8 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--answers", a.answers,
                   "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
                   "another word of lgabench list sources: only that source; cassette:FILE: a server's replies, as "
-                  "lgabench select --suite records them; openai: a server, asked by the cells as they run; none: for "
+                  "lgabench select --suite records them; FILE.json: answers in a file of yours (docs/formats); openai: "
+                  "a server, asked by the cells as they run; none: for "
                   "methods that ask no language model")
       ->check([](const std::string& word) { return answers_complaint(word, true); })
       ->capture_default_str();
@@ -277,27 +304,17 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_flag("--dry-run", a.dry_run,
                 "Compute nothing: print how many cells there are, how long they would take, and how much disk");
   arrange(verb, "", {{"suite", "SUITE"}});
-  arrange(verb, "What is computed",
-          {{"--preset", "PRESET"},
-           {"--methods", "METHOD,..."},
-           {"--engines", "ENGINE,..."},
-           {"--scenarios", "SCENARIO,..."},
-           {"--layout", "LAYOUT,..."},
-           {"--demos", "N,..."},
-           {"--seeds", "N,..."},
-           {"--episodes", "N"},
-           {"--set", "M.OPTION=VALUE"},
-           {"--answers", "SOURCE"},
-           {"--model", "MODEL"},
-           {"--cassette", "FILE"},
-           {"--max-queries", "N"},
-           {"--request", "JSON"},
-           {"--reply-timeout", "SECONDS"},
-           {"--concurrency", "N"},
-           {"--truth", "released|printed"},
-           {"--humans", "DIR"},
-           {"--rehearsal", ""},
-           {"--no-reference", ""}});
+  arrange(verb, "What is computed", {{"--preset", "PRESET"},      {"--methods", "METHOD,..."},
+                                     {"--engines", "ENGINE,..."}, {"--scenarios", "SCENARIO,..."},
+                                     {"--layout", "LAYOUT,..."},  {"--demos", "N,..."},
+                                     {"--seeds", "N,..."},        {"--selection-errors", "KIND=P,..."},
+                                     {"--episodes", "N"},         {"--set", "M.OPTION=VALUE"},
+                                     {"--answers", "SOURCE"},     {"--model", "MODEL"},
+                                     {"--cassette", "FILE"},      {"--max-queries", "N"},
+                                     {"--request", "JSON"},       {"--reply-timeout", "SECONDS"},
+                                     {"--concurrency", "N"},      {"--truth", "released|printed"},
+                                     {"--humans", "DIR"},         {"--rehearsal", ""},
+                                     {"--no-reference", ""}});
   arrange(
       verb, "How much of it",
       {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});

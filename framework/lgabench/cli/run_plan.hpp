@@ -14,7 +14,7 @@ namespace lgabench::cli {
 struct RunArguments {
   std::string suite, preset, python = "python3", answers = "recorded", truth = "released", humans, out, cache, debug,
                              shard = "1/1", model, cassette, request;
-  Words methods, engines, scenarios, layouts, demonstrations, seeds, settings;
+  Words methods, engines, scenarios, layouts, demonstrations, seeds, settings, selection_errors;
   std::vector<fs::path> plugin_path;
   std::optional<int> episodes;
   int jobs = 0, limit = 0, max_queries = -1;  // 0: as many as there are cores, all cells

@@ -19,7 +19,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/forecast.hpp>
+#include <lgabench/harness/asking_progress.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
@@ -41,29 +41,18 @@ struct Asked {
   std::optional<Selection> truth;
 };
 
-// How far the questions to a server are, over all commands: one line on a terminal, else a line every half minute.
+// Over all commands: each begins to count anew.
 class Progress {
  public:
-  void begin(int open) { open_ = open; }
+  void begin(int open) { line_ = AskingProgress(open); }
   void tell(int asked, int of_command) {
-    const int all = before_ + asked;
-    if (asked == of_command) before_ = all;
-    const auto now = Clock::now();
-    const bool redrawn = ::isatty(2) != 0, last = all == open_;
-    if (!redrawn && !last && now - told_ < std::chrono::seconds(30)) return;
-    told_ = now;
-    const double spent_s = std::chrono::duration<double>(now - start_).count();
-    const std::string left =
-        last || all == 0 ? "" : ", about " + duration_text(spent_s / all * (open_ - all)) + " left";
-    put(stderr,
-        fmt::format("{}asked {} of {}{}{}", redrawn ? "\r\x1b[K" : "", all, open_, left, last || !redrawn ? "\n" : ""));
+    line_.tell(before_ + asked);
+    if (asked == of_command) before_ += asked;
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start_ = Clock::now();
-  Clock::time_point told_ = start_;
-  int open_ = 0, before_ = 0;
+  AskingProgress line_;
+  int before_ = 0;
 };
 
 // Whoever answers all commands, and what it stands on; no model for recorded answers, which go by the scenario.
@@ -193,7 +182,10 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
 
 void select(const Asked& asked, LanguageModel* model, const SelectArguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
-  if (!model)
+  const AnswerSource source = read_answer_source(arguments.answers);
+  if (const auto* written = std::get_if<FileAnswers>(&source))
+    model = &recorded.emplace(RecordedLanguageModel::of_file(asked.space, asked.answers_of, written->file));
+  else if (!model)
     model = &recorded.emplace(asked.space, asked.answers_of,
                               arguments.answers == "recorded" ? asked.recorded : arguments.answers);
   const auto start = std::chrono::steady_clock::now();
@@ -232,7 +224,7 @@ void add_select(CLI::App& app, int&) {
   verb->add_option(
           "--answers", arguments->answers,
           "recorded: the scenario's own; another word of lgabench list sources: only that source; openai: ask a "
-          "server now; cassette:FILE: a server's recorded replies")
+          "server now; cassette:FILE: a server's recorded replies; FILE.json: recorded answers in a file of yours")
       ->check([](const std::string& word) { return answers_complaint(word, false); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,

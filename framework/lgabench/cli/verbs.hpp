@@ -49,6 +49,7 @@ void add_study(CLI::App& app, int& exit);
 // In `lgabench-worker`, which `lgabench` starts for them.
 void add_cell(CLI::App& app, int& exit);
 void add_check_job(CLI::App& app, int& exit);
+void add_ask(CLI::App& app, int& exit);
 void add_select(CLI::App& app, int& exit);
 void add_demos(CLI::App& app, int& exit);
 void add_render(CLI::App& app, int& exit);

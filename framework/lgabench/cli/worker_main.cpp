@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   app.formatter(cli::help_formatter());
   cli::add_cell(app, exit);
   cli::add_check_job(app, exit);
+  cli::add_ask(app, exit);
   cli::add_select(app, exit);
   cli::add_demos(app, exit);
   cli::add_render(app, exit);

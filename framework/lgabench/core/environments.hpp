@@ -103,6 +103,8 @@ class EnvironmentType {
                                                  const Action& /*other*/) const {
     return std::nullopt;
   }
+  /// The object type of the place to bring things to, which no command means; "" where there is none.
+  virtual std::string goal_type() const { return ""; }
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene) const = 0;
   /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what

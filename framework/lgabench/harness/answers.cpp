@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <string_view>
 #include <unordered_set>
 
@@ -13,6 +14,27 @@
 #include <lgabench/core/hash.hpp>
 
 namespace lgabench {
+namespace {
+
+void expect_all_commands(const RecordedAnswers& answers, const std::vector<std::string>& scenarios,
+                         const std::function<RecordedLanguageModel(const Scenario&)>& who_answers) {
+  std::vector<std::string> lacking, known;
+  for (const std::string& id : scenarios) {
+    const Scenario scenario = load_scenario(id);
+    const RecordedLanguageModel lm = who_answers(scenario);
+    const auto knows = [&](const ScenarioCommand& c) { return lm.knows({c.utterance, scenario.task}); };
+    if (std::all_of(scenario.commands.begin(), scenario.commands.end(), knows)) continue;
+    lacking.push_back(id);
+    known = lm.known();
+  }
+  if (!lacking.empty())
+    throw InputError(fmt::format(
+        "--answers {}: expected answers for {}; there are those for: {}. Others: --answers cassette:FILE or "
+        "openai (docs/language-models.md); with methods that ask no language model: --answers {}",
+        answers.source, fmt::join(lacking, ", "), fmt::join(known, " | "), to_string(NoAnswers())));
+}
+
+}  // namespace
 
 std::vector<AnswerFile> kept_answers(const fs::path& run) {
   std::vector<AnswerFile> files;
@@ -85,20 +107,16 @@ AnswerFile check_cassette(const fs::path& file, const std::vector<std::string>& 
 }
 
 void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios) {
-  std::vector<std::string> lacking, known;
-  for (const std::string& id : scenarios) {
-    const Scenario scenario = load_scenario(id);
-    const RecordedLanguageModel lm(scenario, recorded_source(scenario, answers.source));
-    const auto knows = [&](const ScenarioCommand& c) { return lm.knows({c.utterance, scenario.task}); };
-    if (std::all_of(scenario.commands.begin(), scenario.commands.end(), knows)) continue;
-    lacking.push_back(id);
-    known = lm.known();
-  }
-  if (!lacking.empty())
-    throw InputError(fmt::format(
-        "--answers {}: expected answers for {}; there are those for: {}. Others: --answers cassette:FILE or "
-        "openai (docs/language-models.md); with methods that ask no language model: --answers {}",
-        answers.source, fmt::join(lacking, ", "), fmt::join(known, " | "), to_string(NoAnswers())));
+  expect_all_commands(answers, scenarios, [&](const Scenario& scenario) {
+    return RecordedLanguageModel(scenario, recorded_source(scenario, answers.source));
+  });
+}
+
+AnswerFile check_written(const fs::path& file, const std::vector<std::string>& scenarios) {
+  const std::string model = read_recorded(file).model;
+  expect_all_commands(RecordedAnswers{file.string()}, scenarios,
+                      [&](const Scenario& s) { return RecordedLanguageModel::of_file(s.space, s.answers_of, file); });
+  return {sha256_file(file) + ".json", file, {{"model", model}}};
 }
 
 std::vector<AnswerFile> read_participants(const fs::path& directory, bool rehearsal, std::vector<Participant>& all) {

@@ -41,6 +41,8 @@ void drop_other_replies(const std::string& but, const std::filesystem::path& run
 /// @throws InputError where `answers` (recorded, or one of recorded_sources()) has none for a command of the scenarios:
 /// names those scenarios.
 void check_recorded(const RecordedAnswers& answers, const std::vector<std::string>& scenarios);
+/// Likewise of a file that somebody wrote. @throws InputError as read_recorded(), too.
+AnswerFile check_written(const std::filesystem::path& answers, const std::vector<std::string>& scenarios);
 
 /// Every .json of a directory. @throws InputError as read_participant, for a directory without one, and for two files
 /// of one participant. A file of a rehearsal is refused unless `rehearsal`, which marks all of them.

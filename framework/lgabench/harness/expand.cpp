@@ -28,7 +28,8 @@ Answering participants(const Competitor& method, const Scenario& scenario, const
 // A method that people answer for shall not vanish from the table because they were asked about other scenarios.
 void expect_each_method(const std::vector<Competitor>& methods, const std::vector<Cell>& cells) {
   for (const Competitor& method : methods)
-    if (std::none_of(cells.begin(), cells.end(), [&](const Cell& c) { return c.method.name == method.name; }))
+    if (std::none_of(cells.begin(), cells.end(),
+                     [&](const Cell& c) { return c.method.name == method.name + c.selection_errors.suffix(); }))
       throw InputError(
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
@@ -124,14 +125,19 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
     references = {"constant_action", "random_object", "oracle"};
     for (const std::string& row : suite.references) references.push_back(row.c_str());
   }
+  std::vector<SelectionErrors> all_errors = design.selection_errors;
+  if (all_errors.empty()) all_errors.emplace_back();
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
     const Scenario scenario = suite_scenario(suite, id, variation.truth);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
-    const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed) {
+    const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed,
+                         const SelectionErrors& errors = {}) {
       cell.method = method;
+      cell.method.name += errors.suffix();
+      cell.selection_errors = errors;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
       for (const auto& participant : participants(method, scenario, variation.participants)) {
@@ -146,7 +152,8 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
         cell.engine = engine;
         for (const int n : design.demonstrations)
           for (const std::uint64_t seed : design.seeds) {
-            for (const Competitor& method : methods) add(method, n, seed);
+            for (const Competitor& method : methods)
+              for (const SelectionErrors& errors : all_errors) add(method, n, seed, errors);
             for (const char* row : references)
               if (learns(reference(row))) add(reference(row), n, seed);
           }

@@ -1,9 +1,11 @@
 // What a run has still to do, before it does it.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lgabench/harness/costs.hpp>
+#include <lgabench/harness/questions.hpp>
 
 namespace lgabench {
 
@@ -19,6 +21,7 @@ struct Forecast {
   std::size_t cells = 0, there = 0;
   double work_s = 0, longest_s = 0;  // of one core: all cells, the longest
   double wall_s = 0;
+  std::optional<Questions> questions;     // asked before the cells, where any are
   double run_bytes = 0, cache_bytes = 0;  // more on the disk; of the cache at most
 
   /// "1365 cells to compute, 26 already computed: about 1 h 25 min with 2 workers"

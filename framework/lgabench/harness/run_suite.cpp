@@ -182,6 +182,30 @@ ShardState shard_state(const RunPlan& plan, const Catalogue& catalogue, const Ru
   return all;
 }
 
+// Of the cells whose methods declare what they ask, each once.
+std::vector<Json> asked_about(const std::vector<const Cell*>& cells, const Catalogue& catalogue) {
+  std::vector<Json> scenarios;
+  std::set<std::string> seen;
+  for (const Cell* cell : cells) {
+    const PluginInfo* method = method_plugin(*cell, catalogue);
+    if (method && method->questionnaire && seen.insert(canonical(*cell->scenario)).second)
+      scenarios.push_back(*cell->scenario);
+  }
+  return scenarios;
+}
+
+std::string asked_model_of(const RunPlan& plan) { return plan.live_about.at("model"); }
+
+// The questions that cells declare, before any begins. @returns false if a signal came.
+bool ask_for(const std::vector<const Cell*>& cells, const RunPlan& plan, const Catalogue& catalogue) {
+  const std::vector<Json> scenarios = asked_about(cells, catalogue);
+  if (scenarios.empty()) return true;
+  const Questions questions = count_questions(*plan.live, asked_model_of(plan), scenarios);
+  to_stderr("{}\n", questions.text());
+  return questions.open == 0 ||
+         ask_beforehand({asked_model_of(plan), *plan.live, scenarios, worker_limits(plan.pool)}, questions);
+}
+
 // What a plugin printed without end is not kept whole. Called where nobody writes any more.
 void cut_log(const fs::path& log) {
   constexpr std::size_t most = std::size_t{1} << 20;  // of its begin, and of its end
@@ -262,7 +286,11 @@ Forecast forecast(const RunPlan& plan, const Catalogue& catalogue) {
     (there ? complete : missing).push_back(cell);
     if (there) costs.learn(*cell, recorded_seconds(directory));
   }
-  return forecast(complete, missing, costs, plan.pool.jobs);
+  Forecast expected = forecast(complete, missing, costs, plan.pool.jobs);
+  if (plan.live && plan.live->asks)
+    if (const std::vector<Json> scenarios = asked_about(missing, catalogue); !scenarios.empty())
+      expected.questions = count_questions(*plan.live, asked_model_of(plan), scenarios);
+  return expected;
 }
 
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell, const fs::path& directory,
@@ -303,6 +331,12 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     const bool is_long = expected.wall_s > long_s;
     put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs)) +
                     (is_long ? "; --dry-run shows of what\n" : "\n"));
+  }
+
+  if (asks && !ask_for(missing, plan, catalogue)) {
+    keep_replies_of(plan, directory);
+    outcome.interrupted = true;
+    return outcome;
   }
 
   Progress progress(missing.size(), plan.pool.jobs, [&schedule] { return schedule.left_s(); });

@@ -42,8 +42,8 @@ std::vector<std::string> names(const JsonReader& list, const char* what = "",
 
 const std::vector<std::string> grid_members{"scenarios",      "layouts", "engines",  "methods",
                                             "demonstrations", "seeds",   "episodes", "scene_seed",
-                                            "test_scenes",    "smoke",   "options"};
-const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options"};
+                                            "test_scenes",    "smoke",   "options",  "selection_errors"};
+const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", "selection_errors"};
 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
@@ -74,10 +74,13 @@ void expect_about(const JsonReader& about) {
 }  // namespace
 
 Json to_json(const Design& design) {
-  return {{"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
-          {"methods", design.methods},     {"seeds", design.seeds},           {"demonstrations", design.demonstrations},
-          {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
-          {"smoke", design.smoke},         {"options", design.options}};
+  Json json{
+      {"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
+      {"methods", design.methods},     {"seeds", design.seeds},           {"demonstrations", design.demonstrations},
+      {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
+      {"smoke", design.smoke},         {"options", design.options}};
+  for (const SelectionErrors& errors : design.selection_errors) json["selection_errors"].push_back(to_json(errors));
+  return json;
 }
 
 Design apply(const JsonReader& overrides, Design design) {
@@ -101,6 +104,8 @@ Design apply(const JsonReader& overrides, Design design) {
     design.options = options_of(overrides.at("options"), design.methods);
     design.options_place = overrides.at("options").place();
   }
+  if (overrides.has("selection_errors"))
+    design.selection_errors = distinct<SelectionErrors>(overrides.at("selection_errors"), read_selection_errors);
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
 }

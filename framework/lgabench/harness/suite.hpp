@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/test_scenes.hpp>
@@ -23,6 +24,7 @@ struct Design {
   TestScenes test_scenes = TestScenes::shared;
   /// Method id, or "*" for each method that has the framework's option of that name -> option -> value.
   Json options = Json::object();
+  std::vector<SelectionErrors> selection_errors{};  // made in what methods select; none: cells without
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 

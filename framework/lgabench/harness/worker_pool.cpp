@@ -73,7 +73,7 @@ struct Worker {
   pid_t pid = -1;
   Descriptor messages;  // its fd 3
   std::string partial;  // of a line
-  Clock::time_point start, deadline;
+  Clock::time_point start, deadline, in_line_since;
   WorkerEnd end;
 };
 
@@ -127,11 +127,13 @@ Worker start(std::size_t task, const WorkerTask& what, const PoolOptions& option
                                    {},
                                    apart});
   ::setpgid(pid, pid);  // whoever comes first
-  Worker worker{task, pid, std::move(reading), "", Clock::now(), {}, {}};
+  Worker worker{task, pid, std::move(reading), "", Clock::now(), {}, {}, {}};
   worker.deadline =
       worker.start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options.timeout_s));
   return worker;
 }
+
+bool in_line(const Worker& worker) { return worker.end.phase == in_line_phase; }
 
 // A line of fd 3; what is none of a worker's is dropped.
 void take_line(const std::string& line, Worker& worker, const PoolEvents& events) {
@@ -139,6 +141,9 @@ void take_line(const std::string& line, Worker& worker, const PoolEvents& events
   if (auto complaint = read_complaint(message)) worker.end.complaint = std::move(complaint);
   const auto at = read_phase_count(message);
   if (!at) return;
+  const bool waited = in_line(worker), waits = at->phase == in_line_phase;
+  if (waits && !waited) worker.in_line_since = Clock::now();
+  if (waited && !waits) worker.deadline += Clock::now() - worker.in_line_since;
   worker.end.phase = at->phase;
   events.progress(worker.task, at->phase, at->count);
 }
@@ -236,7 +241,7 @@ bool run_workers(std::size_t tasks, const std::function<WorkerTask(std::size_t)>
       for (Worker& worker : crew.workers) worker.deadline += asleep;
     for (auto worker = crew.workers.begin(); worker != crew.workers.end();) {
       take_messages(*worker, events);
-      if (!worker->end.timed_out && Clock::now() > worker->deadline) {
+      if (!worker->end.timed_out && !in_line(*worker) && Clock::now() > worker->deadline) {
         worker->end.timed_out = true;
         kill_group(*worker);
       }

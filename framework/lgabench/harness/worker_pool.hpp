@@ -29,7 +29,8 @@ struct WorkerEnd {
 
 struct PoolOptions {
   int jobs = 1;
-  double timeout_s = 3600;  // of wall time, for one task; time in which this process was stopped does not count
+  double timeout_s = 3600;  // of wall time, for one task; time in which this process was stopped, or the worker
+                            // waited for others' questions (in_line_phase), does not count
   double memory_gib = 0;    // of data, for one task; 0: its share of the machine's, 4 at least
 };
 

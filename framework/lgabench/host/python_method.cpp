@@ -106,6 +106,7 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
     plugin.summary = reader.at("summary").string();
     plugin.asks = reader.at("asks").string();
     plugin.sha256 = reader.at("sha256").string();
+    plugin.questionnaire = reader.at("questionnaire").boolean();
     plugin.options = read_options(canonical(reader.at("options").json()));
     for (const auto& option : plugin.options.items())  // a CloningMethod's alone
       JsonReader(option.value(), "options", "/" + option.key())

@@ -134,6 +134,17 @@ CheckJob read_check_job(const JsonReader& reader) {
   return job;
 }
 
+Json to_json(const AskJob& job) {
+  return {
+      {"model", job.model}, {"live", to_json(job.live)}, {"scenarios", job.scenarios}, {"limits", to_json(job.limits)}};
+}
+
+AskJob read_ask_job(const JsonReader& reader) {
+  AskJob job{reader.at("model").string(), live_of(reader.at("live")), {}, read_limits(reader)};
+  for (const JsonReader& scenario : reader.at("scenarios").elements()) job.scenarios.push_back(scenario.json());
+  return job;
+}
+
 Json to_json(const PictureRequest& request) {
   Json json{{"cell", request.cell.string()}, {"arm", request.arm},    {"index", request.index},
             {"scene", request.scene},        {"ends", Json::array()}, {"selections", request.selections}};

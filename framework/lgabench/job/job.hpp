@@ -106,6 +106,23 @@ Json to_json(const OracleActions& actions);
 /// @throws InputError
 OracleActions read_oracle_actions(const JsonReader& reader);
 
+/// lgabench-worker ask: what methods of a run will ask a server's model (LGABENCH_QUESTIONNAIRE), beforehand.
+struct AskJob {
+  std::string model;  // to_text() of an AskedModel
+  LiveModel live;     // its max_queries are for each scenario
+  std::vector<Json> scenarios;
+  Limits limits{};
+};
+Json to_json(const AskJob& job);
+/// @throws InputError
+AskJob read_ask_job(const JsonReader& reader);
+
+/// A phase of a worker that waits for another one's questions to be answered: no time of its own.
+inline constexpr const char* in_line_phase = "wait for other cells' questions";
+/// What `lgabench-worker ask` tells: questions that were answered, and, as a phase with a count of 0, what it waits
+/// for.
+inline constexpr const char* asked_phase = "ask";
+
 /// What a worker does, and how far it is: a line of JSON on its descriptor 3.
 struct PhaseCount {
   std::string phase;

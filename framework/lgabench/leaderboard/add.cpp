@@ -9,6 +9,7 @@
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
@@ -69,6 +70,7 @@ std::string other_setting(const Json& cell, const Json& expected) {
     if (member == "data") return "computed with other data than this installation's";
     return fmt::format("{} is {}, the board's preset has {}", member, canonical(there), canonical(value));
   }
+  if (cell.contains("selection_errors")) return "errors were made in what was selected (selection_errors)";
   return cell.contains("participant") ? "based on a person's answers, for which the board has no place" : "";
 }
 
@@ -86,6 +88,11 @@ std::string answers_hash(const fs::path& run, const Installed& installed, const 
     if (!fs::exists(run / "answers" / (cassette->file + ".jsonl")))
       reasons.add(to_string(cell.answers) + ": the cassette is not in answers/ of the run");
     return cassette->file;
+  }
+  if (const auto* written = std::get_if<FileAnswers>(&cell.answers)) {
+    if (!fs::exists(run / "answers" / (written->file + ".json")))
+      reasons.add(to_string(cell.answers) + ": the file is not in answers/ of the run");
+    return written->file;
   }
   std::set<std::string> lines;
   if (const auto* recorded = std::get_if<RecordedAnswers>(&cell.answers))
@@ -130,6 +137,20 @@ Json evidence_of(const RunResults& run, const Identity& identity, const Json& da
           {"data", data}};
 }
 
+// Whether a failure has a cause, which is found by telling the method the truth.
+bool is_attributed(const CellResult& result) {
+  const auto told = [](const Episode& e) { return !e.attribution.empty(); };
+  return std::any_of(result.episodes.begin(), result.episodes.end(),
+                     [&](const auto& arm) { return std::any_of(arm.second.begin(), arm.second.end(), told); });
+}
+
+// By id and version, as another build's bytes differ: a plugin of that id beside the installation's is never loaded.
+bool is_shipped(const std::string& id, const std::string& version, const Catalogue& shipped) {
+  return std::any_of(shipped.plugins.begin(), shipped.plugins.end(), [&](const PluginInfo& one) {
+    return one.kind == "method" && one.id == id && one.version == version;
+  });
+}
+
 Entry entry_of(const RunResults& run, const Installed& installed, const Row& row, const Json& about, Reasons& reasons) {
   const Cell& first = row.begin()->second->configuration;
   Entry entry;
@@ -144,6 +165,9 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Row& row
   entry.identity.engine_version = version_of(run, "engine", first.engine);
   entry.identity.preset_sha256 = hash(installed.setting);
   entry.identity.scene_seed = installed.setting.scene_seed;
+  const bool may_be_told =
+      first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id),
+                                                scan_plugins({shipped_plugin_directory()}));
   Json data = Json::object();
   for (const Cell& cell : cells_of_row(installed, first.method, first.engine, first.answers)) {
     const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
@@ -160,6 +184,9 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Row& row
       reasons.of_cell(reason, title);
     } else if (result.failed && result.fault != "plugin") {
       reasons.add(fmt::format("failed by the {}, not by the method: {}: {}", result.fault, title, result.reason));
+    } else if (!may_be_told && is_attributed(result)) {
+      reasons.of_cell("failures have causes, for which the method was told the truth: add a run that tells none",
+                      title);
     } else {
       entry.cells.push_back(played_cell(result, run.directory / "cells" / result.key, key(cell), entry));
       data.update(cell.data);
@@ -191,10 +218,11 @@ void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
 }
 
 // The answers that an entry is based on, kept beside the entries for whoever verifies it.
-std::vector<AnswerFile> cassettes_of(const fs::path& run, const Entry& entry) {
+std::vector<AnswerFile> answers_of(const fs::path& run, const Entry& entry) {
   std::vector<AnswerFile> files;
   for (AnswerFile& file : kept_answers(run))
-    if (file.name == entry.identity.answers_sha256 + ".jsonl") files.push_back(std::move(file));
+    if (file.name == entry.identity.answers_sha256 + kept_ending(entry.identity.answers))
+      files.push_back(std::move(file));
   return files;
 }
 
@@ -246,7 +274,7 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   added.refused = reasons.lines();
   if (!added.refused.empty()) return added;
   for (const Entry& entry : entries) {
-    keep_answers(cassettes_of(directory, entry), board);
+    keep_answers(answers_of(directory, entry), board);
     write_entry(board, entry);
     read_entry(board, entry.place());  // what is written is what every reader takes
     added.entries.push_back(entry.place().string());

@@ -105,9 +105,10 @@ void expect_same_scenes(const std::vector<Entry>& entries, Checked& checked) {
   }
 }
 
-void expect_cassette(const fs::path& board, const Entry& entry, Checked& checked) {
-  if (!has_cassette(entry.identity.answers)) return;
-  const fs::path file = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
+void expect_answers(const fs::path& board, const Entry& entry, Checked& checked) {
+  const std::string ending = kept_ending(entry.identity.answers);
+  if (ending.empty()) return;
+  const fs::path file = board / "answers" / (entry.identity.answers_sha256 + ending);
   if (!fs::exists(file) || sha256_file(file) != entry.identity.answers_sha256)
     checked.problems.push_back(
         fmt::format("{}: {} is not there, or not what its name says", entry.place().string(), file.string()));
@@ -172,7 +173,7 @@ Checked check(const fs::path& board, const CheckOptions& options) {
       ++checked.entries;
       try {
         entries.push_back(read_entry(board, directory, vouched));
-        expect_cassette(board, entries.back(), checked);
+        expect_answers(board, entries.back(), checked);
         if (options.installed) expect_installed(entries.back(), *options.installed, checked);
       } catch (const InputError& e) {
         checked.problems.emplace_back(e.what());

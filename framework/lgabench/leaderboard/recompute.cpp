@@ -41,11 +41,12 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.program = options.program;
   plan.pool = options.pool;
   plan.attributes_others = false;
-  const fs::path cassette = board / "answers" / (entry.identity.answers_sha256 + ".jsonl");
+  const std::string ending = kept_ending(entry.identity.answers);
+  const fs::path kept = board / "answers" / (entry.identity.answers_sha256 + ending);
   if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
-    plan.live.emplace(LiveModel{cassette, false, -1});
-  else if (has_cassette(entry.identity.answers))
-    plan.answers.push_back({cassette.filename(), cassette, Json::object()});
+    plan.live.emplace(LiveModel{kept, false, -1});
+  else if (!ending.empty())
+    plan.answers.push_back({kept.filename(), kept, Json::object()});
   return plan;
 }
 

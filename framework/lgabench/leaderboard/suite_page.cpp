@@ -238,8 +238,10 @@ std::string command_of(const Entry& entry) {
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
-  const AnswerSource kept = CassetteAnswers{fmt::format("answers/{}.jsonl", identity.answers_sha256)};
-  words.insert(words.end(), {"--answers", to_string(has_cassette(identity.answers) ? kept : identity.answers)});
+  const std::string ending = kept_ending(identity.answers), kept = "answers/" + identity.answers_sha256 + ending;
+  words.insert(words.end(), {"--answers", ending == ".json"    ? kept
+                                          : ending == ".jsonl" ? to_string(CassetteAnswers{kept})
+                                                               : to_string(identity.answers)});
   return shell_line(words);
 }
 

@@ -13,9 +13,16 @@
 namespace lgabench {
 
 Json to_json(const PluginInfo& plugin) {
-  return {{"file", plugin.file.string()}, {"kind", plugin.kind},       {"id", plugin.id},
-          {"version", plugin.version},    {"summary", plugin.summary}, {"fingerprint", plugin.fingerprint},
-          {"asks", plugin.asks},          {"options", plugin.options}, {"sha256", plugin.sha256}};
+  return {{"file", plugin.file.string()},
+          {"kind", plugin.kind},
+          {"id", plugin.id},
+          {"version", plugin.version},
+          {"summary", plugin.summary},
+          {"fingerprint", plugin.fingerprint},
+          {"asks", plugin.asks},
+          {"options", plugin.options},
+          {"sha256", plugin.sha256},
+          {"questionnaire", plugin.questionnaire}};
 }
 
 const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id) const {

@@ -23,6 +23,7 @@ struct PluginInfo {
   /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "user_base",
   /// "versions"}; else null.
   Json python{};
+  bool questionnaire = false;  // of a method: see LGABENCH_QUESTIONNAIRE
 };
 
 /// Every member, under its name.

@@ -28,6 +28,10 @@
 #define LGABENCH_METHOD_ASKING(asks, id, version, summary, Class, options_json) \
   LGABENCH_PLUGIN_("method", asks, id, version, summary, ::lgabench::Method, Class, options_json)
 
+/// In front of the options of a method whose select() asks select_features()'s questions, in any case: "{"
+/// LGABENCH_QUESTIONNAIRE R"("epochs": ...})". Where a run asks a server, it asks them for all of its cells beforehand.
+#define LGABENCH_QUESTIONNAIRE R"("questionnaire": true, )"
+
 /// An engine: `Class` derives from lgabench::PhysicsWorld and has a default constructor. Once in a library.
 #define LGABENCH_ENGINE(id, version, summary, Class) \
   LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")

@@ -105,6 +105,8 @@ std::string text(const char (&field)[Size], const char* name) {
   return value;
 }
 
+constexpr const char* questionnaire = "questionnaire";
+
 bool offers(const Json& option, const Json& value) {
   const Json values = option.is_object() ? option.value("values", Json()) : Json();
   return values.is_array() && std::find(values.begin(), values.end(), value) != values.end();
@@ -131,11 +133,17 @@ bool is_name(const std::string& id) {
          std::all_of(id.begin(), id.end(), [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+bool is_questionnaire(const std::string& options_json) {
+  const Json options = json_or_null(options_json);
+  return options.is_object() && options.value(questionnaire, Json()) == true;
+}
+
 // Complaints of InputError's kind are the plugin's fault here.
 Json read_options(const std::string& options_json) {
   try {
     Json options = parse_json(options_json, "options");
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
+    if (const auto said = options.find(questionnaire); said != options.end() && said->is_boolean()) options.erase(said);
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
       reader.only({"default", "help", "source", "values", "min", "needs", "framework"});
@@ -221,6 +229,7 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.version = text(d.version, "version");
   plugin.summary = text(d.summary, "summary");
   plugin.options = read_options(text(d.options_json, "options"));
+  plugin.questionnaire = is_questionnaire(text(d.options_json, "options"));
   plugin.sha256 = sha256(bytes);
   return plugin;
 }

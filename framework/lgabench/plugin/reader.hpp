@@ -13,6 +13,9 @@ PluginDescriptor find_descriptor(std::string_view bytes);
 /// A descriptor's options, checked. @throws PluginError with the place of what is wrong.
 Json read_options(const std::string& options_json);
 
+/// Whether they say "questionnaire": true, which is no option.
+bool is_questionnaire(const std::string& options_json);
+
 /// Lower-case letters, digits and underscores, a letter first: a plugin's id.
 bool is_name(const std::string& id);
 

@@ -16,6 +16,11 @@ struct RecordedAnswers {
 struct CassetteAnswers {
   std::string file;
 };
+/// A file of recorded answers that somebody wrote: "file:" and the file, in cells and entries by the SHA-256 of its
+/// bytes; on the command line its name, which ends in .json.
+struct FileAnswers {
+  std::string file;
+};
 /// A server's model, asked while cells run: "openai:" and the model; on the command line, which names it elsewhere,
 /// "openai" alone.
 struct LiveAnswers {
@@ -24,18 +29,17 @@ struct LiveAnswers {
 /// "none": nobody is asked, and a method that asks fails its cell.
 struct NoAnswers {};
 
-using AnswerSource = std::variant<RecordedAnswers, CassetteAnswers, LiveAnswers, NoAnswers>;
+using AnswerSource = std::variant<RecordedAnswers, CassetteAnswers, FileAnswers, LiveAnswers, NoAnswers>;
 
 std::string to_string(const AnswerSource& source);
 /// Every word is one: what is none of the others names recorded answers.
 AnswerSource read_answer_source(const std::string& word);
-/// Whether a cassette belongs to it: that of a server's replies is kept too.
-inline bool has_cassette(const AnswerSource& source) {
-  return std::holds_alternative<CassetteAnswers>(source) || std::holds_alternative<LiveAnswers>(source);
-}
+/// The ending of the file that is kept with a run or a board for it, SHA256 before it: ".jsonl" of a cassette, which a
+/// server's replies have too; "" where there is none.
+std::string kept_ending(const AnswerSource& source);
 
 /// The words that --answers takes: "recorded", recorded_sources(), "openai", and with `none` "none"; beside them any
-/// cassette:FILE.
+/// cassette:FILE and any FILE.json.
 std::vector<std::string> answer_words(bool none);
 /// "" for one of them, else what is expected.
 std::string answers_complaint(const std::string& word, bool none);

@@ -58,6 +58,7 @@ Json to_json(const Cell& cell) {
             {"smoke", cell.smoke}};
   if (!cell.method.asks.empty()) json["method"]["asks"] = cell.method.asks;
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
+  if (!cell.selection_errors.none()) json["selection_errors"] = to_json(cell.selection_errors);
   if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
   return json;
 }
@@ -65,7 +66,7 @@ Json to_json(const Cell& cell) {
 Cell read_cell(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
-               "scene_seed", "test_scenes", "episodes", "answers", "participant", "data", "smoke"});
+               "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "data", "smoke"});
   const JsonReader method = reader.at("method");
   method.only({"kind", "id", "name", "version", "options", "asks"});
   constexpr long long most = std::numeric_limits<int>::max();
@@ -94,6 +95,7 @@ Cell read_cell(const Json& json, const std::string& file) {
     cell.participant = CellParticipant{participant.at("id").string(), participant.at("sha256").string(),
                                        participant.has("rehearsal") && participant.at("rehearsal").boolean()};
   }
+  if (reader.has("selection_errors")) cell.selection_errors = read_selection_errors(reader.at("selection_errors"));
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();
   return cell;

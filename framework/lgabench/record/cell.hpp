@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/record/answer_source.hpp>
@@ -43,6 +44,7 @@ struct Cell {
   int episodes = 0;
   AnswerSource answers;
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
+  SelectionErrors selection_errors;            // made in what the method selects
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
 

@@ -71,10 +71,10 @@ void judge_by_pose(RunResults& run, const PoseTolerance& tolerance) {
     for (auto& [arm, episodes] : cell.episodes)
       for (Episode& episode : episodes) {
         if (episode.action.empty()) continue;
-        const auto [environment, task] = played.at(cell.scenario);
+        const auto& in = played.at(cell.scenario);  // a name for each of the pair could not be captured in C++17
         const auto& right = oracle.at({cell.engine, episode.scene});
         const bool near = std::any_of(right.begin(), right.end(), [&](const Action& action) {
-          const auto distance = environment->distance(*task, episode.action, action);
+          const auto distance = in.first->distance(*in.second, episode.action, action);
           return distance->begin_m <= tolerance.begin_m && distance->end_m <= tolerance.end_m &&
                  distance->turn_rad <= tolerance.turn_deg * pi / 180;
         });

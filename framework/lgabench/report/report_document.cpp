@@ -125,6 +125,7 @@ Document report_document(const Material& material) {
   for (Section& section : success(material)) add(std::move(section));
   add(claims_section(material.claims, material.styles, "The paper's claims"));
   add(phi(material));
+  add(selection_errors(material));
   add(failures(material));
   add(attribution(material));
   add(learning_curves(material));

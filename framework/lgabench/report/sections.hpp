@@ -28,6 +28,7 @@ Section what_was_run(const Material& material);
 std::vector<Section> success(const Material& material);  // one for each table of the summary
 Section learning_curves(const Material& material);
 Section phi(const Material& material);
+Section selection_errors(const Material& material);
 Section failures(const Material& material);
 Section attribution(const Material& material);
 Section engines(const Material& material);

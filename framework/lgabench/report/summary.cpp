@@ -9,6 +9,7 @@
 
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/report/bootstrap.hpp>
+#include <lgabench/report/error_curves.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/pairs.hpp>
 
@@ -381,6 +382,7 @@ Summary summarize(const RunResults& run) {
   std::size_t index = 0;
   for (Table& table : summary.tables)
     for (Row& row : table.rows) row.index = index++;
+  summary.error_curves = error_curves(run, summary.tables);
   return summary;
 }
 

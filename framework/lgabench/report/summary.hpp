@@ -100,9 +100,23 @@ struct Table {
   std::vector<std::string> ids(const std::string& scenario, const std::string& kind) const;
 };
 
+/// Success on the mean over scenarios against the probability of one kind of errors.
+struct ErrorCurve {
+  struct Point {
+    double p = 0, success = 0, low = 0, high = 0;
+    double empty = 0;     // share of its episodes that failed as abstraction_empty
+    std::size_t row = 0;  // of summary.json
+  };
+  std::string layout, engine, arm, method, kind;  // method: the row's without errors; kind: missing or added
+  int demonstrations = 0;
+  std::vector<Point> points;  // p ascending
+  double slope = 0;           // of the line of least squares through them, for each .1 of p
+};
+
 struct Summary {
   std::string suite;
   std::vector<Table> tables;
+  std::vector<ErrorCurve> error_curves;
   std::vector<CellResult> failed;  // cells
 };
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/report/error_curves.hpp>
 #include <lgabench/report/summary.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -71,7 +72,9 @@ Json to_json(const Summary& summary) {
                           {"points", near->points},
                           {"near", near->near},
                           {"mean_distance", near->mean_distance}});
-  return {{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
+  Json json{{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
+  for (const ErrorCurve& curve : summary.error_curves) json["error_curves"].push_back(to_json(curve));
+  return json;
 }
 
 std::string to_csv(const Summary& summary) {

@@ -110,7 +110,7 @@ class Demonstrations(list[Demonstration]):
 
 def load_demonstrations(file: Path) -> Demonstrations:
     """Reads what `lgabench demos` wrote, also with recovery steps. Instructions come without a Selection."""
-    import h5py  # type: ignore[import-untyped]
+    import h5py
 
     all_of_them = Demonstrations()
     with h5py.File(file, "r") as opened:

@@ -1,0 +1,82 @@
+#include <lgabench/abstraction/selection_errors.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include <lgabench/core/random.hpp>
+
+namespace lgabench {
+namespace {
+
+using Names = std::vector<std::string>;
+
+bool has(const Names& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Of all names in their order, those that are selected after errors.
+Names erring(const Names& all, const Names& selected, const Names& truth, const SelectionErrors& errors,
+             RandomStream& random) {
+  Names some;
+  for (const std::string& name : all) {
+    const double drawn = random.uniform();  // for every name, so that no other's depends on what was selected
+    const bool right = has(truth, name);
+    if (drawn < (right ? errors.missing : errors.added) ? !right : has(selected, name)) some.push_back(name);
+  }
+  return some;
+}
+
+FeatureSet erring(const FeatureSpace& space, const FeatureSet& selected, const FeatureSet& truth,
+                  const SelectionErrors& errors, RandomStream& random, const std::string& never_meant) {
+  FeatureSet set{erring(space.object_types, selected.object_types, truth.object_types, errors, random),
+                 erring(space.textures, selected.textures, truth.textures, errors, random)};
+  set.object_types.erase(std::remove(set.object_types.begin(), set.object_types.end(), never_meant),
+                         set.object_types.end());
+  return set;
+}
+
+}  // namespace
+
+std::string SelectionErrors::suffix() const {
+  std::string words;
+  if (added != 0) words += fmt::format("+added={}", added);
+  if (missing != 0) words += fmt::format("+missing={}", missing);
+  return words;
+}
+
+bool operator==(const SelectionErrors& a, const SelectionErrors& b) {
+  return a.missing == b.missing && a.added == b.added;
+}
+
+Json to_json(const SelectionErrors& errors) {
+  Json json = Json::object();
+  if (errors.missing != 0) json["missing"] = errors.missing;
+  if (errors.added != 0) json["added"] = errors.added;
+  return json;
+}
+
+SelectionErrors read_selection_errors(const JsonReader& reader) {
+  reader.only({"missing", "added"});
+  SelectionErrors errors;
+  for (const auto& [name, value] : {std::pair{"missing", &errors.missing}, {"added", &errors.added}}) {
+    if (!reader.has(name)) continue;
+    *value = reader.at(name).number();
+    if (!(*value >= 0 && *value <= 1)) reader.at(name).fail("a number from 0 to 1");
+  }
+  return errors;
+}
+
+Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
+                      std::uint64_t training_seed, const std::string& never_meant) {
+  if (errors.none() || selected.provenance == Provenance::none) return selected;
+  const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
+  RandomStream random(fmt::format("selection_errors/{}/{}", utterance, training_seed));
+  selected.target = erring(scenario.space, selected.target, truth.target, errors, random, never_meant);
+  if (selected.second && truth.second)
+    static_cast<FeatureSet&>(*selected.second) =
+        erring(scenario.space, *selected.second, *truth.second, errors, random, never_meant);
+  return selected;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,34 @@
+// Errors that are made on purpose in what was selected: how much an error of an abstraction costs.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/core/selection.hpp>
+
+namespace lgabench {
+
+/// With which probability each true feature is missing, and each wrong one is added: 0 to 1.
+struct SelectionErrors {
+  double missing = 0, added = 0;
+
+  bool none() const { return missing == 0 && added == 0; }
+  /// What a row's name ends with: "+added=0.2+missing=0.1", "" where nothing errs.
+  std::string suffix() const;
+};
+bool operator==(const SelectionErrors& a, const SelectionErrors& b);
+
+/// {"missing": p, "added": q}, without what is 0.
+Json to_json(const SelectionErrors& errors);
+/// @throws InputError for another member, or a number outside 0 to 1.
+SelectionErrors read_selection_errors(const JsonReader& reader);
+
+/// What `selected` for the scenario's command number `command` becomes. Each feature has one number in [0, 1), from a
+/// stream of (utterance, training seed): it errs where that lies below the probability, so that more errors hold all
+/// that fewer make, for every method alike. `never_meant`: an object type that no set with errors holds, as the place
+/// to bring things to; "" for none.
+Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
+                      std::uint64_t training_seed, const std::string& never_meant);
+
+}  // namespace lgabench

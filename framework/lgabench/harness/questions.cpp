@@ -1,0 +1,66 @@
+#include <lgabench/harness/questions.hpp>
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/scenario.hpp>
+#include <lgabench/core/scratch.hpp>
+#include <lgabench/harness/asking_progress.hpp>
+#include <lgabench/harness/forecast.hpp>
+
+namespace lgabench {
+
+std::string Questions::text() const {
+  const std::string time = open > 0 && reply_s > 0 ? ": about " + duration_text(open * reply_s / at_once) : "";
+  return fmt::format("{} questions, {} answered already, {} at once{}", all, all - open, at_once, time);
+}
+
+Questions count_questions(const LiveModel& live, const std::string& model, const std::vector<Json>& scenarios) {
+  Cassette cassette(live.cassette);
+  const ChatLanguageModel lm(cassette, nullptr, {model});
+  Questions counted{0, 0, live.concurrency, cassette.mean_seconds()};
+  std::set<std::string> seen;
+  for (const Json& json : scenarios) {
+    const Scenario scenario = read_scenario(json, "scenario");
+    for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c) {
+      const Command command = scenario.command(c);
+      if (!seen.insert(canonical({command.utterance, command.task, scenario.space.id})).second) continue;
+      const std::vector<Question> questions = feature_questions(command, scenario.space);
+      counted.all += static_cast<int>(questions.size());
+      counted.open += lm.open_questions(command, scenario.space, questions);
+    }
+  }
+  return counted;
+}
+
+bool ask_beforehand(const AskJob& job, const Questions& questions) {
+  const Scratch scratch("ask");
+  AskingProgress progress(questions.open);
+  PoolEvents events;
+  events.started = [](std::size_t) {};
+  events.tick = [] {};
+  events.progress = [&progress](std::size_t, const std::string& phase, long long count) {
+    if (phase == asked_phase)
+      progress.tell(static_cast<int>(count));
+    else
+      progress.say(phase);
+  };
+  events.ended = [&progress](std::size_t, const WorkerEnd& end) {
+    if (end.exit_code == 0 && end.signal == 0) return;
+    progress.say(fmt::format("asking beforehand: {}; the cells that need it ask again",
+                             end.complaint ? end.complaint->reason : why_it_ended(end, 0).reason));
+  };
+  PoolOptions pool;
+  pool.timeout_s = 1e9;  // how long a server takes is --reply-timeout's business
+  return run_workers(
+      1,
+      [&](std::size_t) {
+        return WorkerTask{to_json(job), scratch.path / "log", "ask"};
+      },
+      pool, events);
+}
+
+}  // namespace lgabench

@@ -1,0 +1,113 @@
+"""What a method is given, without a run: for unit tests and notebooks. Needs the package lgabench.
+
+    from lgabench_method import testing
+
+    services = testing.services(MyMethod, "heart", steps=10)
+    policy = MyMethod().learn(testing.demonstrations("heart", 5), services)
+    print(testing.try_out(MyMethod, "heart"))
+
+The language model answers with the truth, training targets are drawn from it, nothing is confined: no row of the table.
+"""
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Callable, Sequence
+from typing import Any, Union
+
+import lgabench
+from lgabench_method import (Command, Demonstration, FeatureSpace, Instruction, Method, Observation, Question, Refused, Selection,
+                             Services, Step)
+
+Scenario = Union[str, lgabench.Scenario]
+
+
+class TrueAnswers:
+    """A language model that knows what the scenario's author means; `asked` counts its questions."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = _scenario(scenario)
+        self.asked = 0
+
+    def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
+        truth = self.scenario.truth(self.scenario.commands.index(command.utterance))
+        self.asked += len(questions)
+        answers = []
+        for about, group, candidate in questions:
+            features = truth.target if about == "target" or truth.second is None else truth.second
+            answers.append(candidate in (features.object_types if group == "object_type" else features.textures))
+        return answers
+
+
+class NoPeople:
+    """Nobody is asked: every call raises Refused."""
+
+    def specify(self, command: Command) -> Selection:
+        raise Refused("no person is asked in a test")
+
+    def edit(self, command: Command, proposal: Selection) -> Selection:
+        raise Refused("no person is asked in a test")
+
+
+class Curves:
+    """Keeps what is logged: `epochs` has (epochs, steps, loss, curves), a tuple for each pass."""
+
+    def __init__(self) -> None:
+        self.epochs: list[tuple[int, int, float, dict[str, float]]] = []
+
+    def epoch(self, epochs: int, steps: int, loss: float, **curves: float) -> None:
+        self.epochs.append((epochs, steps, loss, curves))
+
+
+def _scenario(scenario: Scenario) -> lgabench.Scenario:
+    return scenario if isinstance(scenario, lgabench.Scenario) else lgabench.Scenario(scenario)
+
+
+def _instruction(environment: lgabench.Environment) -> Instruction:
+    scenario = environment.scenario
+    command = scenario.commands.index(environment.utterance)
+    return Instruction(environment.utterance, scenario.truth(command))
+
+
+def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0) -> list[Demonstration]:
+    """The oracle's first `count` episodes of a training seed, with the true Selections."""
+    with lgabench.Environment(scenario, engine) as environment:
+        all_of_them = []
+        for index in range(count):
+            seen = environment.reset("train", index, seed=seed)
+            all_of_them.append(Demonstration(_instruction(environment), [Step(seen, environment.expert_action())]))
+        return all_of_them
+
+
+def observations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0) -> list[Observation]:
+    """The first `count` test scenes."""
+    with lgabench.Environment(scenario, engine) as environment:
+        return [environment.reset("test", index, seed=seed) for index in range(count)]
+
+
+def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: int = 0, **options: Any) -> Services:
+    """With the options' defaults, and `options` in place of some. `files` is a new directory below the temporary one."""
+    declared: dict[str, dict[str, Any]] = getattr(kind, "options", {})
+    if unknown := set(options) - set(declared):
+        raise ValueError(f"options: no {', '.join(sorted(unknown))} among {', '.join(declared) or 'none'}")
+    space = _scenario(scenario)
+    rows, columns = space.picture_size
+    layout = {"observation": {"rows": rows, "columns": columns, "channels": 3}, "action": json.loads(space._core.action_space_json)}
+    values = {name: one["default"] for name, one in declared.items()} | options
+    return Services(TrueAnswers(space), NoPeople(), values, seed, Curves(), tempfile.mkdtemp(prefix="lgabench-files-"), layout)
+
+
+def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int = 10, episodes: int = 20, *, engine: str = "mujoco",
+            seed: int = 0, **options: Any) -> lgabench.Result:
+    """Calls a method as a cell does (select, learn, act) on `count` demonstrations, and plays the first test scenes."""
+    space, method = _scenario(scenario), kind()
+    lent = services(kind, space, seed=seed, **options)
+    selections = {words: method.select(space.command(index), space.space, lent) for index, words in enumerate(space.commands)}
+    shown = [Demonstration(Instruction(one.instruction.utterance, selections[one.instruction.utterance]), one.steps)
+             for one in demonstrations(space, count, engine=engine, seed=seed)]
+    policy = method.learn(shown, lent)
+    if not os.listdir(lent.files):
+        os.rmdir(lent.files)
+    return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), space, episodes,
+                             engine=engine)

@@ -1,0 +1,74 @@
+// Lines of verifications.jsonl that somebody sends for another's entry, as claims, and as if they were vouched for.
+#include <algorithm>
+
+#include <lgabench/leaderboard/pages.hpp>
+#include <lgabench/leaderboard/verification.hpp>
+
+#include "../unit/leaderboard_board.hpp"
+#include "fuzz.hpp"
+
+namespace {
+
+using namespace lgabench;
+using namespace lgabench::leaderboard;
+
+// What follows from a line's nonce and counts, as an honest writer has it: what lies behind these checks is reached.
+void put_right(Json& line, const Entry& entry) {
+  const std::string nonce =
+      line.is_object() && line.contains("nonce") && line["nonce"].is_string() ? line["nonce"] : "";
+  if (nonce.size() != 32 || !line.contains("cells") || !line["cells"].is_array()) return;
+  const bool fresh = line.contains("kind") && line["kind"] == "fresh";
+  const std::size_t cells = std::min(line["cells"].size(), entry.cells.size());
+  line["cells"] = Json::array();
+  int episodes = 0;
+  for (const std::size_t i : fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, cells)) {
+    line["cells"].push_back(entry.cells[i].key);
+    episodes += entry.cells[i].episodes();
+  }
+  line["episodes"] = episodes;
+  if (!fresh) return;
+  try {
+    const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+    line["passed"] = std::none_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+    const FreshEstimate& mean = estimates.back();
+    line.update({{"difference", mean.difference}, {"low", mean.low}, {"high", mean.high}});
+  } catch (const Json::exception&) {  // not a line that the reader has let pass
+  }
+}
+
+void look_at(const fs::path& board, const Entry& entry) {
+  to_string(entry.tier());
+  entry.replay_differed();
+  entry.fresh();
+  claims(entry);
+  made_files(board, {entry}, {});
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fs::path board = fuzz::directory() / "verified";
+  static const Entry entry = [] {
+    Setting setting = small_setting();
+    setting.episodes = 10;
+    Entry made = made_entry(setting, "lga", .5);
+    write_entry(board, made);
+    return made;
+  }();
+  const std::string_view text = fuzz::text_of(data, size);
+  std::string lines;
+  Vouched all;
+  for (const std::string_view line : fuzz::split(text, "\n")) {
+    Json json = json_or_null(line);
+    put_right(json, entry);
+    if (json.is_object()) all[entry.hash()].insert(line_hash(json));
+    lines += (json.is_object() ? canonical(json) : std::string(line)) + (line.empty() ? "" : "\n");
+  }
+  fuzz::write(board / entry.place() / "verifications.jsonl", lines);
+  try {
+    look_at(board, read_entry(board, entry.place()));
+    look_at(board, read_entry(board, entry.place(), all));
+  } catch (const InputError&) {
+  }
+  return 0;
+}
