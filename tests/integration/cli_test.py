@@ -101,6 +101,9 @@ class Mistakes(Case):
                 self.assertRegex(done.stderr, re.compile(says, re.M))
         self.assertRegex(self.call("run", "q1", "--methods", "lag", expect=4).stderr,
                          r'no method "lag" \(did you mean "lga"\?\), expected one of: .*; other plugins are found with --plugin-path')
+        (self.dir / "bad.py").write_text("class Bad:\n    pass\n\n\nclass Other(Bad):\n    pass\n")
+        self.assertIn("bad.py: expected bad.py:CLASS; it has: Bad, Other",
+                      self.call("run", "q1", "--methods", "bad.py", expect=4).stderr)
         self.assertRegex(self.call("run", "q1", "--methods", "mine", "--plugin-path", "empty", expect=4).stderr,
                          r'no method "mine".*empty was refused: no plugin \(\*\.so\) is in it')
 
