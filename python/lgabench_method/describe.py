@@ -124,10 +124,13 @@ def describe(written):
         json.dumps(options, allow_nan=False, sort_keys=True)
     except (TypeError, ValueError) as error:
         raise NoMethod(f"{file}: options: expected values that JSON has: {error}") from error
+    declares = found.get("questionnaire", False)
+    if not isinstance(declares, bool):
+        raise NoMethod(f"{file}: questionnaire: expected True or False")
     return {"file": str(real), "class": class_name, "kind": "method",
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
-            "questionnaire": found.get("questionnaire") is True,
+            "questionnaire": declares,
             "sha256": hashlib.sha256(source).hexdigest(),
             "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})}}

@@ -12,6 +12,22 @@ namespace {
 using namespace lgabench;
 using namespace lgabench::leaderboard;
 
+// As fresh_estimates() needs them: of each cell and arm a count of successes.
+bool has_counts(const Json& line, const Entry& entry) {
+  const Json all = line.value("successes", Json());
+  const std::vector<std::size_t> cells = fresh_cells(entry, line.at("nonce"));
+  if (!all.is_array() || all.size() != cells.size()) return false;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto& arms = entry.cells[cells[i]].outcomes;
+    if (!all[i].is_object() || all[i].size() != arms.size()) return false;
+    for (const auto& arm : arms) {
+      const Json count = all[i].value(arm.first, Json());
+      if (!count.is_number_integer() || count < 0 || count > arm.second.size()) return false;
+    }
+  }
+  return true;
+}
+
 // What follows from a line's nonce and counts, as an honest writer has it: what lies behind these checks is reached.
 void put_right(Json& line, const Entry& entry) {
   const std::string nonce =
@@ -26,14 +42,11 @@ void put_right(Json& line, const Entry& entry) {
     episodes += entry.cells[i].episodes();
   }
   line["episodes"] = episodes;
-  if (!fresh) return;
-  try {
-    const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
-    line["passed"] = std::none_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
-    const FreshEstimate& mean = estimates.back();
-    line.update({{"difference", mean.difference}, {"low", mean.low}, {"high", mean.high}});
-  } catch (const Json::exception&) {  // not a line that the reader has let pass
-  }
+  if (!fresh || !has_counts(line, entry)) return;
+  const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line});
+  line["passed"] = std::none_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
+  const FreshEstimate& mean = estimates.back();
+  line.update({{"difference", mean.difference}, {"low", mean.low}, {"high", mean.high}});
 }
 
 void look_at(const fs::path& board, const Entry& entry) {

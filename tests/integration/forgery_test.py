@@ -188,6 +188,26 @@ class Forgeries(Case):
         (self.rival / "verifications.jsonl").write_text("")
         self.assertIn("verifications.jsonl: a verification changed since HEAD", self.check(expect=1))
 
+    def test_what_surrounds_a_pages_tables_stays(self):
+        """A script, or a heading above the table, that no entry made."""
+        def against(expect):  # without building, as a request brings its pages
+            done = self.leaderboard("check", "--against", "HEAD", expect=expect)
+            return done.stdout + done.stderr
+
+        page = self.board / "q2.html"
+        text = page.read_text()
+        for forged in (text.replace("</head>", "<script>alert(1)</script></head>"), text.replace("<main>", "<h1>LGA is first</h1><main>"),
+                       text.replace("</body>", "<script src=//evil></script></body>")):
+            self.assertNotEqual(forged, text)
+            page.write_text(forged)
+            self.assertIn("0 problems", self.leaderboard("check").stdout)
+            self.assertIn("q2.html: changed outside its tables; lgabench leaderboard build writes it", against(1))
+        page.write_text(text)
+        (self.board / "more.html").write_text("<h1>Ranks</h1>")
+        self.assertIn("more.html: no file of a board", against(1))
+        (self.board / "more.html").unlink()
+        self.assertIn("0 problems", against(0))
+
     def test_a_revision_that_is_not_there(self):
         said = self.leaderboard("check", "--against", "origin/mian", expect=2).stderr
         self.assertIn("--against origin/mian: expected a revision of git that board has, and its history", said)

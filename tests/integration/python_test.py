@@ -363,7 +363,9 @@ class PythonMethods(Case):
         for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
                            "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
                            "sets.py:A": "sets.py: options: expected values that JSON has",
-                           "endless.py:A": "endless.py: options: expected values that JSON has"}.items():
+                           "endless.py:A": "endless.py: options: expected values that JSON has",
+                           "asks.py:A": "asks.py: questionnaire: expected True or False"}.items():
+            (self.dir / "asks.py").write_text("class A:\n    questionnaire = 'yes'\n")
             (self.dir / "bad.py").write_text("class A(")
             (self.dir / "named.py").write_text("class A:\n    id = 'Upper'\n")
             (self.dir / "options.py").write_text("class A:\n    options = {'x': {'default': [1]}}\n")

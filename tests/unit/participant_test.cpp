@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <lgabench/abstraction/participant.hpp>
+#include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/answers.hpp>
@@ -132,6 +133,43 @@ TEST_F(ParticipantFile, EveryParticipantHasOne) {
   write_file(path / "p02.json", invented().dump());
   EXPECT_SAYS(message_of<InputError>([&] { read_participants(path, false, all); }),
               "\"made-up-01\" has another file there");
+}
+
+// Files of recorded answers, shipped or written by hand: reader and schema agree.
+TEST(RecordedFiles, AreAsTheirSchemaSays) {
+  for (const std::string& source : recorded_sources()) {
+    const fs::path file = data_directory() / "answers" / (source + ".json");
+    EXPECT_EQ(complaints("recorded_answers", read_json(file)), std::vector<std::string>()) << source;
+    EXPECT_FALSE(read_recorded(file).answers.empty());
+  }
+  const Json good = Json::parse(R"({"model": "me", "space": "tabletop", "answers": [
+    {"scenario": "heart", "command": "Bring me the heart.", "target": {"object_types": ["heart"], "textures": "ALL"},
+     "avoid": {"object_types": [], "textures": ["red"]}, "note": "by hand"}]})");
+  const TemporaryDirectory directory;
+  const auto refused = [&](const Json& document) {
+    write_file(directory.path / "mine.json", canonical(document));
+    const bool by_schema = !complaints("recorded_answers", document).empty();
+    try {
+      read_recorded(directory.path / "mine.json");
+      EXPECT_FALSE(by_schema) << document;
+      return false;
+    } catch (const InputError&) {
+      EXPECT_TRUE(by_schema) << document;
+      return true;
+    }
+  };
+  EXPECT_FALSE(refused(good));
+  for (const char* patch : {R"({"model": null})", R"({"model": ""})", R"({"answers": []})", R"({"modle": "me"})"}) {
+    Json bad = good;
+    bad.merge_patch(Json::parse(patch));
+    EXPECT_TRUE(refused(bad)) << patch;
+  }
+  for (const char* patch : {R"({"command": ""})", R"({"target": null})", R"({"target": {"textures": null}})",
+                            R"({"scenario": 3})", R"({"avoid": {"more": 1}})", R"({"target": {"textures": "red"}})"}) {
+    Json bad = good;
+    bad["answers"][0].merge_patch(Json::parse(patch));
+    EXPECT_TRUE(refused(bad)) << patch;
+  }
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <lgabench/plugin/fingerprint.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/plugin/plugin.hpp>
+#include <lgabench/plugin/reader.hpp>
 #include <tabletop/two_poses.hpp>
 
 #include "plugin_fixtures.hpp"
@@ -37,6 +39,16 @@ struct Host {
   Json options;
   Services services{lm, human, options, 0, log, tabletop::two_poses()};
 };
+
+TEST(Options, AQuestionnaireIsNoOptionUnlessItIsOne) {
+  const std::string declared = "{" LGABENCH_QUESTIONNAIRE R"("a": {"default": 1, "help": "", "source": ""}})";
+  EXPECT_TRUE(is_questionnaire(declared));
+  EXPECT_EQ(read_options(declared).size(), 1u);
+  const std::string named = R"({"questionnaire": {"default": true, "help": "", "source": ""}})";
+  EXPECT_FALSE(is_questionnaire(named));
+  EXPECT_EQ(read_options(named).size(), 1u);
+  EXPECT_THROW(read_options(R"({"questionnaire": "yes"})"), PluginError);
+}
 
 TEST(Plugin, DescriptorIsReadFromTheBytes) {
   const PluginInfo info = read_plugin(fixture("good/fixture_constant"));

@@ -81,6 +81,8 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   return response;
 }
 
+constexpr std::size_t shown = 200;  // of a server's words
+
 bool may_pass(long status) { return status == 408 || status == 409 || status == 429 || status >= 500; }
 
 // A server may repeat the key wherever it puts words.
@@ -111,7 +113,6 @@ std::string passing_error(const Response& response) {
 std::string complaint(const Response& response, const std::string& key) {
   std::string text = response.problem;
   if (response.status != 0) {
-    constexpr std::size_t shown = 200;
     std::string message = error_in(json_or_null(response.body));
     if (message.empty()) message = response.body;
     text = fmt::format("status {}: {}", response.status, without_key(message, key).substr(0, shown));
@@ -222,8 +223,9 @@ ChatReply OpenAiClient::complete(const Json& request) {
       }
     }
     if (response.late) throw NoAnswer(fmt::format("no reply within {} s (--reply-timeout)", options_.timeout_s));
-    const std::string what = says.empty() ? complaint(response, options_.api_key)
-                                          : "the server says: " + without_key(one_line(says), options_.api_key);
+    const std::string what = says.empty()
+                                 ? complaint(response, options_.api_key)
+                                 : "the server says: " + one_line(without_key(says, options_.api_key).substr(0, shown));
     const bool broke_off = response.status == 0 && !response.final;
     if (says.empty() && !broke_off && !may_pass(response.status)) throw MethodError(what);
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));

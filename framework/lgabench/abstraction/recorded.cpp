@@ -35,10 +35,8 @@ const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, Fea
 }
 
 // Members that are sets belong to the second role of some task; which one, a command says.
-RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space) {
-  std::vector<std::string> roles, members{"space", "scenario", "command", "target", "note", "rationale"};
-  for (const TaskInfo& task : installed_tasks())
-    if (task.second) roles.push_back(task.second->id);
+RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, const std::vector<std::string>& roles) {
+  std::vector<std::string> members{"space", "scenario", "command", "target", "note", "rationale"};
   members.insert(members.end(), roles.begin(), roles.end());
   entry.only(members);
   RecordedAnswer answer{space.id,
@@ -69,10 +67,13 @@ RecordedFile read_recorded(const fs::path& file) {
   reader.only({"model", "space", "answers", "source", "note", "recorded", "how", "reading", "near_coin_flips"});
   RecordedFile recorded{line(reader.at("model")), {}};
   std::map<std::string, FeatureSpace> spaces;
+  std::vector<std::string> roles;
+  for (const TaskInfo& task : installed_tasks())
+    if (task.second) roles.push_back(task.second->id);
   std::set<std::tuple<std::string, std::string, std::string>> seen;
   for (const JsonReader& entry : reader.at("answers").elements()) {
     const JsonReader space = (entry.has("space") ? entry : reader).at("space");
-    recorded.answers.push_back(read_answer(entry, space_of(space, spaces)));
+    recorded.answers.push_back(read_answer(entry, space_of(space, spaces), roles));
     const RecordedAnswer& one = recorded.answers.back();
     if (!seen.insert({one.space, one.scenario, one.scenario.empty() ? one.asked_as : ""}).second)
       entry.fail("each scenario, and each command without one, once in a space");

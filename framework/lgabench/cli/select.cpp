@@ -20,6 +20,7 @@
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/asking_progress.hpp>
+#include <lgabench/harness/questions.hpp>
 #include <lgabench/harness/suite.hpp>
 
 namespace lgabench::cli {
@@ -150,14 +151,14 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
 }
 
 void say_what_is_open(const Answerer& answerer, const std::vector<Asked>& commands, int at_once) {
-  int all = 0, open = 0;
+  Questions all{0, 0, at_once, answerer.cassette->mean_seconds()};
   for (const Asked& asked : commands) {
     const std::vector<Question> questions = feature_questions(asked.command, asked.space);
-    all += static_cast<int>(questions.size());
-    open += answerer.model->open_questions(asked.command, asked.space, questions);
+    all.all += static_cast<int>(questions.size());
+    all.open += answerer.model->open_questions(asked.command, asked.space, questions);
   }
-  answerer.progress->begin(open);
-  to_stderr("{} questions, {} answered already, {} at once\n", all, all - open, at_once);
+  answerer.progress->begin(all.open);
+  to_stderr("{}\n", all.text());
 }
 
 std::string list(const std::vector<std::string>& names, const std::vector<std::string>& all) {

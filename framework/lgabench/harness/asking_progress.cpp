@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <utility>
+
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/forecast.hpp>
 
@@ -21,9 +23,13 @@ void AskingProgress::tell(int asked) {
   put(stderr, fmt::format("{}asked {} of {}{}{}", redrawn ? "\r\x1b[K" : "", asked, open_, left, drawn_ ? "" : "\n"));
 }
 
+void AskingProgress::end() {
+  if (std::exchange(drawn_, false)) put(stderr, "\n");
+}
+
 void AskingProgress::say(const std::string& line) {
-  put(stderr, fmt::format("{}{}\n", drawn_ ? "\n" : "", one_line(line)));
-  drawn_ = false;
+  end();
+  put(stderr, one_line(line) + "\n");
 }
 
 }  // namespace lgabench

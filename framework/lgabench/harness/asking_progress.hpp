@@ -12,6 +12,8 @@ class AskingProgress {
   explicit AskingProgress(int open = 0) : open_(open) {}
   /// `asked`: how many of them were.
   void tell(int asked);
+  /// Ends the line where another process answered some of them.
+  void end();
   /// A line of its own.
   void say(const std::string& line);
 

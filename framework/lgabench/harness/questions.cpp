@@ -55,12 +55,14 @@ bool ask_beforehand(const AskJob& job, const Questions& questions) {
   };
   PoolOptions pool;
   pool.timeout_s = 1e9;  // how long a server takes is --reply-timeout's business
-  return run_workers(
+  const bool whole = run_workers(
       1,
       [&](std::size_t) {
         return WorkerTask{to_json(job), scratch.path / "log", "ask"};
       },
       pool, events);
+  progress.end();
+  return whole;
 }
 
 }  // namespace lgabench

@@ -202,8 +202,7 @@ bool ask_for(const std::vector<const Cell*>& cells, const RunPlan& plan, const C
   if (scenarios.empty()) return true;
   const Questions questions = count_questions(*plan.live, asked_model_of(plan), scenarios);
   to_stderr("{}\n", questions.text());
-  return questions.open == 0 ||
-         ask_beforehand({asked_model_of(plan), *plan.live, scenarios, worker_limits(plan.pool)}, questions);
+  return questions.open == 0 || ask_beforehand({asked_model_of(plan), *plan.live, scenarios}, questions);
 }
 
 // What a plugin printed without end is not kept whole. Called where nobody writes any more.

@@ -137,6 +137,40 @@ void expect_current(const fs::path& board, const std::vector<Entry>& entries, co
   }
 }
 
+// The rest of a page: its style, scripts and words.
+std::string frame(std::string bytes) {
+  for (const auto& [begin, end] :
+       {std::pair<std::string, const char*>("<main>", "</main>"), {"id=\"data\">", "</script>"}})
+    if (const std::size_t from = bytes.find(begin), to = bytes.find(end, from); from != bytes.npos && to != bytes.npos)
+      bytes.erase(from + begin.size(), to - from - begin.size());
+  return bytes;
+}
+
+// A page may be as it was at the revision, or as this build writes it; whoever opens one runs its scripts. No other
+// file lies beside the pages.
+void expect_frames(const fs::path& board, const std::vector<Entry>& entries, const std::string& revision,
+                   Checked& checked) {
+  const std::map<fs::path, std::string> made = made_files(board, entries, {});
+  for (const auto& item : fs::directory_iterator(board)) {
+    const fs::path file = item.path(), name = file.filename();
+    if (name == "entries" || name == "answers" || name == vouched_file || name == labels_file ||
+        name.string()[0] == '.')
+      continue;
+    const auto before = git(board, {"show", fmt::format("{}:./{}", revision, name.string())});
+    const auto ours = made.find(file);
+    const auto complain = [&](const char* what) {
+      checked.problems.push_back(fmt::format("{}: {}", name.string(), what));
+    };
+    if (ours == made.end() && !before) {
+      complain("no file of a board");
+    } else if (file.extension() == ".html" && ours != made.end()) {
+      const std::string now = frame(read_file(file, Links::refused));
+      if (now != frame(ours->second) && now != frame(before.value_or("")))
+        complain("changed outside its tables; lgabench leaderboard build writes it");
+    }
+  }
+}
+
 // What is not yet replayed was played here and now: in a preset and on an engine that are installed. Older entries were
 // replayed while theirs were.
 void expect_installed(const Entry& entry, const Catalogue& installed, Checked& checked) {
@@ -185,7 +219,9 @@ Checked check(const fs::path& board, const CheckOptions& options) {
   }
   expect_same_scenes(entries, checked);
   if (checked.problems.empty()) expect_current(board, entries, options.documents, checked);
-  if (!options.against.empty()) compare_with(board, options, checked);
+  if (options.against.empty()) return checked;
+  compare_with(board, options, checked);
+  if (checked.problems.empty()) expect_frames(board, entries, options.against, checked);
   return checked;
 }
 

@@ -31,7 +31,8 @@ struct CheckOptions {
 /// are there; that what vouched.json lists is there; that a preset and engine that an entry names are the installed
 /// ones, unless it was replayed; that the pages and the tables in documents are those of the entries; and, with a
 /// revision, that the directories of its entries differ by appended verifications, evidence and a withdrawal at most,
-/// and the maintainers' files not at all. Keeps on after a problem. @throws InputError for a revision that git does not
+/// and the maintainers' files not at all, and that pages are around their tables as they were or as this build writes
+/// them, with no other file beside them. Keeps on after a problem. @throws InputError for a revision that git does not
 /// know.
 Checked check(const fs::path& board, const CheckOptions& options = {});
 
