@@ -64,6 +64,22 @@ class BoardInABrowser(Case):
         self.assertEqual(set(self.script(COLUMN, 1)), {f"method_of_author_{i}" for i in (19, *range(190, 197))})
         self.press("\b" * 9)
         self.assertEqual(len(self.script(COLUMN, 1)), 200)
+        self.assertLess(max(self.script("return [...document.querySelectorAll('#table1 tbody tr')].map((row) => row.offsetHeight)")),
+                        36, "a row is a line")
+
+    def test_a_page_begins_with_the_best_row_of_each_method(self):
+        published = BUILD.parent.parent / "results/leaderboard/q1.html"
+        if not published.exists():
+            self.skipTest("no sources beside the build tree")
+        self.browser = Browser(self).open(f"file://{published}")
+        best = self.script(COLUMN, 1)
+        self.click(".filter input[type=checkbox]")
+        everything = self.script(COLUMN, 1)
+        self.assertGreater(len(everything), len(best))
+        self.assertIn("LGA, the paper’s network", everything)
+        self.assertNotIn("LGA, the paper’s network", best)
+        self.script("const box = document.querySelector('.filter input'); box.value = 'lga'; box.oninput()")
+        self.assertEqual({name.split(",")[0] for name in self.script(COLUMN, 1)}, {"LGA"}, "a whole word")
 
     def test_a_number_leads_by_the_keyboard_to_the_episodes_of_its_entry(self):
         self.open()

@@ -70,6 +70,8 @@ class Mistakes(Case):
             (["run", "--lmit=3"], r'unknown option --lmit \(did you mean "--limit"\?\)'),
             (["select", "heart", "--answer", "claude"], r'^lgabench: unknown option --answer \(did you mean "--answers"'),
             (["run"], r"^lgabench: SUITE is missing; usage: lgabench run \[OPTIONS\] SUITE$"),
+            (["leaderboard"], r"^lgabench: add\|verify\|vouch\|build\|check\|withdraw is missing; usage: "),
+            (["run", "q1", "--set", "lga.network=plane", "--dry-run"], r'\(did you mean "plain"\?\), got "plane"'),
             (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
             (["compare", "a"], r"compare: expected A B, or A --rows ROW_A,ROW_B$"),
             (["verify", "a", "b"], r'"b" is a word too many; usage: lgabench verify \[OPTIONS\] RUN$'),
@@ -99,6 +101,9 @@ class Mistakes(Case):
                 self.assertRegex(done.stderr, re.compile(says, re.M))
         self.assertRegex(self.call("run", "q1", "--methods", "lag", expect=4).stderr,
                          r'no method "lag" \(did you mean "lga"\?\), expected one of: .*; other plugins are found with --plugin-path')
+        (self.dir / "bad.py").write_text("class Bad:\n    pass\n\n\nclass Other(Bad):\n    pass\n")
+        self.assertIn("bad.py: expected bad.py:CLASS; it has: Bad, Other",
+                      self.call("run", "q1", "--methods", "bad.py", expect=4).stderr)
         self.assertRegex(self.call("run", "q1", "--methods", "mine", "--plugin-path", "empty", expect=4).stderr,
                          r'no method "mine".*empty was refused: no plugin \(\*\.so\) is in it')
 

@@ -106,12 +106,12 @@ class Submissions(Board):
         self.leaderboard("build")
         self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
         board = self.dir / "board"
-        self.assertRegex((board / "README.md").read_text(), r"\| not yet replayed \|(.*\n)*\| fixture_constant demonstration=[01] \|")
+        self.assertRegex((board / "README.md").read_text(), r"\| not yet replayed \|(.*\n)*\| fixture_constant, demonstration=[01] \|")
         self.replay()
         self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
         self.assertEqual(sorted(file.name for file in board.glob("*.*")),
                          ["README.md", "index.html", "leaderboard.csv", "tiny.html", "vouched.json"])
-        self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant demonstration=[01] \|")
+        self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant, demonstration=[01] \|")
         entry = json.loads(next(board.glob("entries/fixture_constant/*/tiny-board/entry.json")).read_text())
         self.assertEqual(entry["about"], META)
         self.assertEqual(entry["identity"]["scene_seed"], 77)

@@ -15,11 +15,7 @@ PROGRAMS = [shutil.which("chromium"), shutil.which("chromedriver")]
 A4 = 680  # pixels of CSS between its margins
 
 
-@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
-class PageInABrowser(BesideOneRun):
-    run_of_class = ("run", "q2", "--scenarios", "q2_heart,q2_letter", "--methods", "lga,lga_s,gcbc_dart", "--demos", "10",
-                    "--seeds", "0,1", "--episodes", "5", "--set", "*.epochs=20")
-
+class InABrowser(BesideOneRun):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -30,14 +26,15 @@ class PageInABrowser(BesideOneRun):
         cls.browser = selenium.webdriver.Chrome(options, selenium.webdriver.ChromeService(PROGRAMS[1]))
         cls.addClassCleanup(cls.browser.quit)
 
-    def open(self, width=1280, scheme="light", media="", place=""):
+    def open(self, width=1280, scheme="light", media="", place="", folded=False):
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                      {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False})
         self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {
             "media": media, "features": [{"name": "prefers-color-scheme", "value": scheme}]})
         self.browser.get("about:blank")
         self.browser.get(f"file://{self.first.dir}/run/report.html{place}")
-        self.script("for (const folded of document.querySelectorAll('details')) folded.open = true")
+        if not folded:
+            self.script("for (const folded of document.querySelectorAll('details')) folded.open = true")
         self.script("return new Promise((then) => requestAnimationFrame(() => requestAnimationFrame(then)))")
         self.assertEqual([entry for entry in self.browser.get_log("browser")], [])
 
@@ -52,6 +49,13 @@ class PageInABrowser(BesideOneRun):
 
     def press(self, key, of="document.activeElement"):
         self.script(f"{of}.dispatchEvent(new KeyboardEvent('keydown', {{key: arguments[0], bubbles: true, cancelable: true}}))", key)
+
+
+
+@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
+class PageInABrowser(InABrowser):
+    run_of_class = ("run", "q2", "--scenarios", "q2_heart,q2_letter", "--methods", "lga,lga_s,gcbc_dart", "--demos", "10",
+                    "--seeds", "0,1", "--episodes", "5", "--set", "*.epochs=20")
 
     def findings(self):
         axe = Axe(self.browser)
@@ -172,6 +176,37 @@ class PageInABrowser(BesideOneRun):
         outcome = self.script("const count = document.querySelector('.count'); count.click(); return count.dataset.outcome")
         self.assertEqual(set(self.shown("dialog .scenes figcaption b")), {outcome})
         self.assertEqual(self.script("return document.getElementById('outcome').value"), outcome)
+
+
+@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
+class WholePageInABrowser(InABrowser):
+    """Of a run as people make it: five methods, two numbers of demonstrations, three scenarios, two seeds."""
+    run_of_class = ("run", "q1", "--scenarios", "heart,letter,something_to_drink_water_out_of", "--demos", "10,50", "--seeds", "0,1",
+                    "--methods", "lga,human,lga_s,gcbc_seg,gcbc_dart", "--set", "*.epochs=5")
+
+    def test_it_is_short(self):
+        self.open(folded=True)
+        self.assertLess(self.script("return document.documentElement.scrollHeight"), 6000)
+
+    def test_tables_are_tables_whose_heads_and_names_stay_in_view(self):
+        stays = """return [...document.querySelectorAll("main .frame")].filter((frame) => {
+            const head = frame.querySelector("thead th"), shown = getComputedStyle(head);
+            frame.scrollTop = 1e6;
+            const stuck = Math.abs(head.getBoundingClientRect().top - frame.getBoundingClientRect().top) < 2 || frame.scrollTop === 0;
+            return shown.display !== "table-cell" || shown.position !== "sticky" || !stuck ||
+              frame.querySelectorAll("tbody tr:not(.group)").length > 1 && !frame.querySelector("thead button");
+          }).map((frame) => frame.getAttribute("aria-label"))"""
+        for width in (900, 1280, 1920):
+            self.open(width)
+            self.assertEqual(self.script(stays), [], width)
+
+    def test_no_heading_is_cut_on_paper(self):
+        self.open(A4, media="print")
+        split = """return [...document.querySelectorAll("main h2, main h3")].filter((heading) => {
+            const looks = getComputedStyle(heading);
+            return looks.breakInside !== "avoid" || looks.breakAfter !== "avoid";
+          }).map((heading) => heading.textContent)"""
+        self.assertEqual(self.script(split), [])
 
 
 if __name__ == "__main__":

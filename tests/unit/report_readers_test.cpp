@@ -56,6 +56,22 @@ TEST(Readers, AnOptionBesideTheDefaultIsNamedAtItsRowOrOnceForAll) {
   EXPECT_SILENT(page, "LGA policy=heat_map");
 }
 
+TEST(Readers, RowsOfSeveralRunsThatDifferHaveDifferentNames) {
+  FabricatedRun first, second;
+  for (auto& [run, epochs] : {std::pair(&first, 750), {&second, 20}}) {
+    Spec spec{"lga", 10};
+    spec.options = {{"epochs", epochs}, {"policy", "regression"}};
+    run->add(spec);
+  }
+  std::vector<report::Report> reports;
+  for (FabricatedRun* run : {&first, &second}) reports.push_back(report::write_report(run->save().path));
+  report::write_index(reports, first.path / "index.html");
+  const std::string page = read_file(first.path / "index.html");
+  EXPECT_SAYS(page, "LGA epochs=750</b>");
+  EXPECT_SAYS(page, "LGA epochs=20</b>");
+  EXPECT_SILENT(page, "policy=regression");
+}
+
 TEST(Readers, ThePageSaysWhatTheSuiteAsksAndWhatItsArmsAre) {
   FabricatedRun run;
   run.run["suite"] = "q2";

@@ -176,12 +176,15 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
-  verb->add_flag("--maintainer", a->maintainer, "build, check: with --against, vouched.json may differ");
+  verb->add_flag("--maintainer", a->maintainer,
+                 "build, check: with --against, vouched.json and labels.json may differ");
   verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
   verb->add_option("--reason", a->reason, "withdraw: why");
-  arrange(*verb, "", {{"ACTION", "ACTION"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
+  arrange(
+      *verb, "",
+      {{"ACTION", "add|verify|vouch|build|check|withdraw"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
   arrange(*verb, "add and withdraw", {{"--entry", "META.json"}, {"--rows", "ROW,..."}, {"--reason", "WORDS"}});
   arrange(*verb, "verify",
           {{"--by", "NAME"},

@@ -2,11 +2,13 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
@@ -90,12 +92,28 @@ Json description_of(const std::string& interpreter, const std::string& file) {
   return python;
 }
 
+// Of the file as text: its classes at the outermost level, for a message.
+std::vector<std::string> classes_of(const fs::path& file) {
+  std::vector<std::string> names;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line) && names.size() < 20;)
+    if (line.rfind("class ", 0) == 0) names.push_back(line.substr(6, line.find_first_of("(: ", 6) - 6));
+  if (names.empty()) names.emplace_back("no class");
+  return names;
+}
+
 }  // namespace
 
-bool is_python_method(const std::string& word) { return row_words(word).front().find(".py:") != std::string::npos; }
+bool is_python_method(const std::string& word) {
+  const std::string written = row_words(word).front();
+  return written.find(".py:") != written.npos || fs::path(written).extension() == ".py";
+}
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
   PluginInfo plugin;
+  if (written.find(".py:") == written.npos)
+    throw PluginError(
+        fmt::format("{0}: expected {0}:CLASS; it has: {1}", written, fmt::join(classes_of(written), ", ")));
   try {
     const Json json = description_of(interpreter, fs::absolute(written).string());
     const JsonReader reader(json, written);

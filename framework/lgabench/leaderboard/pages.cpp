@@ -70,11 +70,12 @@ Document index(const Suites& suites, std::size_t most) {
       "demonstrated. Every number is computed from the episodes in entries/."};
   Section enter{"enter", "How to enter"};
   enter.add<Paragraph>(
-      reading, {{"Run a suite's preset ", Span("leaderboard", report::Emphasis::code),
-                 " with your method, add the result, and send it as a pull request: ",
-                 Span::link("in ten minutes, with a real entry", "../../docs/entering-the-leaderboard.md"), ". ",
-                 Span::link("The rules", "../../docs/leaderboard.md"), " say what is taken and how it is checked, ",
-                 Span::link("the suites", "../../docs/suites.md"), " what is played."}});
+      reading,
+      {{"Run a suite's preset ", Span("leaderboard", report::Emphasis::code),
+        " with your method, add the result, and send it as a pull request: ",
+        Span::link("in ten minutes, with a real entry", "../../docs/entering-the-leaderboard.md"), ". See ",
+        Span::link("the rules", "../../docs/leaderboard.md"), " for what is accepted and how it is checked, and ",
+        Span::link("the suites", "../../docs/suites.md"), " for what is played."}});
   document.sections.push_back(std::move(enter));
   for (const auto& [suite, tables] : suites) {
     Section section{"suite-" + suite, suite};

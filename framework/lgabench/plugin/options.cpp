@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include <lgabench/core/suggest.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
@@ -64,8 +65,11 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
     if (!same_type) given.at(name).fail(type_of(usual));
     if (option.contains("values")) {
       const Json& values = option.at("values");
+      std::vector<std::string> texts;
+      for (const Json& one : values) texts.push_back(option_text(one));
       if (!contains(values, value))
-        given.at(name).fail(fmt::format("one of {} ({})", canonical(values), option.at("help").get<std::string>()));
+        given.at(name).fail(fmt::format("one of {} ({}){}", canonical(values), option.at("help").get<std::string>(),
+                                        suggestion(option_text(value), texts)));
     }
     if (option.contains("min") && value.get<double>() < option.at("min").get<double>())
       given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));

@@ -204,9 +204,9 @@ std::string arms_html(const Document& document) {
                                                       "src=\"data:image/png;base64,{1}\">",
                                                       escaped(arm.name), arm.png);
     if (arm.text.empty() && picture.empty()) continue;
-    text += fmt::format("<div>{}<dt>{}</dt><dd>{}</dd></div>\n", picture, escaped(arm.name), escaped(arm.text));
+    text += fmt::format("<li>{}<b>{}</b><span>{}</span></li>\n", picture, escaped(arm.name), escaped(arm.text));
   }
-  return text.empty() ? "" : "<dl class=arms aria-label=\"Arms of the test\">\n" + text + "</dl>\n";
+  return text.empty() ? "" : "<ul class=arms aria-label=\"Arms of the test\">\n" + text + "</ul>\n";
 }
 
 // JSON inside a script element: no text of it may end the element.

@@ -7,6 +7,7 @@
 #include <map>
 
 #include <lgabench/record/layout.hpp>
+#include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
 
@@ -65,6 +66,9 @@ Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
   for (const auto& item : settings)
     for (const Entry& entry : item.second) methods.push_back(entry.row->method);
   const MethodStyles styles(methods);
+  std::vector<const RunResults*> runs;
+  for (const Report& report : reports) runs.push_back(&report.run);
+  const std::vector<std::map<std::string, std::string>> names = told_names(runs);
   Grid grid;
   grid.name = "runs_success";
   grid.caption = "Mean success, best first; brackets: 95 % interval over test scenes and training seeds";
@@ -76,7 +80,8 @@ Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
                      [](const Entry& a, const Entry& b) { return *a.row->success > *b.row->success; });
     for (const Entry& entry : entries) {
       const Row& row = *entry.row;
-      TableCell method(Span(display_name(row.method), Emphasis::strong));
+      const std::string& name = names[static_cast<std::size_t>(entry.report - reports.data())].at(row.method);
+      TableCell method(Span(display_name(name), Emphasis::strong));
       method.style = styles(row.method);
       grid.rows.push_back(
           {words,

@@ -28,6 +28,14 @@ struct Rows {
   bool all_have(const std::string& option) const { return with.at(option) == cells.size(); }
 };
 
+// Those that a row's name says.
+std::set<std::string> told_options(const std::string& name) {
+  std::set<std::string> told;
+  const std::vector<std::string> words = row_words(name);
+  for (std::size_t i = 1; i < words.size(); ++i) told.insert(words[i].substr(0, words[i].find('=')));
+  return told;
+}
+
 bool is_set(const RunResults& run, const std::string& row, const std::string& option) {
   return run.record.settings.value(row, Json::object()).contains(option);
 }
@@ -47,13 +55,32 @@ std::map<std::string, std::string> told_names(const RunResults& run) {
   std::map<std::string, std::string> names;
   for (const auto& [row, cell] : rows.cells) {
     std::string& name = names[row] = row;
-    std::set<std::string> told;
-    const std::vector<std::string> words = row_words(row);
-    for (std::size_t i = 1; i < words.size(); ++i) told.insert(words[i].substr(0, words[i].find('=')));
+    const std::set<std::string> told = told_options(row);
     for (const auto& [option, value] : cell->options.items()) {
       if (told.count(option) > 0) continue;
       const bool own = is_set(run, row, option) && !rows.all_have(option) && !suite_sets(suite, *cell, option);
       if (rows.differ(option) || own) name += "+" + option + "=" + option_text(value);
+    }
+  }
+  return names;
+}
+
+std::vector<std::map<std::string, std::string>> told_names(const std::vector<const RunResults*>& runs) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> values;  // by method and option
+  std::vector<Rows> all;
+  for (const RunResults* run : runs)
+    for (const auto& row : all.emplace_back(*run).cells)
+      for (const auto& [option, value] : row.second->options.items())
+        values[{row.second->id, option}].insert(option_text(value));
+  std::vector<std::map<std::string, std::string>> names;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    names.push_back(told_names(*runs[i]));
+    for (auto& [row, name] : names.back()) {
+      const CellResult& cell = *all[i].cells.at(row);
+      const std::set<std::string> told = told_options(name);
+      for (const auto& [option, value] : cell.options.items())
+        if (told.count(option) == 0 && values.at({cell.id, option}).size() > 1)
+          name += "+" + option + "=" + option_text(value);
     }
   }
   return names;

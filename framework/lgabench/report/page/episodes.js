@@ -130,8 +130,8 @@ function show(row, outcome = "", episode = "") {
   $("outcome").innerHTML = `<option value="">all outcomes</option>` + [...counts].map(([word, n]) =>
     `<option${word === outcome ? " selected" : ""} value="${escaped(word)}">${escaped(word)} (${n})</option>`).join("");
   $("all").hidden = !one;
-  $("previous").textContent = one ? "Previous episode" : "Row before";
-  $("next").textContent = one ? "Next episode" : "Row after";
+  $("previous").textContent = one ? "Previous episode" : "Previous row";
+  $("next").textContent = one ? "Next episode" : "Next row";
   if (one) body.innerHTML = single(one);
   else body.replaceChildren(listOf(shown));
   tip.hidden = true;

@@ -8,7 +8,7 @@ const boards = [...document.querySelectorAll("[id^=table] table.sortable")]
   .filter((table) => !table.closest("section").id.includes("-") || table.closest("section").id.endsWith("-scenarios"));
 if (boards.length) {
   const rows = boards.flatMap((table) => [...table.tBodies].flatMap((body) => [...body.rows]));
-  const wordsOf = (row) => row.textContent.toLowerCase().split(/[\s,;]+/);
+  const wordsOf = (row) => [...row.cells].map((cell) => cell.textContent).join(" ").toLowerCase().split(/[\s,;]+/);
   const wanted = document.createElement("input"), all = document.createElement("input"), label = document.createElement("label");
   wanted.type = "search";
   wanted.placeholder = wanted.ariaLabel = "Find rows: words of their names";
