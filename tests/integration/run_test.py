@@ -47,6 +47,7 @@ class BadInput(Case):
             (["q1", "--preset", "nope"], r'q1.json: no preset "nope", expected one of: leaderboard, paper, paper_text, smoke'),
             (["q1", "--set", "lga.epocs=3"], r'unknown member "epocs" \(did you mean "epochs"\?\), expected one of: .*epochs'),
             (["q1", "--set", "lga.epochs=many"], r"/epochs: expected a whole number, got \"many\""),
+            (["q1", "--set", "lga.epochs=soon"], r"/epochs: expected a whole number, got \"soon\""),
             (["q1", "--set", "lga.epochs=-3"], r"/epochs: expected a whole number of 1 or more, got -3"),
             (["q1", "--set", "*.epocs=3"], r'--set: /\*: unknown member "epocs".*, expected one of: .*epochs'),
             (["q1", "--set", "other.x=1"], r"--set other: expected a method of this run: lga, lga_hill, human"),

@@ -462,6 +462,44 @@ TEST(Training, TakesWholeBatchesAndLogsEveryTenthPassAndTheLast) {
   EXPECT_EQ(epochs, (std::vector<int>{10, 20, 23}));
 }
 
+// Its loss falls by a hundredth of itself a pass, and from one pass on stays.
+class Falling : public Learner {
+ public:
+  explicit Falling(int passes) : left_(passes) {}
+  const std::vector<float>& predict(const Samples&) override { return actions_; }
+  double backward(const Samples&, const std::vector<int>&) override { return loss_; }
+  void update(double) override {
+    if (left_-- > 0) loss_ *= .99;
+  }
+  std::vector<float> parameters() const override { return actions_; }
+
+ private:
+  int left_;
+  double loss_ = 1;
+  std::vector<float> actions_;
+};
+
+TEST(Training, EndsWhereItsLossNoLongerFalls) {
+  struct Log : TrainingLog {
+    void epoch(int epochs, long long, double) override { last = epochs; }
+    int last = 0;
+  };
+  const Samples samples(SampleShape{}, 5);
+  const auto epochs = [&samples](int falls, bool until_converged) {
+    Falling learner(falls);
+    Log log;
+    TrainingOptions options;
+    options.until_converged = until_converged;
+    train(learner, samples, options, 0, log);
+    return log.last;
+  };
+  EXPECT_EQ(epochs(200, false), 750);
+  EXPECT_EQ(epochs(0, true), 100) << "no sooner than two windows";
+  EXPECT_GT(epochs(200, true), 250);
+  EXPECT_LT(epochs(200, true), 300);
+  EXPECT_EQ(epochs(10000, true), 750) << "not longer either";
+}
+
 TEST(Training, OptionsChangeWhatIsLearned) {
   const auto data = demonstrations(10);
   const PolicyInputs seen{{Picture::mask}};

@@ -28,6 +28,7 @@ void print(const PluginInfo& plugin) {
     to_stdout("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
               option["source"].get<std::string>());
     if (option.contains("min")) to_stdout("      {} or more\n", canonical(option["min"]));
+    if (option.contains("words")) to_stdout("      or one of {}\n", canonical(option["words"]));
     if (option.contains("values")) to_stdout("      one of {}\n", canonical(option["values"]));
     if (option.value("framework", false)) to_stdout("      the framework's: a suite may set it for all methods\n");
     if (option.contains("needs"))

@@ -32,7 +32,11 @@ CloningOptions read_cloning_options(const Json& json) {
   constexpr int most = 1'000'000;
   const JsonReader options(json, "options");
   CloningOptions read;
-  read.training.epochs = static_cast<int>(options.at("epochs").integer(1, most));
+  const JsonReader epochs = options.at("epochs");
+  if (epochs.json().is_string())
+    read.training.until_converged = named<bool>(epochs, {{"converged", true}});
+  else
+    read.training.epochs = static_cast<int>(epochs.integer(1, most));
   read.training.batch_size = static_cast<int>(options.at("batch_size").integer(1, most));
   read.training.learning_rate = options.at("learning_rate").number();
   read.training.batches =

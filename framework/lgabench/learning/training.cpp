@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <lgabench/core/random.hpp>
 
@@ -18,6 +19,20 @@ std::vector<int> batch_order(Batches batches, std::uint64_t seed, int epoch, int
   return drawn;
 }
 
+namespace {
+
+// Whether the loss has stopped falling; `losses` of each pass so far.
+bool converged(const std::vector<double>& losses) {
+  constexpr std::ptrdiff_t window = 50;
+  constexpr double least_part = .01;
+  if (losses.size() < 2 * window) return false;
+  const double now = std::accumulate(losses.end() - window, losses.end(), 0.),
+               before = std::accumulate(losses.end() - 2 * window, losses.end() - window, 0.);
+  return now > (1 - least_part) * before;
+}
+
+}  // namespace
+
 void train(Learner& learner, const Samples& samples, const TrainingOptions& asked, std::uint64_t seed,
            TrainingLog& log) {
   if (samples.rows == 0) throw MethodError("training: expected at least one sample, got none");
@@ -26,6 +41,7 @@ void train(Learner& learner, const Samples& samples, const TrainingOptions& aske
   const int batch_rows = std::min(options.batch_size, samples.rows), batches = samples.rows / batch_rows;
   std::vector<int> batch(static_cast<std::size_t>(batch_rows));
   long long steps = 0;
+  std::vector<double> losses;
   const double all_steps = 1. * options.epochs * batches;
   for (int epoch = 1; epoch <= options.epochs; ++epoch) {
     const std::vector<int> order = batch_order(options.batches, seed, epoch, samples.rows);
@@ -40,7 +56,10 @@ void train(Learner& learner, const Samples& samples, const TrainingOptions& aske
     const double mean = total / batches;
     if (!std::isfinite(mean))
       throw MethodError(fmt::format("training diverged: the loss of epoch {} is {}", epoch, mean));
-    if (epoch % 10 == 0 || epoch == options.epochs) log.epoch(epoch, steps, mean);
+    losses.push_back(mean);
+    const bool last = epoch == options.epochs || (options.until_converged && converged(losses));
+    if (epoch % 10 == 0 || last) log.epoch(epoch, steps, mean);
+    if (last) break;
   }
 }
 

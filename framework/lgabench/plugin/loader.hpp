@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "needs"?, "framework"?}}
+  Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "words"?, "needs"?, "framework"?}}
   std::string sha256;  // of the file
   std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
   /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "user_base",

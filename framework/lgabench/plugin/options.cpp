@@ -61,6 +61,10 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
     Json value = given.has(name) ? overrides.at(name) : usual;
     // A fractional option keeps its type, so that 1 and 1.0 are one configuration.
     if (usual.is_number_float() && value.is_number()) value = value.get<double>();
+    if (value.is_string() && option.contains("words") && contains(option.at("words"), value)) {
+      resolved[name] = std::move(value);
+      continue;
+    }
     const bool same_type = value.type() == usual.type() || (value.is_number_integer() && usual.is_number_integer());
     if (!same_type) given.at(name).fail(type_of(usual));
     if (option.contains("values")) {

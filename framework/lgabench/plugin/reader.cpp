@@ -146,7 +146,7 @@ Json read_options(const std::string& options_json) {
     if (const auto said = options.find(questionnaire); said != options.end() && said->is_boolean()) options.erase(said);
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
-      reader.only({"default", "help", "source", "values", "min", "needs", "framework"});
+      reader.only({"default", "help", "source", "values", "min", "words", "needs", "framework"});
       const Json& usual = reader.at("default").json();
       if (usual.is_structured() || usual.is_null()) reader.at("default").fail("a text, number or boolean");
       reader.at("help").string();
@@ -158,6 +158,8 @@ Json read_options(const std::string& options_json) {
       }
       if (reader.has("min") && (!usual.is_number() || usual.get<double>() < reader.at("min").number()))
         reader.at("min").fail("a number, not above a default that is one");
+      if (reader.has("words") && (!usual.is_number() || reader.at("words").strings().empty()))
+        reader.at("words").fail("texts, beside a default that is a number");
       if (reader.has("needs")) check_needs(reader, options);
       if (reader.has("framework")) reader.at("framework").boolean();
     }
