@@ -229,6 +229,10 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
       {"something_striped_that_has_no_red_on_it", {"claude_clutter", "claude_clutter"}},
       {"something_that_looks_like_stone", {"claude_clutter", "claude_clutter"}},
       {"something_with_a_hole_in_the_middle", {"claude_clutter", "claude_clutter"}},
+      {"many_hearts", {"claude", "claude"}},
+      {"many_letters", {"claude", "claude"}},
+      {"many_vessels", {"claude", "claude"}},
+      {"many_vowels", {"claude", "claude"}},
       {"bring_fruit", {"claude", "claude"}},
       {"throw_away_drink", {"claude", "claude"}}};
   int of_study = 0;

@@ -255,7 +255,7 @@ std::string refusal(const Json& json) {
 TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
-  EXPECT_EQ(pick_and_place, 18);  // q1 has 9, clutter 6 more, q2 two, q3 one
+  EXPECT_EQ(pick_and_place, 22);  // q1 has 9, clutter 6 more, many_commands 4, q2 two, q3 one
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(s.commands[0].truth.target.textures.size(), 83u);  // ALL
