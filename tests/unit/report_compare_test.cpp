@@ -50,7 +50,8 @@ TEST(Compare, EpisodesWithoutAnActionAreNotTheSameAction) {
   FabricatedRun run, engines;
   run.add(silent);
   for (const ComparedRow& row : compared(run, run).rows) EXPECT_FALSE(row.total.same_actions);
-  for (const report::Row& row : report::summarize(report::read_run(run.path)).tables[0].rows)
+  const report::Summary summary = report::summarize(report::read_run(run.path));
+  for (const report::Row& row : summary.tables[0].rows)
     if (row.shift) {
       EXPECT_FALSE(row.shift->same_actions);
     }
