@@ -27,8 +27,8 @@ struct Competitor {
   std::string id;
   std::string name;  // its row's: the id, and what tells it from other rows of that id (harness/competitors.hpp)
   std::string version;
-  Json options = Json::object();  // every option, defaults included
-  std::string asks{};             // whom beside the language model: see LGABENCH_METHOD_ASKING
+  Json options = Json::object();       // every option, defaults included
+  std::string asks{};                  // whom beside the language model: see LGABENCH_METHOD_ASKING
   std::optional<ActingMethod> acts{};  // another method, where this one selects alone
 
   bool is_reference() const { return kind == "reference"; }
