@@ -185,6 +185,9 @@ class Forgeries(Case):
         file.unlink()
         self.assertIn(said, self.check(expect=1))
         file.write_text(text)
+        (self.board / "tracks.json").write_text(json.dumps({"open": ["q2-leaderboard"]}))
+        self.assertIn("tracks.json: changed since HEAD: it is the maintainers'", self.check(expect=1))
+        (self.board / "tracks.json").unlink()
         (self.rival / "verifications.jsonl").write_text("")
         self.assertIn("verifications.jsonl: a verification changed since HEAD", self.check(expect=1))
 

@@ -298,6 +298,11 @@ class Refusals(Board):
                                  "add a run that tells none: fixture_constant")
         self.add()
 
+    def test_errors_that_were_made_in_what_was_selected(self):
+        self.play("wrong", "--selection-errors", "missing=0.5")
+        self.assertRegex(" ".join(self.refused("wrong")),
+                         r"errors were made in what was selected \(selection_errors\): fixture_constant.* and \d+ more cells")
+
     def test_an_edited_file(self):
         file = self.cell() / "episodes.jsonl"
         file.write_text(file.read_text().replace('"success":false', '"success":true').replace('"failure":"missed_object"', '"failure":"none"'))

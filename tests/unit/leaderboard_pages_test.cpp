@@ -98,7 +98,8 @@ TEST(Board, APageBeginsWithTheBestRowOfEachMethod) {
   EXPECT_SAYS(page.substr(more, page.find("</tr>", more) - more), "method_of_a, loss=squared");
   EXPECT_SILENT(index, "loss=squared");
   EXPECT_SAYS(index, "2 of 3 entries, the best of each method");
-  for (const char* words : {"not yet replayed", "claimed by", "used as submitted", "does not say that they are equal"})
+  for (const char* words :
+       {"not yet replayed", "claimed by", "answers as submitted", "does not say that they are equal"})
     EXPECT_SAYS(index, words);
 }
 

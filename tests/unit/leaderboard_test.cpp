@@ -8,6 +8,7 @@
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/standings.hpp>
+#include <lgabench/leaderboard/suite_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
@@ -369,6 +370,9 @@ TEST(Tracks, AreReadAndRefuseAPresetInTwo) {
   EXPECT_EQ(tracks.at("s-l").kind, Track::open);
   write_file(board.path / "tracks.json", R"({"abstraction": {"s-l": []}, "open": ["s-l"]})");
   EXPECT_SAYS(message_of<InputError>([&] { read_tracks(board.path); }), "/open/0: expected each preset in one track");
+  const Tracks other{{small_setting().name(), {Track::abstraction, {"hard", "near"}}}};
+  EXPECT_SAYS(message_of<InputError>([&] { expect_arms(board.path, other, small_setting()); }),
+              "tracks.json: /abstraction/q1-board/1: expected an arm that the preset has, got \"near\"");
 }
 
 TEST(Standings, EpisodesOfAFailedCellAreLost) {
@@ -415,6 +419,23 @@ TEST(Standings, RowsThatAskForTheTruthOrTheNetworkAreNotRanked) {
   EXPECT_EQ(why_not_ranked(entry), "");
   entry.phi["heart"][0][0]["selection"]["provenance"] = "truth";
   EXPECT_EQ(why_not_ranked(entry), "the truth stands in for people");
+}
+
+TEST(Standings, AnswersAsSubmittedHaveNoRankAndInfluenceNone) {
+  std::vector<Entry> entries{replayed_entry(small_setting(), "a", .9), replayed_entry(small_setting(), "b", .3)};
+  const auto ranked = [&entries] { return standings({&entries[0], &entries[1]}, {Track::open}); };
+  EXPECT_EQ(ranked()[1].rank, 2);
+  entries[0].identity.answers = FileAnswers{std::string(64, 'd')};
+  entries[0].vouched.clear();  // another identity: what was replayed is not this one
+  EXPECT_EQ(why_not_ranked(entries[0]), "not yet replayed");
+  for (const Json& line : entries[0].verifications) entries[0].vouched.insert(line_hash(line));
+  const std::vector<Standing> all = ranked();
+  EXPECT_EQ(all[0].rank, 1);
+  EXPECT_EQ(all[0].entry, &entries[1]) << "those that are ranked come first";
+  EXPECT_EQ(all[1].not_ranked, as_submitted);
+  EXPECT_EQ(tier_and_marks(all[1]), "replayed; answers as submitted");
+  entries[0].identity.row.kind = "reference";
+  EXPECT_FALSE(entries[0].has_answers_as_submitted()) << "it asks nobody";
 }
 
 }  // namespace

@@ -177,7 +177,7 @@ void add_leaderboard(CLI::App& app, int& exit) {
   add_plugin_path(*verb, a->plugin_path);
   verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
   verb->add_flag("--maintainer", a->maintainer,
-                 "build, check: with --against, vouched.json and labels.json may differ");
+                 "build, check: with --against, vouched.json, labels.json and tracks.json may differ");
   verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
       ->delimiter(',');
   verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");

@@ -153,7 +153,7 @@ void expect_frames(const fs::path& board, const std::vector<Entry>& entries, con
   const std::map<fs::path, std::string> made = made_files(board, entries, {});
   for (const auto& item : fs::directory_iterator(board)) {
     const fs::path file = item.path(), name = file.filename();
-    if (name == "entries" || name == "answers" || name == vouched_file || name == labels_file ||
+    if (name == "entries" || name == "answers" || name == vouched_file || name == labels_file || name == tracks_file ||
         name.string()[0] == '.')
       continue;
     const auto before = git(board, {"show", fmt::format("{}:./{}", revision, name.string())});

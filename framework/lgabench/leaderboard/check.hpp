@@ -7,6 +7,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/leaderboard/labels.hpp>
+#include <lgabench/leaderboard/tracks.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -18,7 +19,7 @@ struct Checked {
 };
 
 /// Files of the board that nobody else's request may change.
-inline constexpr std::array maintainers_files{vouched_file, labels_file};
+inline constexpr std::array maintainers_files{vouched_file, labels_file, tracks_file};
 
 struct CheckOptions {
   std::string against;      // a revision of git, whose outcomes must not have changed; "": none

@@ -85,6 +85,10 @@ fs::path Entry::place() const {
 
 std::string Entry::hash() const { return sha256(id() + "\n" + cells_text(*this)); }
 
+bool Entry::has_answers_as_submitted() const {
+  return !identity.row.is_reference() && std::holds_alternative<FileAnswers>(identity.answers);
+}
+
 bool Entry::was_replayed() const {
   return std::any_of(verifications.begin(), verifications.end(),
                      [this](const Json& line) { return line.at("kind") == "replay" && counts(line); });

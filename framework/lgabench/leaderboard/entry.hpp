@@ -75,6 +75,8 @@ struct Entry {
   /// Whether the maintainers vouch for the line.
   bool counts(const Json& line) const { return vouched.count(line_hash(line)) > 0; }
   bool is_withdrawn() const { return !withdrawn.is_null() && counts(withdrawn); }
+  /// Whether a method's answers are a file that its authors wrote: whoever gave them cannot be asked again.
+  bool has_answers_as_submitted() const;
   /// Whether a replay counts, whatever it found.
   bool was_replayed() const;
   /// What replays that count make it; one that differs is not outvoted.

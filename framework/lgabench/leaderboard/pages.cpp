@@ -203,7 +203,9 @@ Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const 
 
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents) {
-  const Suites suites = suites_of(entries, read_labels(board), read_tracks(board));
+  const Tracks tracks = read_tracks(board);
+  for (const Entry& entry : entries) expect_arms(board, tracks, entry.setting);
+  const Suites suites = suites_of(entries, read_labels(board), tracks);
   std::map<fs::path, std::string> files;
   files[board / "README.md"] = markdown(index(suites, all_rows));
   files[board / "index.html"] = html(index(suites, first_rows), Json::object(), "leaderboard.js");

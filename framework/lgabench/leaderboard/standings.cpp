@@ -158,6 +158,7 @@ std::string why_not_ranked(const Entry& entry) {
         const std::string provenance = command.at("selection").at("provenance");
         if (provenance == "truth" || provenance == "simulated_edit") return "the truth stands in for people";
       }
+  if (entry.has_answers_as_submitted()) return as_submitted;
   return "";
 }
 

@@ -30,6 +30,9 @@ struct Standing {
   double lm_queries = 0, lm_tokens = 0, learn_s = 0;  // of a cell that did not fail, on average
 };
 
+/// The mark of an entry whose answers are a file that its authors wrote, which may be a copy of the truth.
+inline constexpr const char* as_submitted = "answers as submitted";
+
 /// Why an entry has no place among the ranked: "" for one that has.
 std::string why_not_ranked(const Entry& entry);
 

@@ -82,11 +82,15 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
   return {names, labels};
 }
 
-// Whether each is the first of its method: the best, as rows stand by rank and success.
+// Whether each is the first of its method: the best, as rows stand by rank and success. Each file of answers that
+// somebody submits competes for itself.
 std::vector<bool> best_of(const std::vector<Standing>& all) {
   std::set<std::string> known;
   std::vector<bool> best;
-  for (const Standing& s : all) best.push_back(known.insert(s.entry->identity.row.own_name()).second);
+  for (const Standing& s : all) {
+    const std::string answers = s.entry->has_answers_as_submitted() ? s.entry->identity.answers_sha256 : "";
+    best.push_back(known.insert(s.entry->identity.row.own_name() + " " + answers).second);
+  }
   return best;
 }
 
@@ -239,15 +243,22 @@ std::string success_bits(const Entry& entry) {
   return base64(bytes);
 }
 
+// The board's copy of the answers that a row is based on; "" where they are shipped, or there are none.
+std::string kept_answers_of(const Identity& identity) {
+  const std::string ending = kept_ending(identity.answers);
+  return ending.empty() ? "" : "answers/" + identity.answers_sha256 + ending;
+}
+
 std::string command_of(const Entry& entry) {
   const Identity& identity = entry.identity;
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
-  const std::string ending = kept_ending(identity.answers), kept = "answers/" + identity.answers_sha256 + ending;
-  words.insert(words.end(), {"--answers", ending == ".json"    ? kept
-                                          : ending == ".jsonl" ? to_string(CassetteAnswers{kept})
-                                                               : to_string(identity.answers)});
+  const std::string kept = kept_answers_of(identity);
+  words.insert(words.end(), {"--answers", kept.empty() ? to_string(identity.answers)
+                                          : std::holds_alternative<FileAnswers>(identity.answers)
+                                              ? kept
+                                              : to_string(CassetteAnswers{kept})});
   return shell_line(words);
 }
 
@@ -282,6 +293,7 @@ std::string rank_text(const Standing& standing) { return standing.rank ? std::to
 std::string tier_and_marks(const Standing& s) {
   std::vector<std::string> words{to_string(s.entry->tier())};
   if (!s.not_ranked.empty() && !s.entry->identity.row.is_reference()) words.push_back(s.not_ranked);
+  if (s.entry->has_answers_as_submitted() && s.not_ranked != as_submitted) words.emplace_back(as_submitted);
   const std::string confined = s.entry->evidence.front().at("confinement");
   if (confined.rfind("Landlock ", 0) != 0 || confined.find("no ") != std::string::npos)
     words.emplace_back("unconfined");
@@ -350,8 +362,11 @@ Section words_of_the_board() {
         {"not yet replayed", "what the files of an entry claim; nobody has played it again, and it has no rank."},
         {"claimed by", "somebody says so; the maintainers have not confirmed it."},
         {"answers",
-         "whose words say what matters: recorded with the benchmark, or a file that the entry brings and "
-         "that is used as submitted."},
+         "whose words say what matters: recorded with the benchmark, a language model’s replies, or a file that the "
+         "entry brings."},
+        {as_submitted,
+         "that file is used as it came. Nobody can ask whoever gave the answers again, and the truth of shipped "
+         "commands is public, so the file may be a copy of it: the row has no rank."},
         {"the truth stands in for people",
          "the row needs people’s answers, and was given the true features: an upper "
          "bound, without a rank."},
@@ -417,6 +432,7 @@ Json suite_data(const std::vector<NamedTable>& tables) {
            {"learns", learns(entry.identity.row)},
            {"version", entry.identity.row.version},
            {"answers", to_string(entry.identity.answers)},
+           {"kept_answers", kept_answers_of(entry.identity)},
            {"command", command_of(entry)},
            {"authors", entry.about.at("authors")},
            {"license", entry.about.at("license")},

@@ -1,12 +1,16 @@
 #include <lgabench/leaderboard/tracks.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include <lgabench/core/files.hpp>
 
 namespace lgabench::leaderboard {
 
 Tracks read_tracks(const fs::path& board) {
-  const fs::path file = board / "tracks.json";
-  if (!fs::exists(file)) return {};
+  const fs::path file = board / tracks_file;
+  if (!fs::exists(fs::symlink_status(file))) return {};
   const Json json = read_json(file, Links::refused);
   const JsonReader reader(json, file.string());
   reader.only({"abstraction", "open"});
@@ -23,6 +27,16 @@ Tracks read_tracks(const fs::path& board) {
   if (reader.has("open"))
     for (const JsonReader& preset : reader.at("open").elements()) add(preset, preset.string(), {Track::open, {}});
   return tracks;
+}
+
+void expect_arms(const fs::path& board, const Tracks& tracks, const Setting& setting) {
+  const std::vector<std::string> arms = track_of(tracks, setting).arms;
+  for (std::size_t i = 0; i < arms.size(); ++i)
+    if (std::none_of(setting.scenarios.begin(), setting.scenarios.end(), [&](const Setting::Scenario& scenario) {
+          return std::find(scenario.arms.begin(), scenario.arms.end(), arms[i]) != scenario.arms.end();
+        }))
+      throw InputError(fmt::format("{}: /abstraction/{}/{}: expected an arm that the preset has, got \"{}\"",
+                                   (board / tracks_file).string(), setting.name(), i, arms[i]));
 }
 
 Track track_of(const Tracks& tracks, const Setting& setting) {

@@ -9,6 +9,8 @@
 
 namespace lgabench::leaderboard {
 
+inline constexpr const char* tracks_file = "tracks.json";
+
 /// What competes in a table. abstraction: what is selected, while the shipped policy learns and acts; open: all that
 /// acts; reproduction, every preset that is in no track: methods with one policy among themselves.
 struct Track {
@@ -21,6 +23,8 @@ using Tracks = std::map<std::string, Track>;
 
 /// Those of the board's tracks.json; none where there is no such file. @throws InputError with file and place.
 Tracks read_tracks(const std::filesystem::path& board);
+/// @throws InputError with file and place for an arm of the setting's track that none of its scenarios has.
+void expect_arms(const std::filesystem::path& board, const Tracks& tracks, const Setting& setting);
 
 /// The setting's.
 Track track_of(const Tracks& tracks, const Setting& setting);

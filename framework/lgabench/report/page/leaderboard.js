@@ -74,7 +74,8 @@ function fill(body, entry, setting, scenario) {
     `${entry.learns ? ", a method of your own with <code>--plugin-path</code>" : ""}:</p>` +
     `<pre>${escaped(`${entry.command} --scenarios ${scenario} --out again`)}</pre>` +
     `<p>Why each episode failed, and everything else: <a href="${escaped(entry.place)}/cells.jsonl">cells.jsonl</a>, ` +
-    `<a href="${escaped(entry.place)}/entry.json">entry.json</a>.</p>` +
+    `<a href="${escaped(entry.place)}/entry.json">entry.json</a>` +
+    `${entry.kept_answers ? `, <a href="${escaped(entry.kept_answers)}">the answers</a>` : ""}.</p>` +
     `<div class="frame"><table><caption>Episodes in their order: a whole bar is a success</caption><thead><tr>` +
     ["layout", "arm", "demonstrations", "training seed", "successes", "episodes"].map((head) => `<th scope="col">${head}</th>`).join("") +
     `</tr></thead><tbody>${lines.join("")}</tbody></table></div>`;

@@ -1,0 +1,162 @@
+"""A row of answers alone, from a file that somebody wrote to a board's pages: shown, marked, and without a rank.
+
+By hand: python3 board_answers_test.py AnswersAlone
+"""
+import hashlib
+import json
+import re
+import shlex
+import unittest
+
+from case import BUILD
+from leaderboard_test import META, SUITE, Board
+
+PRESET = {"scene_seed": 77, "test_scenes": "per_seed"}
+SMALL = {**SUITE, "methods": ["lga"], "demonstrations": [2], "seeds": [0], "presets": {"abstraction": PRESET}}
+TRACKS = {"abstraction": {"tiny-abstraction": ["test"]}}
+
+
+def command_of(scenario):
+    file = BUILD / "share/lgabench/scenarios" / (scenario + ".json")
+    command, = json.loads(file.read_text())["commands"]
+    return command
+
+
+def answers_of(model, targets):
+    """A file of answers: the scenario's target set by its name."""
+    return {"model": model, "space": "tabletop",
+            "answers": [{"scenario": name, "command": command_of(name)["utterance"], "target": target}
+                        for name, target in targets.items()]}
+
+
+class AnswersAlone(Board):
+    """Two files of answers, of a model that does not exist, and copied from the truth; a run with each."""
+    MADE_UP = answers_of("made-up-1", {"heart": {"object_types": ["heart"], "textures": ["red", "blue"]},
+                                       "letter": {"object_types": ["letter A", "letter E", "star"], "textures": "ALL"}})
+    TRUTH = answers_of("made-up-2", {name: command_of(name)["truth"]["target"] for name in SMALL["scenarios"]})
+
+    def prepare(self):
+        super().prepare()
+        (self.dir / "data/suites/tiny.json").write_text(json.dumps(SMALL))
+        for name, answers in (("made_up", self.MADE_UP), ("truth", self.TRUTH)):
+            (self.dir / f"{name}.json").write_text(json.dumps(answers))
+            source = {"file": f"{name}.json", "sha256": self.digest(name)}
+            about = {**META, "source": source, "label": answers["model"], "answers": "written by hand"}
+            (self.dir / f"{name}_entry.json").write_text(json.dumps(about))
+        self.track(TRACKS)
+
+    def play(self, out):
+        for name in "made_up", "truth":
+            self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga", "--answers", f"{name}.json",
+                      "--no-reference", "--out", f"{out}/{name}")
+
+    def digest(self, name):
+        return hashlib.sha256((self.dir / f"{name}.json").read_bytes()).hexdigest()
+
+    def track(self, tracks):
+        (self.dir / "board").mkdir(exist_ok=True)
+        (self.dir / "board/tracks.json").write_text(tracks if isinstance(tracks, str) else json.dumps(tracks))
+
+    def enter(self, name):
+        """Adds the run's one row; its place on the board."""
+        said = self.leaderboard("add", f"run/{name}", "--entry", f"{name}_entry.json").stdout
+        self.assertRegex(said, r"^added entries/lga/[0-9a-f]{16}/tiny-abstraction\n$")
+        return self.dir / "board" / said.split()[1]
+
+    def row(self, label, file="README.md"):
+        line, = [line for line in (self.dir / "board" / file).read_text().splitlines() if f"| {label} |" in line]
+        return [cell.strip() for cell in line.strip("|").split("|")]
+
+    def test_a_made_up_models_answers_are_entered_verified_and_marked(self):
+        self.take_run()
+        place, digest = self.enter("made_up"), self.digest("made_up")
+        kept = self.dir / "board/answers" / (digest + ".json")
+        self.assertEqual(kept.read_bytes(), (self.dir / "made_up.json").read_bytes())
+        entry = json.loads((place / "entry.json").read_text())
+        self.assertEqual(entry["identity"]["answers"], {"source": "file:" + digest, "sha256": digest})
+        self.assertEqual((entry["identity"]["acts"]["id"], entry["identity"]["acts"]["options"]["policy"]), ("lga", "heat_map"))
+        selected, = entry["phi"]["letter"][0]
+        self.assertEqual((selected["selection"]["source"], selected["selection"]["target"]["object_types"]),
+                         ("made-up-1", ["letter A", "letter E", "star"]))
+
+        self.leaderboard("build")
+        self.assertEqual(self.row("made-up-1")[2], "recomputed; not yet replayed; answers as submitted")
+        (self.dir / "made_up.json").unlink()  # the board has what its entry stands on
+        said = self.leaderboard("verify", "--by", "B. Reader").stdout
+        self.assertRegex(said, r"^agrees  entries/lga/\S+: 2 of 2 cells bit-identical, 0 of 8 episodes ended otherwise")
+        self.leaderboard("vouch", entry["id"], "1")
+        self.leaderboard("build")
+        self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
+        self.assertEqual([self.row("made-up-1")[i] for i in (0, 3)], ["–", "replayed; answers as submitted"])
+        for file in "README.md", "index.html", "tiny.html":
+            page = (self.dir / "board" / file).read_text()
+            self.assertIn("answers as submitted", page.split("What the words mean")[0], file)
+            self.assertIn("may be a copy of it", page.split("What the words mean")[-1], file)
+        page = (self.dir / "board/tiny.html").read_text()
+        shown, = json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])["entries"]
+        self.assertEqual(shown["kept_answers"], f"answers/{digest}.json")
+        words = shlex.split(shown["command"])[1:]
+        self.assertEqual(words[-2:], ["--answers", shown["kept_answers"]])
+        self.call(*words[:-1], "board/" + words[-1], "--scenarios", "letter", "--out", "again")
+        keys = [json.loads(line)["key"] for line in (place / "cells.jsonl").read_text().splitlines()]
+        self.assertEqual(list(self.cells("again")), keys[1:], "the page's command plays the entry's cell")
+        self.assertIn(",answers as submitted,", (self.dir / "board/leaderboard.csv").read_text())
+
+        # The cells follow from these bytes.
+        kept.write_text(kept.read_text().replace('"star"', '"moon"'))
+        self.assertIn(f"{kept.name} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
+        self.assertIn("does not have the bytes that its name says",
+                      self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr)
+
+    def test_a_copy_of_the_truth_is_taken_and_ranked_in_no_track(self):
+        self.take_run()
+        for name in "made_up", "truth":
+            self.enter(name)
+        self.replay()
+        entries = {json.loads(file.read_text())["about"]["label"]: json.loads(file.read_text())
+                   for file in (self.dir / "board").glob("entries/lga/*/*/entry.json")}
+        for scenario in SMALL["scenarios"]:
+            command, = entries["made-up-2"]["phi"][scenario][0]
+            for part in command["quality"]["target"].values():
+                self.assertEqual((part["precision"], part["recall"]), (1, 1))
+        for tracks in TRACKS, {"open": ["tiny-abstraction"]}, {}:
+            self.track(tracks)
+            self.leaderboard("build")
+            self.assertIn("2 entries, 0 problems", self.leaderboard("check").stdout)
+            for label in entries:
+                self.assertEqual([self.row(label)[i] for i in (0, 3)], ["–", "replayed; answers as submitted"], (label, tracks))
+        # Each file competes for itself: neither is hidden as another row of one method.
+        self.assertNotIn("<tr class=more>", (self.dir / "board/tiny.html").read_text())
+
+    def test_other_bytes_than_the_run_was_played_on_are_not_taken(self):
+        self.take_run()
+        kept = self.dir / "run/made_up/answers" / (self.digest("made_up") + ".json")
+        kept.write_text(kept.read_text().replace('"star"', '"moon"'))
+        refused = self.leaderboard("add", "run/made_up", "--entry", "made_up_entry.json", expect=2)
+        self.assertIn("does not have the bytes that its name says", refused.stderr)
+        kept.unlink()
+        refused = self.leaderboard("add", "run/made_up", "--entry", "made_up_entry.json", expect=1)
+        self.assertIn(f"refused: file:{kept.stem}: the file is not in answers/ of the run", refused.stderr)
+        self.assertFalse((self.dir / "board/entries").exists())
+
+    def test_tracks_that_are_malformed_are_one_line_with_its_place(self):
+        self.take_run()
+        self.enter("made_up")
+        for wrong, place in (("{", ""), ("[]", "/: expected an object"), ({"opne": []}, '/: unknown member "opne" (did you mean "open"?)'),
+                             ({"open": "tiny-abstraction"}, "/open: expected an array"), ({"open": [1]}, "/open/0: expected a string"),
+                             ({"abstraction": ["tiny-abstraction"]}, "/abstraction: expected an object: arms by preset"),
+                             ({"abstraction": {"tiny-abstraction": "test"}}, "/abstraction/tiny-abstraction: expected an array"),
+                             ({**TRACKS, "open": ["tiny-abstraction"]}, "/open/0: expected each preset in one track"),
+                             ({"abstraction": {"tiny-abstraction": ["test", "hard"]}},
+                              '/abstraction/tiny-abstraction/1: expected an arm that the preset has, got "hard"')):
+            with self.subTest(wrong):
+                self.track(wrong)
+                for action, status in (("build", 2), ("check", 1)):
+                    lines = self.leaderboard(action, expect=status).stderr.splitlines()
+                    self.assertEqual(len(lines), 1, lines)
+                    self.assertIn(f"board/tracks.json: {place}", lines[0])
+        self.assertFalse((self.dir / "board/README.md").exists())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
