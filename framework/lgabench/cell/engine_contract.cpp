@@ -138,8 +138,8 @@ std::string touches(PhysicsWorld& world) {
   const Vec3 from{.5, 0, block_m};
   world.grip(0, {from, {}});
   carry(world, from, from + Vec3{0, 0, .1}, .2);
-  for (double z = .1; z > -.02; z -= .001) {
-    world.move_gripper({{.5, 0, block_m + z}, {}});
+  for (int millimetres = 100; millimetres > -20; --millimetres) {
+    world.move_gripper({{.5, 0, block_m + .001 * millimetres}, {}});
     world.step();
     if (!touching(world, 0, table_body)) continue;
     const double height = world.pose(0).position_m.z;

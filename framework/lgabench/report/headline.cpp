@@ -153,7 +153,7 @@ std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about
 
 Spans setting_line(const RunResults& run) {
   std::vector<std::string> texts;
-  for (const auto& [option, value] : shared_options(run)) texts.push_back(option + "=" + value);
+  for (const auto& [option, value] : shared_options(run)) texts.push_back(fmt::format("{}={}", option, value));
   if (texts.empty()) return {};
   return {{fmt::format("Every row: {}, beside the plugins’ defaults.", fmt::join(texts, ", "))}};
 }
