@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Union
 
 import lgabench
+from lgabench.scenes import as_scenario
 from lgabench_method import (Command, Demonstration, FeatureSpace, Instruction, Method, Observation, Question, Refused, Selection,
                              Services, Step)
 
@@ -27,7 +28,7 @@ class TrueAnswers:
     """A language model that knows what the scenario's author means; `asked` counts its questions."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self.scenario = _scenario(scenario)
+        self.scenario = as_scenario(scenario)
         self.asked = 0
 
     def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
@@ -60,10 +61,6 @@ class Curves:
         self.epochs.append((epochs, steps, loss, curves))
 
 
-def _scenario(scenario: Scenario) -> lgabench.Scenario:
-    return scenario if isinstance(scenario, lgabench.Scenario) else lgabench.Scenario(scenario)
-
-
 def _instruction(environment: lgabench.Environment) -> Instruction:
     scenario = environment.scenario
     command = scenario.commands.index(environment.utterance)
@@ -91,7 +88,7 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
     declared: dict[str, dict[str, Any]] = getattr(kind, "options", {})
     if unknown := set(options) - set(declared):
         raise ValueError(f"options: no {', '.join(sorted(unknown))} among {', '.join(declared) or 'none'}")
-    space = _scenario(scenario)
+    space = as_scenario(scenario)
     rows, columns = space.picture_size
     layout = {"observation": {"rows": rows, "columns": columns, "channels": 3}, "action": json.loads(space._core.action_space_json)}
     values = {name: one["default"] for name, one in declared.items()} | options
@@ -101,7 +98,7 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
 def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int = 10, episodes: int = 20, *, engine: str = "mujoco",
             seed: int = 0, **options: Any) -> lgabench.Result:
     """Calls a method as a cell does (select, learn, act) on `count` demonstrations, and plays the first test scenes."""
-    space, method = _scenario(scenario), kind()
+    space, method = as_scenario(scenario), kind()
     lent = services(kind, space, seed=seed, **options)
     selections = {words: method.select(space.command(index), space.space, lent) for index, words in enumerate(space.commands)}
     shown = [Demonstration(Instruction(one.instruction.utterance, selections[one.instruction.utterance]), one.steps)

@@ -296,16 +296,12 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
-  auto* const one = dynamic_cast<HostedMethod*>(method.get());
-  auto* const two = dynamic_cast<SelectedBy*>(method.get());
-  const Files of_method = one   ? one->files()
-                          : two ? two->files()
-                                : Files();  // from now on the method may be told the truth
+  auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
+  const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
   if (job.attributed && selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
-  if (one) guarded(id, [&] { one->end(); });
-  if (two) guarded(id, [&] { two->end(); });
+  if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.
   record(job, self,

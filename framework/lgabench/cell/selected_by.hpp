@@ -13,7 +13,7 @@ namespace lgabench {
 /// Asks the one for select() and revise() alone, the other, the shipped LGA, to learn and act. The first one's process
 /// and all that it started are at their end before the second one's begins: nothing they do can reach what acts. Throws
 /// as the two do.
-class SelectedBy : public Method {
+class SelectedBy : public MethodInProcesses {
  public:
   using Make = std::function<std::unique_ptr<HostedMethod>()>;
   SelectedBy(std::unique_ptr<HostedMethod> selects, Make acts)
@@ -26,9 +26,9 @@ class SelectedBy : public Method {
                    Services& services) override;
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
 
-  /// As HostedMethod: the files are those of what selects.
-  std::vector<std::pair<std::string, std::string>> files() const;
-  void end();
+  /// Those of what selects.
+  std::vector<std::pair<std::string, std::string>> files() const override;
+  void end() override;
 
  private:
   void end_selecting();

@@ -129,9 +129,13 @@ void judge_sentences(const Scenario& scenario, CheckReport& report) {
 }
 
 int check_scenario(const CheckScenarioArguments& a) {
-  const bool of_suite = !a.suite.empty() && fs::path(a.file).extension() != ".json";  // may be one of its variants
-  Scenario scenario = of_suite ? suite_scenario(load_suite(a.suite), a.file, Truth::released) : scenario_of(a.file);
-  if (!a.suite.empty() && !of_suite) scenario = suite_scenario(load_suite(a.suite), scenario.id, Truth::released);
+  const auto in_suite = [&a](const std::string& id) {
+    return suite_scenario(load_suite(a.suite), id, Truth::released);
+  };
+  const bool is_file = fs::path(a.file).extension() == ".json";  // else an id, which may be a variant of the suite
+  const Scenario scenario = a.suite.empty() ? scenario_of(a.file)
+                            : is_file       ? in_suite(scenario_of(a.file).id)
+                                            : in_suite(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));

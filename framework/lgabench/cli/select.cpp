@@ -152,11 +152,7 @@ std::vector<Asked> find_commands(const SelectArguments& arguments) {
 
 void say_what_is_open(const Answerer& answerer, const std::vector<Asked>& commands, int at_once) {
   Questions all{0, 0, at_once, answerer.cassette->mean_seconds()};
-  for (const Asked& asked : commands) {
-    const std::vector<Question> questions = feature_questions(asked.command, asked.space);
-    all.all += static_cast<int>(questions.size());
-    all.open += answerer.model->open_questions(asked.command, asked.space, questions);
-  }
+  for (const Asked& asked : commands) all.add(*answerer.model, asked.command, asked.space);
   answerer.progress->begin(all.open);
   to_stderr("{}\n", all.text());
 }

@@ -4,7 +4,6 @@
 
 #include <set>
 
-#include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scratch.hpp>
@@ -12,6 +11,12 @@
 #include <lgabench/harness/forecast.hpp>
 
 namespace lgabench {
+
+void Questions::add(const ChatLanguageModel& model, const Command& command, const FeatureSpace& space) {
+  const std::vector<Question> questions = feature_questions(command, space);
+  all += static_cast<int>(questions.size());
+  open += model.open_questions(command, space, questions);
+}
 
 std::string Questions::text() const {
   const std::string time = open > 0 && reply_s > 0 ? ": about " + duration_text(open * reply_s / at_once) : "";
@@ -28,9 +33,7 @@ Questions count_questions(const LiveModel& live, const std::string& model, const
     for (int c = 0; c < static_cast<int>(scenario.commands.size()); ++c) {
       const Command command = scenario.command(c);
       if (!seen.insert(canonical({command.utterance, command.task, scenario.space.id})).second) continue;
-      const std::vector<Question> questions = feature_questions(command, scenario.space);
-      counted.all += static_cast<int>(questions.size());
-      counted.open += lm.open_questions(command, scenario.space, questions);
+      counted.add(lm, command, scenario.space);
     }
   }
   return counted;

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/chat_model.hpp>
 #include <lgabench/harness/worker_pool.hpp>
 
 namespace lgabench {
@@ -12,6 +13,9 @@ struct Questions {
   int all = 0, open = 0;  // open: without a reply in the cassette
   int at_once = 1;
   double reply_s = 0;  // a reply's seconds, mean of those in the cassette; 0 where there is none
+
+  /// Adds select_features()'s about the command.
+  void add(const ChatLanguageModel& model, const Command& command, const FeatureSpace& space);
 
   /// "1680 questions, 448 answered already, 4 at once: about 5 min", the time where a reply's is known.
   std::string text() const;

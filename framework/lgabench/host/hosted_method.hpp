@@ -31,12 +31,21 @@ struct HostJob {
   std::optional<std::vector<std::string>> debugger{};
 };
 
+/// A method whose code runs in a process, or several, that whoever made it ends.
+class MethodInProcesses : public Method {
+ public:
+  /// What the method left in Services::files, as names and bytes: 64 MiB at most. What is left out is said in the log.
+  virtual std::vector<std::pair<std::string, std::string>> files() const = 0;
+  /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
+  virtual void end() = 0;
+};
+
 class HostSession;
 
 /// Options and seed are those of the job, whatever the calls' Services say. What the method throws is thrown here as
 /// MethodError (std::bad_alloc where its memory ran out). Where its process ends, is stopped or breaks the protocol,
 /// every call throws MethodGone.
-class HostedMethod : public Method {
+class HostedMethod : public MethodInProcesses {
  public:
   /// @throws PluginError where the plugin is refused, MethodGone.
   explicit HostedMethod(const HostJob& job);
@@ -48,10 +57,8 @@ class HostedMethod : public Method {
                    Services& services) override;
   /// The policy may outlive this object; it acts in the same process.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
-  /// What the method left in Services::files, as names and bytes: 64 MiB at most. What is left out is said in the log.
-  std::vector<std::pair<std::string, std::string>> files() const;
-  /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
-  void end();
+  std::vector<std::pair<std::string, std::string>> files() const override;
+  void end() override;
 
   /// Names of the system calls that its process was refused so far.
   std::vector<std::string> refused_calls() const;

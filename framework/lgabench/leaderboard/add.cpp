@@ -152,7 +152,8 @@ bool is_shipped(const std::string& id, const std::string& version, const Catalog
   });
 }
 
-Entry entry_of(const RunResults& run, const Installed& installed, const Row& row, const Json& about, Reasons& reasons) {
+Entry entry_of(const RunResults& run, const Installed& installed, const Catalogue& shipped, const Row& row,
+               const Json& about, Reasons& reasons) {
   const Cell& first = row.begin()->second->configuration;
   Entry entry;
   entry.setting = installed.setting;
@@ -167,8 +168,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Row& row
   entry.identity.preset_sha256 = hash(installed.setting);
   entry.identity.scene_seed = installed.setting.scene_seed;
   const bool may_be_told =
-      first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id),
-                                                scan_plugins({shipped_plugin_directory()}));
+      first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id), shipped);
   Json data = Json::object();
   for (const Cell& cell : cells_of_row(installed, first.method, first.engine, first.answers)) {
     const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
@@ -252,10 +252,11 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   }
   const Rows rows = rows_of(run, wanted);
   if (rows.empty()) reasons.add("no cell has been played");
+  const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
   std::vector<Entry> entries, known;
   for (const auto& item : rows) {
     const std::size_t before = reasons.lines().size();
-    entries.push_back(entry_of(run, *installed, item.second, about, reasons));
+    entries.push_back(entry_of(run, *installed, shipped, item.second, about, reasons));
     if (reasons.lines().size() > before) continue;
     Entry& entry = entries.back();
     if (!fs::exists(board / entry.place())) continue;

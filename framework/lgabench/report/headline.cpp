@@ -94,6 +94,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
   if (material.summary.tables.empty()) return {};
   const Table& table = material.summary.tables.front();
   const std::optional<Column> column = main_column(table, about);
+  if (!column) return {};
   std::vector<std::string> methods = table.methods(mean_scenario);
   const auto row_of = [&](const std::string& id) {
     const Row* row = table.find(column->arm, mean_scenario, id, column->demonstrations);
@@ -101,7 +102,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
   };
   methods.erase(std::remove_if(methods.begin(), methods.end(), [&](const std::string& id) { return !row_of(id); }),
                 methods.end());
-  if (!column || methods.empty()) return {};
+  if (methods.empty()) return {};
   const std::string& first = methods.front();
   const Row& row = *row_of(first);
   Spans spans{
