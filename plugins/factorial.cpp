@@ -1,6 +1,6 @@
 // What a Selection does to the data apart from what it does to the input: every pair of training scenes and picture
-// (docs/protocol.md, section 4). No text input. With all defaults it is LGA. With policy=centroid, what an abstraction
-// is worth to a policy that need not learn where pixels are.
+// (docs/protocol.md, section 4). No text input but with object_mask_and_words. With all defaults it is LGA. With
+// policy=centroid, what an abstraction is worth to a policy that need not learn where pixels are.
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/plugin/plugin.hpp>
@@ -22,9 +22,10 @@ class Factorial : public lgabench::CloningMethod {
   lgabench::PolicyInputs inputs(const lgabench::Json& options) const override {
     using Picture = lgabench::PolicyInputs::Picture;
     if (options.at("input") == "rgb") return {{Picture::rgb}};
-    if (options.at("input") == "object_mask") {
+    if (options.at("input") == "object_mask" || options.at("input") == "object_mask_and_words") {
       lgabench::PolicyInputs inputs{{Picture::segmentation}};
       inputs.left_out = "pallet";  // the place to bring things to: never a target
+      if (options.at("input") == "object_mask_and_words") inputs.text = lgabench::PolicyInputs::Text::utterance;
       return inputs;
     }
     if (options.at("input") == "true_mask")
@@ -43,9 +44,9 @@ LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
              "source": "docs/protocol.md, section 4"},
-  "input": {"default": "mask", "values": ["mask", "true_mask", "object_mask", "rgb"],
-            "help": "the policy sees the mask of the Selection, of the true distribution, of any object but the pallet, or the picture",
-            "source": "docs/protocol.md, section 4; object_mask: ours"},
+  "input": {"default": "mask", "values": ["mask", "true_mask", "object_mask", "object_mask_and_words", "rgb"],
+            "help": "the policy sees the mask of the Selection, of the true distribution, of any object but the pallet (and_words: and the command), or the picture",
+            "source": "docs/protocol.md, section 4; object_mask, object_mask_and_words: ours"},
 )" LGABENCH_MASK_OPTIONS_WITH(R"(, "needs": {"first": {"input": ["mask", "true_mask"]}})",
                               R"(, "needs": {"signed": {"input": ["mask", "true_mask"], "policy": ["regression"]}})",
                               R"(, "needs": {"centroid": {"input": ["mask", "true_mask", "object_mask"]}})") "}")

@@ -851,11 +851,12 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
   };
   struct Case {
     const char* input;
-    bool star, heart, pallet;  // whether the action follows it
+    bool star, heart, pallet, words;  // whether the action follows it
   };
-  for (const auto& [input, star, heart, pallet] :
-       {Case{"mask", false, true, false}, Case{"true_mask", true, false, false}, Case{"object_mask", true, true, false},
-        Case{"rgb", true, true, true}}) {
+  for (const auto& [input, star, heart, pallet, words] :
+       {Case{"mask", false, true, false, false}, Case{"true_mask", true, false, false, false},
+        Case{"object_mask", true, true, false, false}, Case{"object_mask_and_words", true, true, false, true},
+        Case{"rgb", true, true, true, false}}) {
     const Json options = resolve_options(plugin, {{"epochs", 3}, {"input", input}});
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
@@ -870,6 +871,10 @@ TEST(ShippedMethods, FactorialsInputsShowTheSelectionTheTruthOrThePicture) {
     EXPECT_EQ(action(star_moved) != action(here), star) << input;
     EXPECT_EQ(action(heart_moved) != action(here), heart) << input;
     EXPECT_EQ(action(with_pallet(star_moved)) != action(with_pallet(here)), pallet) << input;
+    if (std::string(input) == "true_mask") continue;  // which has a mask for what was selected alone
+    Instruction other = instruction();
+    other.utterance = "Bring me the heart.";
+    EXPECT_EQ(policy->act(here, other) != action(here), words) << input;
   }
 }
 
