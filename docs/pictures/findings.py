@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the small figures of docs/results.md's first table from the tables further down in it.
+"""Draws the small figures of docs/results.md's first table, and README's curves of clutter, from the tables further down in it.
 
 Usage: docs/pictures/findings.py [OUTPUT_DIR]
 """
@@ -13,6 +13,9 @@ METHOD, REFERENCE = "#0b5cad", "#87919c"
 
 # figure -> (label, start of the heading of the table's section, start of its row, column) of each bar; references are grey.
 FIGURES = {
+    "clutter": [("true mask", "clutter: ", "Human", 2), ("mask of φ̂, LGA", "clutter: ", "LGA", 2),
+                ("GCBC-SEG", "clutter: ", "GCBC-SEG", 2), ("picture, words", "clutter: ", "GCBC without DART", 2),
+                ("random object", "clutter: ", "*random", 2)],
     "reproduction": [("LGA", "q1: success", "LGA", 5), ("Human", "q1: success", "Human", 5),
                      ("GCBC-SEG", "q1: success", "GCBC-SEG", 5), ("random object", "q1: success", "*random", 5)],
     "policy": [("mask, network", "factorial on the", "the truth", 1),
@@ -25,10 +28,6 @@ FIGURES = {
     "unseen": [("LGA, one object", "q3: a command", "LGA, LGA-HILL, Human, `instances=first`", 2),
                ("LGA, all objects", "q3: a command", "LGA, LGA-HILL, Human", 2),
                ("GCBC-SEG", "q3: a command", "GCBC-SEG", 2), ("random object", "q3: a command", "*random", 2)],
-    "mobile": [("LGA, heat_map", "mobile: from", "LGA, `policy=heat_map`", 1),
-               ("SEG, heat_map", "mobile: from", "GCBC-SEG, `heat_map`", 1),
-               ("LGA, network", "mobile: from", "LGA, regression", 1),
-               ("random object", "mobile: from", "*random", 1)],
 }
 
 
@@ -60,10 +59,44 @@ def figure(page, bars):
             + "".join(parts) + "</svg>\n")
 
 
+# README's curves: what the policy sees, and the row that shows it, of one table; the numbers of demonstrations are its columns.
+CURVES = [("true mask", "Human", "#0b5cad"), ("mask of φ̂ (LGA)", "LGA", "#d1495b"), ("mask of any object", "mask of any object", "#7a5195"),
+          ("picture, mask of all, words (GCBC-SEG)", "GCBC-SEG", "#2e7d4f"), ("picture and words", "GCBC without DART", "#b26a00")]
+CURVES_IN, NUMBERS = "clutter: ", ("1", "5", "20")
+
+
+def curves(page):
+    """Success against demonstrations, a line a row with its intervals, and what each shows beside its end."""
+    left, right, top, bottom, width = 44, 250, 14, 214, 520
+    xs = [left + (right - left) * i / (len(NUMBERS) - 1) for i in range(len(NUMBERS))]
+    y_of = lambda rate: bottom - (bottom - top) * rate
+    parts = [f'<text x="{(left + right) / 2}" y="{bottom + 32}" text-anchor="middle">demonstrations</text>']
+    for rate in (0, .25, .5, .75, 1):
+        parts += [f'<path d="M{left} {y_of(rate):.1f}H{right}" stroke="#d7dce1"/>',
+                  f'<text x="{left - 8}" y="{y_of(rate) + 4:.1f}" text-anchor="end">{rate:.2f}</text>']
+    parts += [f'<text x="{x:.1f}" y="{bottom + 16}" text-anchor="middle">{number}</text>' for x, number in zip(xs, NUMBERS)]
+    ends = []
+    for label, row, color in CURVES:
+        rates = [cell(page, CURVES_IN, row, column + 1) for column in range(len(NUMBERS))]
+        path = "L".join(f"{x:.1f} {y_of(rate):.1f}" for x, (rate, _, _) in zip(xs, rates))
+        parts += [f'<path d="M{path}" fill="none" stroke="{color}" stroke-width="2"/>']
+        parts += [f'<path d="M{x:.1f} {y_of(low):.1f}V{y_of(high):.1f}" stroke="{color}" stroke-width="1.5"/>' for x, (_, low, high) in zip(xs, rates)]
+        ends.append((y_of(rates[-1][0]), f"{rates[-1][0]:.2f} {label}", color))
+    at = 0
+    for y, words, color in sorted(ends):
+        at = max(y, at + 15)  # so that no two words stand on each other
+        parts += [f'<text x="{right + 10}" y="{at + 4:.1f}" fill="{color}">{words}</text>']
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {bottom + 40}" width="{width}" height="{bottom + 40}" role="img" '
+            f'aria-label="Success against demonstrations, among four near misses: {"; ".join(words for _, words, _ in sorted(ends))}" '
+            'font-family="Helvetica,Arial,sans-serif" font-size="12" fill="#1b1f24"><rect width="100%" height="100%" fill="#ffffff"/>'
+            + "".join(parts) + "</svg>\n")
+
+
 def main():
-    page = (HERE.parent / "results.md").read_text()
+    page, out = (HERE.parent / "results.md").read_text(), pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE)
     for name, bars in FIGURES.items():
-        (pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else HERE) / f"finding_{name}.svg").write_text(figure(page, bars))
+        (out / f"finding_{name}.svg").write_text(figure(page, bars))
+    (out / "inputs.svg").write_text(curves(page))
 
 
 if __name__ == "__main__":

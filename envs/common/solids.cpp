@@ -1,6 +1,10 @@
 #include <common/solids.hpp>
 
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,9 +92,13 @@ bool PlacedSolid::shades(Vec3 point) const {
   ray.tnear = static_cast<float>(clearance_m);
   ray.tfar = std::numeric_limits<float>::infinity();
   ray.mask = ~0u;
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(solid->rays, &ray);
+#else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(solid->rays, &context, &ray);
+#endif
   return ray.tfar < 0;  // Embree's mark of a hit
 }
 

@@ -67,10 +67,21 @@ class Pages(unittest.TestCase):
             self.assertIn(words, " ".join(result.split()))
             self.assertIn(f"{table[row][-1]:.2f}", words)
 
+    def test_readme_says_what_the_table_of_clutter_says(self):
+        table = (SOURCE / "docs/results.md").read_text().split("| `near_4` |")[1].split("\n\n")[0]
+        result = " ".join((SOURCE / "README.md").read_text().split("## The result")[1].split())
+        for row, words in {"LGA": "answers gives 0.83", "Human": "the true mask 1.00", "GCBC-SEG": "mask of all objects 0.45"}.items():
+            self.assertIn(words, result)
+            rates = re.search(rf"^\| {row} \| [\d.]+ [^|]*\| ([\d.]+) ", table, re.M)
+            self.assertEqual(words.split()[-1], rates[1], row)
+
     def test_the_figures_of_the_findings_are_their_tables(self):
         page, pictures = (SOURCE / "docs/results.md").read_text(), SOURCE / "docs/pictures"
         with tempfile.TemporaryDirectory() as made:
             subprocess.run([sys.executable, pictures / "findings.py", made], check=True)
+            curves = pathlib.Path(made) / "inputs.svg"
+            self.assertEqual((pictures / curves.name).read_text(), curves.read_text(), "docs/pictures/findings.py draws it")
+            curves.unlink()
             figures = sorted(file.name for file in pathlib.Path(made).iterdir())
             self.assertEqual(figures, sorted(file.name for file in pictures.glob("finding_*.svg")))
             for name in figures:
