@@ -151,6 +151,14 @@ class PythonMethods(Case):
         (self.dir / "mine.py").write_text(METHOD)
         (self.dir / "helper.py").write_text("x = 1\n")
 
+    def test_an_interpreter_without_numpy_or_that_is_gone_is_told_from_others(self):
+        subprocess.run([PYTHON, "-m", "venv", "--without-pip", self.dir / "bare"], check=True)
+        said = self.call(*with_options(RUN, "--python", "bare/bin/python"), "--methods", "mine.py:Mine", expect=4).stderr
+        self.assertIn("bare/bin/python: has no NumPy, which methods in Python need: bare/bin/python -m pip install numpy, or name", said)
+        (self.dir / "moved").symlink_to("/nowhere/python3")
+        said = self.call(*with_options(RUN, "--python", "./moved"), "--methods", "mine.py:Mine", expect=4).stderr
+        self.assertIn("./moved: leads to /nowhere/python3, which is not there: make the virtual environment again", said)
+
     def how(self, *words, expect=0):
         methods = ",".join("mine.py:Mine" + (f"+how={word}" if word else "") for word in words)
         done = self.call(*RUN, "--methods", methods, "--out", "out", expect=expect)

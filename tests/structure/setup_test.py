@@ -46,5 +46,18 @@ class Setup(unittest.TestCase):
         self.assertIn("expected apt-get; on", self.said("x86_64", release=release))
 
 
+class MovedClones(unittest.TestCase):
+    def test_a_build_tree_of_another_place(self):
+        with tempfile.TemporaryDirectory() as directory:
+            tree = pathlib.Path(directory) / "build/release"
+            tree.mkdir(parents=True)
+            (tree / "CMakeCache.txt").write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/home/me/before\n")
+            done = subprocess.run([shutil.which("bash"), SOURCE / "cmake/build", "release"], capture_output=True, text=True,
+                                  cwd=directory)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertEqual(done.stderr, "build/release was made in /home/me/before: this clone was moved or copied. "
+                                      "Build anew: rm -r build/release, then the same command\n")
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -48,7 +48,7 @@ const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
-  for (const std::string& method : methods) known.push_back(row_words(without_selected_by(method)).front());
+  for (const std::string& method : methods) known.push_back(row_id(method));
   options.only(known);
   for (const auto& method : options.json().items()) {
     const JsonReader values = options.at(method.key());

@@ -30,7 +30,7 @@ std::set<std::string> sources(const Summary& summary, const MethodStyles& styles
   std::set<std::string> lines;
   for (const PhiOfRow& of : distinct_phi(summary)) {
     const PhiOfCommand& phi = of.row->phi[of.command];
-    const std::string words = provenance_words(phi.provenance);
+    const std::string words = provenance_words(phi.provenance, phi.erring);
     lines.insert(fmt::format("φ̂ of {}: {}{}.", styles.name(of.row->method), words.empty() ? phi.provenance : words,
                              phi.source.empty() ? "" : ", " + phi.source));
   }
