@@ -131,6 +131,9 @@ class Submissions(Board):
         self.replay()
         self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
         self.assertIn(f"--answers answers/{kept}", (self.dir / "board/tiny.html").read_text())
+        (self.dir / "board/answers/other.json").write_text("{}")
+        self.assertIn("answers/other.json: no entry is based on it; remove it", self.leaderboard("check", expect=1).stderr)
+        (self.dir / "board/answers/other.json").unlink()
         (self.dir / "board/answers" / kept).unlink()
         self.assertIn(f"{kept} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
 

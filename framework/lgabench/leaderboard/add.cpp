@@ -222,8 +222,7 @@ void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
 std::vector<AnswerFile> answers_of(const fs::path& run, const Entry& entry) {
   std::vector<AnswerFile> files;
   for (AnswerFile& file : kept_answers(run))
-    if (file.name == entry.identity.answers_sha256 + kept_ending(entry.identity.answers))
-      files.push_back(std::move(file));
+    if (file.name == answers_file(entry.identity).filename()) files.push_back(std::move(file));
   return files;
 }
 

@@ -23,6 +23,11 @@ Json to_json(const Identity& identity) {
   return json;
 }
 
+fs::path answers_file(const Identity& identity) {
+  const std::string ending = kept_ending(identity.answers);
+  return ending.empty() ? fs::path() : fs::path("answers") / (identity.answers_sha256 + ending);
+}
+
 bool is_id(const std::string& text) {
   return !text.empty() && text.find_first_not_of(
                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
