@@ -39,12 +39,12 @@ class Help(Case):
                 self.assertIn("Example", said)
         said = self.call("run", "--help").stdout
         titles = re.findall(r"^(\w.*)\n  -", said, re.M)
-        self.assertEqual(titles[:4], ["What is computed", "With what", "How much of it", "Where it goes"])
+        self.assertEqual(titles[:4], ["What is computed", "How cells are computed", "How much is computed", "Output"])
         self.assertLess(len(titles), 6)
 
     def test_version(self):
         self.assertRegex(self.call("--version").stdout,
-                         r"^lgabench \d+\.\d+\.\d+ \(commit ([0-9a-f]{12}(-dirty)?|unknown), \w+, \w+ \d+\.\d+\.\d+\)\n$")
+                         r"^lgabench \d+\.\d+\.\d+(-dev)? \(commit ([0-9a-f]{12}(-dirty)?|unknown), \w+, \w+ \d+\.\d+\.\d+\)\n$")
 
     @unittest.skipUnless(shutil.which("groff"), "groff is not installed")
     def test_man_page(self):

@@ -46,8 +46,9 @@ class OwnScenario(Case):
         self.new("crowd", *NAME[1:], "--distractors", "4:6")
         checked = self.call("check-scenario", "crowd.json", "--scenes", "4", "--layout", "cells", expect=1).stdout
         self.assertIn("expected places for all", checked)
-        checked = self.call("check-scenario", "heart", "--suite", "clutter", "--scenes", "2", "--layout", "continuous").stdout
+        checked = self.call("check-scenario", "heart", "--suite", "clutter", "--scenes", "2").stdout
         self.assertRegex(checked, r"ok +near_6, continuous")
+        self.assertNotIn(", cells", checked, "the layouts of the suite alone")
 
     def test_a_method_that_asks_fails_where_nobody_answers(self):
         self.new(*NAME)

@@ -182,22 +182,22 @@ void add_cluster(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("cluster", "Write scripts that compute a run as a Slurm job array");
   add_run_options(*verb, a->run);
   verb->add_option("--elements", a->elements,
-                   "Elements of the job array, each a part of the run; few long ones are best")
+                   "Number of elements of the job array, each a part of the run; a few long ones are best")
       ->required()
       ->check(CLI::Range(1, 100000));
   verb->add_option("--time", a->time, "Time limit of an element, as HH:MM:SS")->required();
-  verb->add_option("--partition", a->partition, "Slurm's partition");
-  verb->add_option("--cpus", a->cpus, "Cores of an element, each computing a cell")
+  verb->add_option("--partition", a->partition, "Slurm partition");
+  verb->add_option("--cpus", a->cpus, "Cores per element, each computing a cell")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   verb->add_option("--timings", a->timings,
-                   "A run, for instance of the preset smoke, from whose times to predict the duration");
+                   "A run, for instance of the preset smoke, whose times are used to predict the duration");
   arrange(*verb, "The array",
           {{"--elements", "N"}, {"--time", "TIME"}, {"--partition", "NAME"}, {"--cpus", "N"}, {"--timings", "RUN"}});
   verb->footer(
-      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\n"
-      "Writes array.sbatch, merge.sbatch (which then merges the parts and makes the report) and submit into --out.\n"
-      "All other options are those of run, without --fresh, --dry-run and --debug. It submits nothing.");
+      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\nWrites three "
+      "scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. It "
+      "submits nothing itself.\nAll other options are those of run, except --fresh, --dry-run and --debug.");
   verb->callback([a, &exit] { exit = write_scripts(*a); });
 }
 
