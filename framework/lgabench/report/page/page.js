@@ -69,7 +69,7 @@ function fit(within = document) {
         cell.classList.toggle("none", cell.textContent.trim() === "–");
       });
     frame.classList.toggle("list", list);
-    scrolls || (!list && frame.scrollHeight > frame.clientHeight + 1) ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
+    scrolls || frame.scrollHeight > frame.clientHeight + 1 ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
     const first = frame.querySelector("tbody tr:not(.group)");
     const name = !list && scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
     for (const row of frame.querySelectorAll("tr:not(.group)"))
