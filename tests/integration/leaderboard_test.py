@@ -270,7 +270,7 @@ class Refusals(Board):
 
     def test_a_preset_whose_scenes_methods_are_tuned_on(self):
         self.call("run", "tiny", "--preset", "paper", "--methods", "fixture_constant", *PLUGIN, "--out", "paper")
-        self.assertRegex(self.refused("paper")[0], r'preset "paper" has no scene_seed of its own.*\(board, small\)$')
+        self.assertRegex(self.refused("paper")[0], r'preset "paper" is none of the board.s, which .*: play lgabench run tiny --preset board or small$')
 
     def test_another_scene_seed(self):
         suite = {**SUITE, "presets": {"board": {"scene_seed": 78, "test_scenes": "per_seed"}}}
@@ -280,13 +280,14 @@ class Refusals(Board):
     def test_a_cell_that_was_not_played(self):
         shutil.rmtree(self.cell(demonstrations=4, training_seed=1))
         lines = self.refused()
-        self.assertIn("1 cells of the run have not been played", lines)
+        self.assertIn("1 cell of the run not played yet", lines)
         self.assertIn("missing: fixture_constant", " ".join(lines))
 
     def test_a_part_of_the_preset(self):
         self.play("part", "--seeds", "0")
         missing = [line for line in self.refused("part") if line.startswith("missing: ")]
         self.assertIn("missing: fixture_constant heart cells n=2 seed=1", missing)
+        self.assertIn("fixture_constant: 2 of the preset's 6 cells are there", self.refused("part"))
         self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
 
     def test_a_cell_that_the_host_failed(self):

@@ -377,7 +377,7 @@ class PythonMethods(Case):
         self.call(*with_options(RUN, "--python", "venv/bin/python"), "--methods", "mine.py:Mine", "--out", "out")
 
     def test_what_fails_costs_its_own_cell(self):
-        reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
+        reasons = {"raise": "plugin mine: ValueError: its own failure (mine.py:", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
                    "no_selection": "edit() was given str",
@@ -407,7 +407,7 @@ class PythonMethods(Case):
         self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
 
     def test_refused_with_a_reason(self):
-        for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
+        for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file", "none.py": "none.py: no such file",
                            "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
                            "sets.py:A": "sets.py: options: expected values that JSON has",
                            "endless.py:A": "endless.py: options: expected values that JSON has",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <thread>
 
 #include <lgabench/abstraction/asked_model.hpp>
@@ -12,6 +13,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
@@ -79,6 +81,17 @@ std::string by_option(const std::string& complaint) {
   return complaint;
 }
 
+// A layout that nobody has: the suite's own are offered, not those of all environments.
+void expect_layouts(const Suite& suite, const Words& layouts) {
+  std::set<std::string> there;
+  for (const std::string& id : suite.design.scenarios)
+    for (const std::string& layout : layouts_of(load_scenario(id))) there.insert(layout);
+  const Words all = installed_layouts();
+  for (const std::string& layout : layouts)
+    if (std::find(all.begin(), all.end(), layout) == all.end())
+      throw InputError("--layout: " + none_named("layout", layout, {there.begin(), there.end()}));
+}
+
 // The command line's part of the design, checked by the same reader as a suite's file.
 Design design_of(const RunArguments& a, const Suite& suite) {
   Json overrides = Json::object();
@@ -88,6 +101,7 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   give("methods", a.methods);
   give("engines", a.engines);
   give("scenarios", a.scenarios);
+  expect_layouts(suite, a.layouts);
   give("layouts", a.layouts);
   if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);

@@ -127,9 +127,12 @@ bool is_python_method(const std::string& word) {
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
   PluginInfo plugin;
-  if (written.find(".py:") == written.npos)
+  if (written.find(".py:") == written.npos) {
+    std::error_code not_there;
+    if (!fs::exists(written, not_there)) throw PluginError(written + ": no such file");
     throw PluginError(
         fmt::format("{0}: expected {0}:CLASS; it has: {1}", written, fmt::join(classes_of(written), ", ")));
+  }
   try {
     const Json json = description_of(interpreter, fs::absolute(written).string());
     const JsonReader reader(json, written);
