@@ -118,7 +118,7 @@ class Submissions(Board):
         self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
         self.assertRegex(entry["evidence"][0]["command"], "^lgabench run tiny ")  # not where the program lies
         said = self.add(expect=1).stderr
-        self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
+        self.assertEqual(len(re.findall(": this run is on the board already$", said, re.M)), 5)
 
     def test_a_file_of_answers_goes_with_its_entry(self):
         self.prepare()
@@ -185,7 +185,7 @@ class Submissions(Board):
         rewrite(cell, "episodes.jsonl", lambda e: {**e, "success": not e["success"], "attribution": None,
                                                    "failure": "missed_object" if e["success"] else "none"})
         before = {file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}
-        self.assertIn("this identity is there, with other outcomes in 1 of 8 cells", self.add(expect=1).stderr)
+        self.assertIn("this identity is on the board, with other outcomes in 1 of 8 cells", self.add(expect=1).stderr)
         self.assertEqual({file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}, before)
 
     def test_a_cell_that_the_method_failed_counts_as_lost(self):
@@ -287,7 +287,7 @@ class Refusals(Board):
         self.play("part", "--seeds", "0")
         missing = [line for line in self.refused("part") if line.startswith("missing: ")]
         self.assertIn("missing: fixture_constant heart cells n=2 seed=1", missing)
-        self.assertIn("fixture_constant: 2 of the preset's 6 cells are there", self.refused("part"))
+        self.assertIn("fixture_constant: 4 of the preset's 8 cells are there", self.refused("part"))
         self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
 
     def test_a_cell_that_the_host_failed(self):

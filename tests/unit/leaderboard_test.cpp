@@ -113,7 +113,7 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),
               "/evidence/0/started: expected a time");
-  EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "alone here");
+  EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "expected only entry.json, cells.jsonl");
   EXPECT_SAYS(after([&](auto& path) { edit(path / "entry.json", "\n", "\n\n"); }), "not as it is written");
 }
 

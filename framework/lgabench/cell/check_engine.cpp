@@ -113,7 +113,7 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& e) {
-    report.problem(doing, e.what(), "this call must succeed: a run makes the same");
+    report.problem(doing, e.what(), "this call must succeed: a run makes it too");
   }
   report.hashes = {{"episodes", sha256(all)}};
   return report;

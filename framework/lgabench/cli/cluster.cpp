@@ -142,7 +142,7 @@ std::string submit_script(const fs::path& out) {
 void expect_repeatable(const RunArguments& run) {
   for (const auto& [given, option] :
        {std::pair{run.fresh, "--fresh"}, {run.dry_run, "--dry-run"}, {!run.debug.empty(), "--debug"}})
-    if (given) throw InputError(fmt::format("{}: of run alone; an element resumes where it stopped", option));
+    if (given) throw InputError(fmt::format("{}: an option of run only; an element resumes where it stopped", option));
 }
 
 int write_scripts(ClusterArguments a) {
@@ -169,7 +169,7 @@ int write_scripts(ClusterArguments a) {
             a.timings.empty() ? "by cells measured elsewhere (--timings: by your own)"
                               : "by the cells of " + a.timings.string());
   if (expected_s > .8 * usable_s)
-    to_stdout("--time {} is short for that: {} elements would fit, or submit the array again\n", a.time,
+    to_stdout("--time {} is too short for that: {} elements would fit, or submit the array again\n", a.time,
               static_cast<int>(a.elements * expected_s / (.6 * usable_s)) + 1);
   to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", shell_line({out.string()}), shell_line({out.string()}));
   return ok;

@@ -57,7 +57,7 @@ void expect_board(const fs::path& board) {
 }
 
 std::string replay_words(const Json& line) {
-  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
+  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended differently",
                      line.at("bit_identical").get<int>(), line.at("cells").size(), line.at("flips").get<int>(),
                      line.at("episodes").get<int>());
 }
@@ -106,7 +106,7 @@ int verify(LeaderboardArguments a) {
     const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
-    to_stderr("To let it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
+    to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());

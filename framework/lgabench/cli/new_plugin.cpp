@@ -44,7 +44,7 @@ void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
   if (std::error_code error; fs::exists(directory, error))
-    throw InputError(fmt::format("{}: is there already; nothing was written", directory.string()));
+    throw InputError(fmt::format("{}: exists already; nothing was written", directory.string()));
   const fs::path prefix = fs::weakly_canonical(program_directory().parent_path());
   const fs::path templates = data_directory() / "templates";
   const std::string version = LGABENCH_VERSION;

@@ -91,7 +91,7 @@ Json scenario_json(const NewScenarioArguments& a) {
 void new_scenario(NewScenarioArguments a) {
   const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
-    throw InputError(fmt::format("{}: is there already; nothing was written", file.string()));
+    throw InputError(fmt::format("{}: exists already; nothing was written", file.string()));
   ask(a.commands, "--command TEXT", "What is the command?", false);
   ask(a.types, "--types", "Which object types does it mean? (with commas between them, or ALL)", true);
   const Json json = scenario_json(a);

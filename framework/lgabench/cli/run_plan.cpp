@@ -161,7 +161,7 @@ fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
   const fs::path there = is_run(plan.out) ? plan.out : earlier_run(plan.out, suffix, plan.request);
   if (there.empty())
     throw InputError(
-        fmt::format("--resume: no run of this command is in {}; without --resume it begins one of {} cells",
+        fmt::format("--resume: no run of this command is in {}; without --resume a new run of {} cells begins",
                     plan.out.parent_path().string(), plan.cells.size()));
   to_stderr("going on in {}\n", there.string());
   return there;

@@ -56,8 +56,8 @@ int new_study(const StudyArguments& a) {
   write_file(a.path / "consent.txt", read_file(templates / "consent.txt.in"));
   write_file(a.path / "README.md", filled(read_file(templates / "README.md.in"), values));
   for (const char* file : {"protocol.json", "consent.txt", "README.md"}) to_stdout("{}\n", (a.path / file).string());
-  to_stdout("\nTo see what is to be filled:\n  lgabench study check {}\n", a.path.string());
-  to_stdout("To try it in a browser before:\n  lgabench study serve {} --out {} --rehearsal\n",
+  to_stdout("\nTo see what is left to fill in:\n  lgabench study check {}\n", a.path.string());
+  to_stdout("To try it in a browser first:\n  lgabench study serve {} --out {} --rehearsal\n",
             (a.path / "protocol.json").string(), (a.path / "tried").string());
   return ok;
 }
@@ -75,7 +75,7 @@ int check(const StudyArguments& a) {
             protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
   const fs::path pin = study::pin_file(file);
   if (a.pin && blanks.empty() && !fs::exists(pin)) write_file(pin, study::pin_of(protocol).dump(1) + "\n");
-  if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill", file.string(), blanks.size()));
+  if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill in", file.string(), blanks.size()));
   if (const std::string why = study::not_ready(protocol, file); !why.empty())
     throw InputError(fmt::format("{}: {}", file.string(), why));
   to_stdout("pinned: {}\n", protocol.pin);
@@ -145,7 +145,7 @@ int rehearse(const StudyArguments& a) {
   server.stop();
   serving.join();
   if (failure) std::rethrow_exception(failure);
-  to_stdout("{} simulated people took part. What comes of it:\n  lgabench study report {}\n", a.people, a.out.string());
+  to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, a.out.string());
   to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
   return ok;
 }

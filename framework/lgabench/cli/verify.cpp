@@ -120,10 +120,10 @@ void print_other_bytes(const std::vector<Compared>& cells) {
     episodes += cell.agreement.episodes;
   }
   for (const report::PooledAgreement& pool : report::pooled(agreements(cells)))
-    to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar {}){}\n",
+    to_stdout("{}: {} episodes succeeded only there, {} only here, over {} cells (McNemar {}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
               report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
-  to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended otherwise\n", others,
+  to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended differently\n", others,
             cells.size(), flips, episodes);
   if (const auto excused = others - differing(cells))
     to_stdout(

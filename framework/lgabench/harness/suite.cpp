@@ -175,7 +175,7 @@ const PluginInfo& usual_engine(const Catalogue& catalogue) {
   std::vector<const PluginInfo*> there;
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.kind == "engine") there.push_back(&plugin);
-  if (there.empty()) throw InputError("no engine is there (lgabench list)");
+  if (there.empty()) throw InputError("no engine is installed (lgabench list)");
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list))
     for (const std::string& id : load_suite(suite).design.engines)

@@ -276,12 +276,12 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
     Entry there = read_entry(board, entry.place());
     const Json evidence = entry.evidence.front();
     if (const int differing = other_cells(there, entry))
-      reasons.add(fmt::format("{}: this identity is there, with other outcomes in {} of {} cells",
+      reasons.add(fmt::format("{}: this identity is on the board, with other outcomes in {} of {} cells",
                               entry.place().string(), differing, there.cells.size()));
     else if (!there.withdrawn.is_null())
       reasons.add(fmt::format("{}: this identity was withdrawn", entry.place().string()));
     else if (std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end())
-      reasons.add(fmt::format("{}: this run is there", entry.place().string()));
+      reasons.add(fmt::format("{}: this run is on the board already", entry.place().string()));
     there.evidence.push_back(evidence);
     known.push_back(std::move(there));
     entries.pop_back();

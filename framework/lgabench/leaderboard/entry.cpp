@@ -138,7 +138,7 @@ std::vector<fs::path> entry_directories(const fs::path& board) {
     std::vector<fs::path> names;
     for (const auto& entry : fs::directory_iterator(directory)) {
       if (!entry.is_directory())
-        throw InputError(fmt::format("{}: expected directories alone here", entry.path().string()));
+        throw InputError(fmt::format("{}: expected only directories here", entry.path().string()));
       names.push_back(entry.path());
     }
     std::sort(names.begin(), names.end());
