@@ -376,7 +376,7 @@ class Replays(Board):
 
     def test_an_honest_entry_is_bit_identical(self):
         said = self.verify("--cells", "3")
-        self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended otherwise \(nonce [0-9a-f]{32}\)")
+        self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended differently \(nonce [0-9a-f]{32}\)")
         self.assertEqual(self.tier(), "recomputed; not yet replayed; claimed by B. Reader: replayed")
         self.assertIn("a replay of 3 cells; expected 8 or more", self.leaderboard("vouch", self.entry.parent.name, "1", expect=2).stderr)
         self.verify(self.entry.parent.name)

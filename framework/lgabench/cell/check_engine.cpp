@@ -83,7 +83,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   std::string differs;
   const auto backwards = [&] {
     for (std::size_t i = scenes.size(); i-- > 0;)
-      if (play(*environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended otherwise";
+      if (play(*environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended differently";
   };
   backwards();
   const long long before = ProcessState::now().heap_bytes;
