@@ -419,6 +419,10 @@ class PythonMethods(Case):
             (self.dir / "sets.py").write_text("class A:\n    options = {'x': {'default': 'a', 'values': {'a', 'b'}}}\n")
             (self.dir / "endless.py").write_text("class A:\n    options = {'x': {'default': 1e999}}\n")
             self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
+        (self.dir / "bounds.py").write_text(
+            "class A:\n    options = {'p': {'default': .5, 'min': 0, 'max': 1, 'help': '', 'source': ''}}\n")
+        said = self.call(*RUN, "--methods", "bounds.py:A+p=2", "--out", "out", expect=2).stderr
+        self.assertIn("/p: expected a number from 0 to 1, got 2", said)
         (self.dir / "old.py").write_text("import sys\nfrom lgabench_method import describe\nsys.version_info = (3, 9, 2)\n"
                                          "try:\n    describe.interpreter()\n"
                                          "except describe.NoMethod as error:\n    print(error)\n")
