@@ -137,7 +137,7 @@ TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
   empty["bit_identical"] = empty["episodes"] = 0;
   add_verification(board.path, entry, empty);
   EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
-              "/cells: expected a cell or more");
+              "/cells: expected at least one cell");
 }
 
 TEST(LeaderboardEntry, TiersFollowFromLinesThatSomebodyVouchesFor) {
