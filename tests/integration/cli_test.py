@@ -157,7 +157,7 @@ class DryRuns(Case):
 class Resuming(Case):
     def test_finds_the_run_that_the_same_command_names(self):
         refused = self.call(*RUN, "--resume", expect=2).stderr
-        self.assertIn("--resume: no run of this command is in runs; without --resume it begins one of 4 cells", refused)
+        self.assertIn("--resume: no run of this command is in runs; without --resume a new run of 4 cells begins", refused)
         self.assertFalse((self.dir / "runs").exists())
 
         self.call(*RUN)

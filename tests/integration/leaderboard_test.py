@@ -227,8 +227,7 @@ class Submissions(Board):
         self.assertEqual([link for link in re.findall(r"\]\(([^)]+)\)", readme) if not (root / link).exists()], [])
         self.assertRegex((root / "CITATION.cff").read_text(), "(?m)^cff-version: ")
         self.assertIn("5 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
-        (self.dir / "board/answers").mkdir()
-        (self.dir / "board/answers/elsewhere").symlink_to("/etc/passwd")
+        (self.dir / "board/elsewhere").symlink_to("/etc/passwd")
         self.assertIn("a symbolic link", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
         self.assertFalse((self.dir / "none.tar.gz").exists())
 

@@ -92,7 +92,7 @@ class OwnScenario(Case):
                 self.assertFalse((self.dir / "round.json").exists())
         self.assertNotIn("throw_away", self.new(*NAME, "--task", "none", expect=2).stderr, "a task of another environment")
         self.new(*NAME)
-        self.assertIn("is there already", self.new(*NAME, expect=2).stderr)
+        self.assertIn("exists already", self.new(*NAME, expect=2).stderr)
 
     def test_what_cannot_be_shown_or_solved_is_a_problem(self):
         self.new("fixed", "--command", "Bring me the pallet.", "--types", "pallet")

@@ -62,7 +62,7 @@ class StudyProtocols(StudyCase):
         self.addCleanup(busy.close)
         busy.bind(("127.0.0.1", 0))
         busy.listen()
-        self.assertIn("cannot be listened on", self.call("study", "serve", "study", "--out", "d", "--rehearsal", "--port",
+        self.assertIn("cannot listen there", self.call("study", "serve", "study", "--out", "d", "--rehearsal", "--port",
                                                          busy.getsockname()[1], expect=2).stderr)
 
 

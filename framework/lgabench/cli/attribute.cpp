@@ -92,7 +92,7 @@ int attribute(AttributeArguments a) {
   expect_run(a.run);
   if (a.out.empty())
     a.out = fs::path(fs::absolute(a.run / "").lexically_normal().parent_path().string() + "-attributed");
-  if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": is there already");
+  if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": exists already");
   const RunRecord record = read_run_record(a.run);
   expect_same_version(a.run, record, "attribute");
   const std::vector<Recorded> cells = without_causes(a, record);
