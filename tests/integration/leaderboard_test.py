@@ -269,7 +269,7 @@ class Refusals(Board):
 
     def test_a_preset_whose_scenes_methods_are_tuned_on(self):
         self.call("run", "tiny", "--preset", "paper", "--methods", "fixture_constant", *PLUGIN, "--out", "paper")
-        self.assertRegex(self.refused("paper")[0], r'preset "paper" is none of the board.s, which .*: play lgabench run tiny --preset board or small$')
+        self.assertRegex(self.refused("paper")[0], r'preset "paper" is not one of the leaderboard.s, which .*: play lgabench run tiny --preset board or small$')
 
     def test_another_scene_seed(self):
         suite = {**SUITE, "presets": {"board": {"scene_seed": 78, "test_scenes": "per_seed"}}}

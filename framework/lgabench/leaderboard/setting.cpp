@@ -106,8 +106,8 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
     for (const auto& [name, members] : installed.suite.presets.items())
       if (members.contains("scene_seed")) boards.push_back(name);
     throw InputError(fmt::format(
-        "{}: preset \"{}\" is none of the board's, which have a scene_seed of their own{}", installed.suite.file,
-        preset,
+        "{}: preset \"{}\" is not one of the leaderboard's, which have a scene_seed of their own{}",
+        installed.suite.file, preset,
         boards.empty() ? "; the suite has none"
                        : fmt::format(": play lgabench run {} --preset {}", suite, fmt::join(boards, " or "))));
   }
