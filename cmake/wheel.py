@@ -104,7 +104,8 @@ def pack(root, about, wheel):
 
 
 def main(build, out):
-    version = re.search(r"project\(lgabench VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text())[1]
+    said = re.search(r'LGABENCH_VERSION "(.*)"', (SOURCE / "framework/lgabench/core/version.hpp").read_text())[1]
+    version = said.replace("-dev", ".dev0")  # as PyPI's rules write it
     tag = f"cp3{sys.version_info.minor}"
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)

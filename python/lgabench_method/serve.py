@@ -6,6 +6,7 @@ import os
 import pathlib
 import struct
 import sys
+import sysconfig
 import time
 import traceback
 
@@ -203,6 +204,14 @@ class Host:
         self.channel.send(*reply)
 
 
+def _place(error):
+    """The line of the method's own file from which the error came, as " (mine.py:19)"; "" for one from elsewhere."""
+    of_others = (str(pathlib.Path(__file__).parent), sysconfig.get_path("stdlib"), "<")
+    own = [frame for frame in traceback.extract_tb(error.__traceback__)
+           if not frame.filename.startswith(of_others) and "-packages/" not in frame.filename]
+    return f" ({pathlib.Path(own[-1].filename).name}:{own[-1].lineno})" if own else ""
+
+
 def _told(channel, kind, call, *arguments):
     """Calls; tells the worker what is thrown. The whole traceback goes to the log."""
     try:
@@ -213,7 +222,7 @@ def _told(channel, kind, call, *arguments):
         traceback.print_exc()
         sys.stderr.flush()
         reason = (str(error).splitlines() or [""])[0].encode(errors="replace").decode()  # a file's name may be no UTF-8
-        channel.send({"type": "error", "kind": kind, "reason": f"{type(error).__name__}: {reason}"[:2000]})
+        channel.send({"type": "error", "kind": kind, "reason": f"{type(error).__name__}: {reason}"[:2000] + _place(error)})
     return None
 
 

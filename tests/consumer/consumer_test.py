@@ -131,7 +131,7 @@ class NewPlugin(Consumer):
         self.assertEqual(set(checks.values()), {"ok"})
         self.runs("my_method", plugin.parent, "--set", "my_method.epochs=2")
         said = self.lgabench("new-plugin", "my_method", expect=2).stderr
-        self.assertIn("is there already; nothing was written", said)
+        self.assertIn("exists already; nothing was written", said)
 
     @unittest.skipUnless(shutil.which("gdb"), "gdb is not installed")
     def test_stepping_through_a_method(self):

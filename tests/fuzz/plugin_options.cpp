@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<std::string_view> lines = fuzz::split(fuzz::text_of(data, size), "\n");
   PluginInfo plugin;
   try {
-    plugin.options = read_options(std::string(lines.front()));
+    plugin.options = read_options(std::string(lines.front())).options;
   } catch (const PluginError&) {
     return 0;
   }

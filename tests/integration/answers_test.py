@@ -717,7 +717,7 @@ class Humans(Case):
         self.assertEqual(status["fault"], "host")
         self.assertIn("edited another proposal than the language model of this run makes", status["reason"])
         self.write("made-up-1", consent={"given": False, "statement": "-", "ethics": "-"})
-        self.assertIn("answers are used with consent alone", self.call(*self.RUN, "--humans", "people", expect=2).stderr)
+        self.assertIn("answers are used only with consent", self.call(*self.RUN, "--humans", "people", expect=2).stderr)
 
 
 if __name__ == "__main__":

@@ -83,7 +83,7 @@ class AnswersAlone(Board):
         self.assertEqual(self.row("made-up-1")[2], "recomputed; not yet replayed; answers as submitted")
         (self.dir / "made_up.json").unlink()  # the board has what its entry stands on
         said = self.leaderboard("verify", "--by", "B. Reader").stdout
-        self.assertRegex(said, r"^agrees  entries/lga/\S+: 2 of 2 cells bit-identical, 0 of 8 episodes ended otherwise")
+        self.assertRegex(said, r"^agrees  entries/lga/\S+: 2 of 2 cells bit-identical, 0 of 8 episodes ended differently")
         self.leaderboard("vouch", entry["id"], "1")
         self.leaderboard("build")
         self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)

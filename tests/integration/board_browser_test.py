@@ -7,6 +7,7 @@ import os
 import subprocess
 import unittest
 
+import axe
 from case import BUILD, Case
 from study_browser_test import CONTRAST, MISSING, NAMELESS, Browser
 
@@ -121,6 +122,17 @@ class BoardInABrowser(Case):
                             panel = "const panel = document.getElementById('panel'); return panel.scrollWidth - panel.clientWidth"
                             self.assertEqual(self.script(panel), 0)
                             self.assertEqual(self.script(WIDER), [])
+
+    @axe.needed
+    def test_axe_finds_nothing(self):
+        for width, dark in (1280, False), (390, True):
+            for page in "index.html", "q1.html":
+                with self.subTest(page, width=width, dark=dark):
+                    self.open(page, width=width, dark=dark)
+                    self.assertEqual(axe.findings(self.browser.driver), [])
+                    if page != "index.html":
+                        self.click("#table1 button.rate")
+                        self.assertEqual(axe.findings(self.browser.driver), [], "episodes")
 
     def test_a_suites_page_is_one_click_from_the_index(self):
         self.open("index.html")

@@ -39,12 +39,12 @@ class Help(Case):
                 self.assertIn("Example", said)
         said = self.call("run", "--help").stdout
         titles = re.findall(r"^(\w.*)\n  -", said, re.M)
-        self.assertEqual(titles[:4], ["What is computed", "With what", "How much of it", "Where it goes"])
+        self.assertEqual(titles[:4], ["What is computed", "How cells are computed", "How much is computed", "Output"])
         self.assertLess(len(titles), 6)
 
     def test_version(self):
         self.assertRegex(self.call("--version").stdout,
-                         r"^lgabench \d+\.\d+\.\d+ \(commit ([0-9a-f]{12}(-dirty)?|unknown), \w+, \w+ \d+\.\d+\.\d+\)\n$")
+                         r"^lgabench \d+\.\d+\.\d+(-dev)? \(commit ([0-9a-f]{12}(-dirty)?|unknown), \w+, \w+ \d+\.\d+\.\d+\)\n$")
 
     @unittest.skipUnless(shutil.which("groff"), "groff is not installed")
     def test_man_page(self):
@@ -78,7 +78,10 @@ class Mistakes(Case):
             (["run", "q11"], r'no suite "q11".*expected one of: .*q1.*or a \.json file'),
             (["run", "q1", "--preset", "smokey"], r'q1.json: no preset "smokey" \(did you mean "smoke"\?\)'),
             (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)'),
-            (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\)'),
+            (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\), expected one of: cells, continuous, released$'),
+            (["run", "q1", "--jobs", "0"], r"^lgabench: --jobs: expected a number from 1 to 4096, got 0$"),
+            (["study", "chek", "x"], r'^lgabench: study: no action "chek" \(did you mean "check"\?\)'),
+            (["check-scenario", "none.json"], r"^lgabench: none.json: no such file$"),
             (["run", "q1", "--seeds", "3:0"], r"--seeds: expected FIRST:END, END not included, .*; 3:0 has 0$"),
             (["run", "q1", "--demos", "10-50"], r'--demos: expected whole numbers, such as 10,50, .* got "10-50"$'),
             (["run", "q1", "--demos", "ten"], r'--demos: expected whole numbers, such as 10,50, .* got "ten"$'),
@@ -154,7 +157,7 @@ class DryRuns(Case):
 class Resuming(Case):
     def test_finds_the_run_that_the_same_command_names(self):
         refused = self.call(*RUN, "--resume", expect=2).stderr
-        self.assertIn("--resume: no run of this command is in runs; without --resume it begins one of 4 cells", refused)
+        self.assertIn("--resume: no run of this command is in runs; without --resume a new run of 4 cells begins", refused)
         self.assertFalse((self.dir / "runs").exists())
 
         self.call(*RUN)

@@ -98,9 +98,9 @@ class Elements(Case):
                               (("--elements", "2", "--time", "00:02:30"), "--time 00:02:30: expected 300 s at least: an "
                                "element stops 120 s before its limit"),
                               (("--elements", "2", "--out", 'a "b"'), 'a "b"/logs/%A_%a.txt: expected no quote'),
-                              (("--elements", "2", "--fresh"), "--fresh: of run alone"),
-                              (("--elements", "2", "--dry-run"), "--dry-run: of run alone"),
-                              (("--elements", "2", "--debug", "0"), "--debug: of run alone")]:
+                              (("--elements", "2", "--fresh"), "--fresh: an option of run only"),
+                              (("--elements", "2", "--dry-run"), "--dry-run: an option of run only"),
+                              (("--elements", "2", "--debug", "0"), "--debug: an option of run only")]:
             with self.subTest(words):
                 done = self.call("cluster", *with_options(RUN + ("--time", "00:30:00", "--out", "out"), *words), expect=2)
                 self.assertIn(reason, done.stderr)
@@ -123,7 +123,7 @@ class Elements(Case):
             (cell / "timing.json").write_text(json.dumps({**timing, "total_s": 3600}))
         said = self.cluster("--elements", "2", "--timings", "smoke").stdout
         self.assertIn("by the cells of smoke", said)
-        self.assertRegex(said, r"--time 00:30:00 is short for that: \d+ elements would fit")
+        self.assertRegex(said, r"--time 00:30:00 is too short for that: \d+ elements would fit")
 
 
 @unittest.skipUnless(os.environ.get("LGABENCH_FULL"), "./test --full plays it")

@@ -159,7 +159,7 @@ class Forgeries(Case):
         said = self.leaderboard("vouch", self.rival.parent.name, "2", expect=2).stderr
         self.assertIn("line 2 is a replay of 3 cells; expected 12 or more: verify it with --cells 12", said)
         self.assertIn('no line "3"; expected one of its 2', self.leaderboard("vouch", self.rival.parent.name, "3", expect=2).stderr)
-        self.assertIn("was vouched for before", self.leaderboard("vouch", self.rival.parent.name, "1", expect=2).stderr)
+        self.assertIn("is vouched for already", self.leaderboard("vouch", self.rival.parent.name, "1", expect=2).stderr)
         self.assertEqual(self.rows()[self.rival.parent.name][3], "replayed; claimed by Prof. B. Independent: reproduced")
 
     def test_what_is_vouched_for_counts(self):

@@ -163,7 +163,7 @@ class Keepers(Harm):
         self.assertEqual({path: path.read_bytes() for path in (self.dir / "run").rglob("*") if path.is_file()}, before)
         self.call("verify", "run-attributed", "--all", "--plugin-path", "mine_no")
         self.assert_matches_schemas("run-attributed")
-        for words, expect, says in ((["run", "--out", "run-attributed"], 2, "is there already"),
+        for words, expect, says in ((["run", "--out", "run-attributed"], 2, "exists already"),
                                     (["run-attributed", "--out", "x"], 2, "every failure that can be attributed is"),
                                     (["run", "--rows", "lga", "--out", "x"], 2, "no row lga, the run has: fixture_keeper")):
             self.assertIn(says, self.call("attribute", *words, "--plugin-path", "mine_no", expect=expect).stderr)

@@ -118,7 +118,7 @@ class Submissions(Board):
         self.assertRegex(entry["evidence"][0]["program"], r"^lgabench \S+ \(commit ")
         self.assertRegex(entry["evidence"][0]["command"], "^lgabench run tiny ")  # not where the program lies
         said = self.add(expect=1).stderr
-        self.assertEqual(len(re.findall(": this run is there$", said, re.M)), 5)
+        self.assertEqual(len(re.findall(": this run is on the board already$", said, re.M)), 5)
 
     def test_a_file_of_answers_goes_with_its_entry(self):
         self.prepare()
@@ -131,6 +131,9 @@ class Submissions(Board):
         self.replay()
         self.assertIn("1 entry, 0 problems", self.leaderboard("check").stdout)
         self.assertIn(f"--answers answers/{kept}", (self.dir / "board/tiny.html").read_text())
+        (self.dir / "board/answers/other.json").write_text("{}")
+        self.assertIn("answers/other.json: no entry is based on it; remove it", self.leaderboard("check", expect=1).stderr)
+        (self.dir / "board/answers/other.json").unlink()
         (self.dir / "board/answers" / kept).unlink()
         self.assertIn(f"{kept} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
 
@@ -182,7 +185,7 @@ class Submissions(Board):
         rewrite(cell, "episodes.jsonl", lambda e: {**e, "success": not e["success"], "attribution": None,
                                                    "failure": "missed_object" if e["success"] else "none"})
         before = {file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}
-        self.assertIn("this identity is there, with other outcomes in 1 of 8 cells", self.add(expect=1).stderr)
+        self.assertIn("this identity is on the board, with other outcomes in 1 of 8 cells", self.add(expect=1).stderr)
         self.assertEqual({file: file.read_bytes() for file in (self.dir / "board").rglob("*") if file.is_file()}, before)
 
     def test_a_cell_that_the_method_failed_counts_as_lost(self):
@@ -224,8 +227,7 @@ class Submissions(Board):
         self.assertEqual([link for link in re.findall(r"\]\(([^)]+)\)", readme) if not (root / link).exists()], [])
         self.assertRegex((root / "CITATION.cff").read_text(), "(?m)^cff-version: ")
         self.assertIn("5 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
-        (self.dir / "board/answers").mkdir()
-        (self.dir / "board/answers/elsewhere").symlink_to("/etc/passwd")
+        (self.dir / "board/elsewhere").symlink_to("/etc/passwd")
         self.assertIn("a symbolic link", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
         self.assertFalse((self.dir / "none.tar.gz").exists())
 
@@ -267,7 +269,7 @@ class Refusals(Board):
 
     def test_a_preset_whose_scenes_methods_are_tuned_on(self):
         self.call("run", "tiny", "--preset", "paper", "--methods", "fixture_constant", *PLUGIN, "--out", "paper")
-        self.assertRegex(self.refused("paper")[0], r'preset "paper" has no scene_seed of its own.*\(board, small\)$')
+        self.assertRegex(self.refused("paper")[0], r'preset "paper" is not one of the leaderboard.s, which .*: play lgabench run tiny --preset board or small$')
 
     def test_another_scene_seed(self):
         suite = {**SUITE, "presets": {"board": {"scene_seed": 78, "test_scenes": "per_seed"}}}
@@ -277,13 +279,14 @@ class Refusals(Board):
     def test_a_cell_that_was_not_played(self):
         shutil.rmtree(self.cell(demonstrations=4, training_seed=1))
         lines = self.refused()
-        self.assertIn("1 cells of the run have not been played", lines)
+        self.assertIn("1 cell of the run not played yet", lines)
         self.assertIn("missing: fixture_constant", " ".join(lines))
 
     def test_a_part_of_the_preset(self):
         self.play("part", "--seeds", "0")
         missing = [line for line in self.refused("part") if line.startswith("missing: ")]
         self.assertIn("missing: fixture_constant heart cells n=2 seed=1", missing)
+        self.assertIn("fixture_constant: 4 of the preset's 8 cells are there", self.refused("part"))
         self.assertEqual(len(missing), 2 * 4 + 4 + 2 * 2)  # two rows, constant_action, and two that learn nothing
 
     def test_a_cell_that_the_host_failed(self):
@@ -372,7 +375,7 @@ class Replays(Board):
 
     def test_an_honest_entry_is_bit_identical(self):
         said = self.verify("--cells", "3")
-        self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended otherwise \(nonce [0-9a-f]{32}\)")
+        self.assertRegex(said, r"^agrees  entries/\S+: 3 of 3 cells bit-identical, 0 of 12 episodes ended differently \(nonce [0-9a-f]{32}\)")
         self.assertEqual(self.tier(), "recomputed; not yet replayed; claimed by B. Reader: replayed")
         self.assertIn("a replay of 3 cells; expected 8 or more", self.leaderboard("vouch", self.entry.parent.name, "1", expect=2).stderr)
         self.verify(self.entry.parent.name)

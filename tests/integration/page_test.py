@@ -1,17 +1,12 @@
-"""report.html as a browser shows it: nothing that axe-core objects to, nothing wider than the screen or the paper, few stops
-of the tab key, and a dialog that leads from a number to an episode. Needs Chromium, its driver and axe-selenium-python."""
+"""report.html as a browser shows it: nothing that axe-core finds serious, nothing wider than the screen or the paper, few stops
+of the tab key, and a dialog that leads from a number to an episode. Needs Chromium, its driver and Selenium."""
 import shutil
 import unittest
 
+import axe
 from case import BesideOneRun
+from study_browser_test import MISSING, Service, webdriver
 
-try:
-    import selenium.webdriver
-    from axe_selenium_python import Axe
-except ImportError:
-    selenium = None
-
-PROGRAMS = [shutil.which("chromium"), shutil.which("chromedriver")]
 A4 = 680  # pixels of CSS between its margins
 
 
@@ -19,11 +14,11 @@ class InABrowser(BesideOneRun):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        options = selenium.webdriver.ChromeOptions()
-        options.binary_location = PROGRAMS[0]
+        options = webdriver.ChromeOptions()
+        options.binary_location = shutil.which("chromium")
         for argument in ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"):
             options.add_argument(argument)
-        cls.browser = selenium.webdriver.Chrome(options, selenium.webdriver.ChromeService(PROGRAMS[1]))
+        cls.browser = webdriver.Chrome(options=options, service=Service(shutil.which("chromedriver")))
         cls.addClassCleanup(cls.browser.quit)
 
     def open(self, width=1280, scheme="light", media="", place="", folded=False):
@@ -52,28 +47,24 @@ class InABrowser(BesideOneRun):
 
 
 
-@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
+@unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
 class PageInABrowser(InABrowser):
     run_of_class = ("run", "q2", "--scenarios", "q2_heart,q2_letter", "--methods", "lga,lga_s,gcbc_dart", "--demos", "10",
                     "--seeds", "0,1", "--episodes", "5", "--set", "*.epochs=20")
 
-    def findings(self):
-        axe = Axe(self.browser)
-        axe.inject()
-        return [(found["id"], [node["html"][:200] for node in found["nodes"]][:3]) for found in axe.run()["violations"]]
-
+    @axe.needed
     def test_axe_finds_nothing(self):
         for scheme in ("light", "dark"):
             for width in (1280, 390):
                 self.open(width, scheme)
                 with self.subTest(scheme, width=width, what="page"):
-                    self.assertEqual(self.findings(), [])
+                    self.assertEqual(axe.findings(self.browser), [])
                 self.click("button.rate")
                 with self.subTest(scheme, width=width, what="episodes"):
-                    self.assertEqual(self.findings(), [])
+                    self.assertEqual(axe.findings(self.browser), [])
                 self.click("dialog .zoom")
                 with self.subTest(scheme, width=width, what="an episode"):
-                    self.assertEqual(self.findings(), [])
+                    self.assertEqual(axe.findings(self.browser), [])
 
     def test_nothing_is_wider_than_its_place(self):
         wide = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrollWidth > f.clientWidth + 1)
@@ -99,7 +90,7 @@ class PageInABrowser(InABrowser):
         self.open()
         stops = """return [...document.querySelectorAll("main *")].filter((e) => e.tabIndex >= 0).length"""
         boxes = len(self.script("return [...document.querySelectorAll('main table, main svg.chart')].map(() => 1)"))
-        folded = len(self.shown("main summary"))
+        folded = len(self.shown("main summary, main p a, main .frame[tabindex]"))
         self.assertGreater(len(self.shown("main button")), 60)
         self.assertLessEqual(self.script(stops), boxes + folded)
         self.script("document.querySelector('tbody button.rate').focus()")
@@ -111,6 +102,20 @@ class PageInABrowser(InABrowser):
         self.press("ArrowLeft")
         self.assertEqual(self.script("return document.activeElement.dataset.row"), begun)
         self.assertLessEqual(self.script(stops), boxes + folded)
+
+    def test_a_name_in_a_legend_hides_its_curve(self):
+        self.open()
+        shown = """return [...document.querySelector("svg.chart:has(.entry)").querySelectorAll(":scope > .series")]
+            .filter((curve) => curve.getClientRects().length).map((curve) => curve.dataset.series)"""
+        pressed = "return document.querySelector('svg.chart .entry').getAttribute('aria-pressed')"
+        before = self.script(shown)
+        self.assertIn("LGA", before)
+        entry = "document.querySelector('svg.chart .entry')"
+        self.script(f"{entry}.dispatchEvent(new MouseEvent('click', {{bubbles: true}}))")
+        self.assertEqual((self.script(shown), self.script(pressed)), ([name for name in before if name != "LGA"], "false"))
+        self.assertTrue(self.script(f"return document.activeElement === {entry}"), "where the keyboard goes on")
+        self.press("Enter")
+        self.assertEqual((self.script(shown), self.script(pressed)), (before, "true"))
 
     def test_figures_and_tables_can_be_taken_away(self):
         self.open()
@@ -178,7 +183,7 @@ class PageInABrowser(InABrowser):
         self.assertEqual(self.script("return document.getElementById('outcome').value"), outcome)
 
 
-@unittest.skipUnless(selenium and all(PROGRAMS), "Chromium, its driver or axe-selenium-python is not installed")
+@unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
 class WholePageInABrowser(InABrowser):
     """Of a run as people make it: five methods, two numbers of demonstrations, three scenarios, two seeds."""
     run_of_class = ("run", "q1", "--scenarios", "heart,letter,something_to_drink_water_out_of", "--demos", "10,50", "--seeds", "0,1",
@@ -202,7 +207,7 @@ class WholePageInABrowser(InABrowser):
 
     def test_no_heading_is_cut_on_paper(self):
         self.open(A4, media="print")
-        split = """return [...document.querySelectorAll("main h2, main h3")].filter((heading) => {
+        split = """return [...document.querySelectorAll("main h2, main h3, main summary")].filter((heading) => {
             const looks = getComputedStyle(heading);
             return looks.breakInside !== "avoid" || looks.breakAfter !== "avoid";
           }).map((heading) => heading.textContent)"""

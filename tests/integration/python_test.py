@@ -151,6 +151,14 @@ class PythonMethods(Case):
         (self.dir / "mine.py").write_text(METHOD)
         (self.dir / "helper.py").write_text("x = 1\n")
 
+    def test_an_interpreter_without_numpy_or_that_is_gone_is_told_from_others(self):
+        subprocess.run([PYTHON, "-m", "venv", "--without-pip", self.dir / "bare"], check=True)
+        said = self.call(*with_options(RUN, "--python", "bare/bin/python"), "--methods", "mine.py:Mine", expect=4).stderr
+        self.assertIn("bare/bin/python: has no NumPy, which methods in Python need: bare/bin/python -m pip install numpy, or name", said)
+        (self.dir / "moved").symlink_to("/nowhere/python3")
+        said = self.call(*with_options(RUN, "--python", "./moved"), "--methods", "mine.py:Mine", expect=4).stderr
+        self.assertIn("./moved: leads to /nowhere/python3, which is not there: make the virtual environment again", said)
+
     def how(self, *words, expect=0):
         methods = ",".join("mine.py:Mine" + (f"+how={word}" if word else "") for word in words)
         done = self.call(*RUN, "--methods", methods, "--out", "out", expect=expect)
@@ -369,7 +377,7 @@ class PythonMethods(Case):
         self.call(*with_options(RUN, "--python", "venv/bin/python"), "--methods", "mine.py:Mine", "--out", "out")
 
     def test_what_fails_costs_its_own_cell(self):
-        reasons = {"raise": "plugin mine: ValueError: its own failure", "human": "plugin mine: ",
+        reasons = {"raise": "plugin mine: ValueError: its own failure (mine.py:", "human": "plugin mine: ",
                    "no_utf8": "ValueError: ? is no picture", "log": "services.log.epoch() was called outside of learn()",
                    "exit": "exited with 5 in phase learn", "nan_loss": "training diverged",
                    "no_selection": "edit() was given str",
@@ -399,7 +407,7 @@ class PythonMethods(Case):
         self.call("check-plugin", "net.py:Mine", "--python", PYTHON, "--set", how)
 
     def test_refused_with_a_reason(self):
-        for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file",
+        for word, said in {"mine.py:Other": "no class Other, it has: Mine, Policy", "none.py:A": "No such file", "none.py": "none.py: no such file",
                            "bad.py:A": "bad.py", "named.py:A": "id \"Upper\"", "options.py:A": "options",
                            "sets.py:A": "sets.py: options: expected values that JSON has",
                            "endless.py:A": "endless.py: options: expected values that JSON has",
@@ -411,6 +419,10 @@ class PythonMethods(Case):
             (self.dir / "sets.py").write_text("class A:\n    options = {'x': {'default': 'a', 'values': {'a', 'b'}}}\n")
             (self.dir / "endless.py").write_text("class A:\n    options = {'x': {'default': 1e999}}\n")
             self.assertIn(said, self.call(*RUN, "--methods", word, "--out", "out", expect=4).stderr)
+        (self.dir / "bounds.py").write_text(
+            "class A:\n    options = {'p': {'default': .5, 'min': 0, 'max': 1, 'help': '', 'source': ''}}\n")
+        said = self.call(*RUN, "--methods", "bounds.py:A+p=2", "--out", "out", expect=2).stderr
+        self.assertIn("/p: expected a number from 0 to 1, got 2", said)
         (self.dir / "old.py").write_text("import sys\nfrom lgabench_method import describe\nsys.version_info = (3, 9, 2)\n"
                                          "try:\n    describe.interpreter()\n"
                                          "except describe.NoMethod as error:\n    print(error)\n")

@@ -41,7 +41,7 @@ class BadInput(Case):
             (["q1", "--episodes=-1"], r"--episodes: .*got -1"),
             (["q1", "--episodes", "0"], r"--episodes: .*got 0"),
             (["q1", "--seeds", "3:1"], r"--seeds: .*3:1 has 0"),
-            (["q1", "--layout", "moon"], r'--layout: no layout "moon", expected one of: .*cells, continuous, released'),
+            (["q1", "--layout", "moon"], r'--layout: no layout "moon", expected one of: cells, continuous, released$'),
             (["q1", "--layout", "table"], r'scenario red_heart \(tabletop\): no layout "table", expected one of: cells, continuous, released'),
             (["mobile", "--layout", "cells", "--dry-run"], r'scenario \w+ \(mobile\): no layout "cells", expected one of: table'),
             (["q1", "--preset", "nope"], r'q1.json: no preset "nope", expected one of: leaderboard, paper, paper_text, smoke'),

@@ -46,8 +46,9 @@ class OwnScenario(Case):
         self.new("crowd", *NAME[1:], "--distractors", "4:6")
         checked = self.call("check-scenario", "crowd.json", "--scenes", "4", "--layout", "cells", expect=1).stdout
         self.assertIn("expected places for all", checked)
-        checked = self.call("check-scenario", "heart", "--suite", "clutter", "--scenes", "2", "--layout", "continuous").stdout
+        checked = self.call("check-scenario", "heart", "--suite", "clutter", "--scenes", "2").stdout
         self.assertRegex(checked, r"ok +near_6, continuous")
+        self.assertNotIn(", cells", checked, "the layouts of the suite alone")
 
     def test_a_method_that_asks_fails_where_nobody_answers(self):
         self.new(*NAME)
@@ -91,7 +92,7 @@ class OwnScenario(Case):
                 self.assertFalse((self.dir / "round.json").exists())
         self.assertNotIn("throw_away", self.new(*NAME, "--task", "none", expect=2).stderr, "a task of another environment")
         self.new(*NAME)
-        self.assertIn("is there already", self.new(*NAME, expect=2).stderr)
+        self.assertIn("exists already", self.new(*NAME, expect=2).stderr)
 
     def test_what_cannot_be_shown_or_solved_is_a_problem(self):
         self.new("fixed", "--command", "Bring me the pallet.", "--types", "pallet")

@@ -25,8 +25,9 @@ except ImportError:  # Debian's packages are those of Debian's interpreter
     if sys.executable != debian and os.access(debian, os.X_OK) and not os.environ.get("LGABENCH_SECOND_PYTHON"):
         os.environ["LGABENCH_SECOND_PYTHON"] = "1"
         os.execv(debian, [debian, *sys.argv])
-    webdriver = None
+    webdriver = Service = None
 
+import axe
 from study_people import SMALL, Server, StudyCase, events
 
 FULL = os.environ.get("LGABENCH_FULL") == "1"
@@ -358,6 +359,14 @@ class StudyLooks(InBrowser):
         for width, dark in cases:
             with self.subTest(width=width, dark=dark):
                 self.look(width, dark, f"{width}-{'dark' if dark else 'light'}")
+
+    @axe.needed
+    def test_axe_finds_nothing(self):
+        self.check = lambda page, where: self.assertEqual(axe.findings(page.driver), [], where)
+        self.start()
+        for width, dark in (390, True), (1280, False):
+            with self.subTest(width=width, dark=dark):
+                self.look(width, dark, f"axe-{width}")
 
 
 @unittest.skipUnless(FULL, "with ./test --full")

@@ -27,8 +27,8 @@ class StudyProtocols(StudyCase):
         unfilled = self.call("study", "check", "study", expect=2)
         self.assertIn("to fill: consent: [[UNTIL WHEN]]", unfilled.stdout)
         self.assertIn("to fill: protocol: [[YOUR NAME]]", unfilled.stdout)
-        self.assertIn("blanks to fill", self.call(*serve, expect=2).stderr)
-        self.assertRegex(self.call("study", "check", "study", "--pin", expect=2).stderr, r"\d+ blanks to fill$")
+        self.assertIn("blanks to fill in", self.call(*serve, expect=2).stderr)
+        self.assertRegex(self.call("study", "check", "study", "--pin", expect=2).stderr, r"\d+ blanks to fill in$")
         for name in "protocol.json", "consent.txt":
             file = self.dir / "study" / name
             file.write_text(re.sub(r"\[\[.*?\]\]", "invented", file.read_text()))
@@ -62,7 +62,7 @@ class StudyProtocols(StudyCase):
         self.addCleanup(busy.close)
         busy.bind(("127.0.0.1", 0))
         busy.listen()
-        self.assertIn("cannot be listened on", self.call("study", "serve", "study", "--out", "d", "--rehearsal", "--port",
+        self.assertIn("cannot listen there", self.call("study", "serve", "study", "--out", "d", "--rehearsal", "--port",
                                                          busy.getsockname()[1], expect=2).stderr)
 
 

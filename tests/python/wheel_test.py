@@ -66,6 +66,14 @@ class Wheel(unittest.TestCase):
         self.assertEqual(self.results("wheel"), self.results("tree"))
         self.assertIn("Landlock", (self.dir / "wheel/run.json").read_text())
 
+    def test_commands_that_are_printed_begin_as_a_shell_finds_the_program(self):
+        script = self.dir / "v/bin/lgabench"
+        words = ("-c", "from lgabench.__main__ import typed; print(typed(), end='')")
+        self.assertRegex(self.python(*words), "/_install/bin/lgabench$")  # nothing else starts it
+        script.touch(0o755)
+        self.addCleanup(script.unlink)
+        self.assertEqual(self.python(*words), str(script))
+
     def test_a_method_with_the_interpreter_that_holds_it(self):
         (self.dir / "first.py").write_text(METHOD)
         self.python("-m", "lgabench", "run", "q1", "--preset", "smoke", "--scenarios", "heart", "--methods", "first.py:First",

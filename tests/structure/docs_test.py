@@ -263,6 +263,9 @@ class Documents(unittest.TestCase):
     def test_cited_as_it_is(self):
         said = re.search(r"^version: (.*)$", (SOURCE / "CITATION.cff").read_text(), re.M)[1]
         self.assertIn(f"version = {{{said}}}", (SOURCE / "docs/citing.md").read_text())
+        header = (SOURCE / "framework/lgabench/core/version.hpp").read_text()
+        self.assertIn(f'LGABENCH_VERSION "{said}"', header)
+        self.assertIn(f"VERSION {said.split('-')[0]} ", (SOURCE / "CMakeLists.txt").read_text())
 
     def test_quoted_messages_are_the_programs(self):
         """First column of the tables of troubles, "…" for what fills a message in: its other parts stand in a source."""

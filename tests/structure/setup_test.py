@@ -46,5 +46,32 @@ class Setup(unittest.TestCase):
         self.assertIn("expected apt-get; on", self.said("x86_64", release=release))
 
 
+class WithoutNetwork(unittest.TestCase):
+    def test_what_is_skipped_is_said(self):
+        with tempfile.TemporaryDirectory() as directory:
+            python = pathlib.Path(directory) / "python3"
+            python.write_text("#!/bin/sh\necho 'Could not resolve host' >&2\nexit 1\n")
+            python.chmod(0o755)
+            done = subprocess.run([SOURCE / "cmake/fetch/axe", f"{directory}/axe"], capture_output=True, text=True,
+                                  env={**os.environ, "PATH": f"{directory}:{os.environ['PATH']}"})
+            self.assertFalse(os.path.exists(f"{directory}/axe"))
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertEqual(done.stderr, "axe-core could not be fetched, so that pages are not checked for accessibility: "
+                                      "Could not resolve host\n")
+
+
+class MovedClones(unittest.TestCase):
+    def test_a_build_tree_of_another_place(self):
+        with tempfile.TemporaryDirectory() as directory:
+            tree = pathlib.Path(directory) / "build/release"
+            tree.mkdir(parents=True)
+            (tree / "CMakeCache.txt").write_text("CMAKE_HOME_DIRECTORY:INTERNAL=/home/me/before\n")
+            done = subprocess.run([shutil.which("bash"), SOURCE / "cmake/build", "release"], capture_output=True, text=True,
+                                  cwd=directory)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertEqual(done.stderr, "build/release was made in /home/me/before: this clone was moved or copied. "
+                                      "Build anew: rm -r build/release, then the same command\n")
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

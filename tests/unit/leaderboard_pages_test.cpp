@@ -33,6 +33,21 @@ TEST(Board, WhatIsBuiltIsCurrentAndAnEditIsNot) {
   EXPECT_SAYS(all(check(board.path).problems), "leaderboard.csv: not what lgabench leaderboard build makes");
 }
 
+TEST(Board, AnswersThatNoEntryNamesAreFound) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5);
+  const std::string answers = "{}";
+  entry.identity.answers_sha256 = sha256(answers);
+  entry.identity.answers = FileAnswers{entry.identity.answers_sha256};
+  write_replayed(board.path, entry);
+  fs::create_directory(board.path / "answers");
+  write_file(board.path / answers_file(entry.identity), answers);
+  build(board.path);
+  EXPECT_EQ(all(check(board.path).problems), "");
+  write_file(board.path / "answers/other.json", answers);
+  EXPECT_EQ(all(check(board.path).problems), "answers/other.json: no entry is based on it; remove it");
+}
+
 TEST(Board, ARowSaysWhatTheKernelCouldNotConfine) {
   const TemporaryDirectory board;
   for (const auto& [name, confinement] : {std::pair("a", "Landlock 6, seccomp"),

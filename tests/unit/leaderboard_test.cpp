@@ -113,7 +113,7 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),
               "/evidence/0/started: expected a time");
-  EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "alone here");
+  EXPECT_SAYS(after([&](auto& path) { write_file(path / "note.txt", ""); }), "expected only entry.json, cells.jsonl");
   EXPECT_SAYS(after([&](auto& path) { edit(path / "entry.json", "\n", "\n\n"); }), "not as it is written");
 }
 
@@ -137,7 +137,7 @@ TEST(LeaderboardEntry, AVerificationOfNoCellIsNone) {
   empty["bit_identical"] = empty["episodes"] = 0;
   add_verification(board.path, entry, empty);
   EXPECT_SAYS(message_of<InputError>([&] { read_entry(board.path, entry.place()); }),
-              "/cells: expected a cell or more");
+              "/cells: expected at least one cell");
 }
 
 TEST(LeaderboardEntry, TiersFollowFromLinesThatSomebodyVouchesFor) {

@@ -75,7 +75,7 @@ TEST_F(ParticipantFile, IsReadAsTheSchemaHasIt) {
 
 TEST_F(ParticipantFile, IsRefusedWithThePlace) {
   for (const auto& [pointer, value, expected] : std::vector<std::tuple<const char*, Json, const char*>>{
-           {"/consent/given", false, "/consent/given: expected true: answers are used with consent alone"},
+           {"/consent/given", false, "/consent/given: expected true: answers are used only with consent"},
            {"/consent/ethics", nullptr, "/consent/ethics"},
            {"/license", 3, "/license"},
            {"/participant", "", "/participant: expected a pseudonym"},

@@ -42,12 +42,37 @@ struct Host {
 
 TEST(Options, AQuestionnaireIsNoOptionUnlessItIsOne) {
   const std::string declared = "{" LGABENCH_QUESTIONNAIRE R"("a": {"default": 1, "help": "", "source": ""}})";
-  EXPECT_TRUE(is_questionnaire(declared));
-  EXPECT_EQ(read_options(declared).size(), 1u);
+  EXPECT_TRUE(read_options(declared).questionnaire);
+  EXPECT_EQ(read_options(declared).options.size(), 1u);
   const std::string named = R"({"questionnaire": {"default": true, "help": "", "source": ""}})";
-  EXPECT_FALSE(is_questionnaire(named));
-  EXPECT_EQ(read_options(named).size(), 1u);
+  EXPECT_FALSE(read_options(named).questionnaire);
+  EXPECT_EQ(read_options(named).options.size(), 1u);
   EXPECT_THROW(read_options(R"({"questionnaire": "yes"})"), PluginError);
+}
+
+TEST(Options, ANumberLiesBetweenItsBounds) {
+  PluginInfo plugin;
+  plugin.kind = "method";
+  plugin.id = "mine";
+  plugin.options = read_options(R"({
+    "p": {"default": 0.5, "min": 0, "max": 1, "help": "", "source": ""},
+    "n": {"default": 3, "max": 9, "words": ["all"], "help": "", "source": ""}})")
+                       .options;
+  const auto said = [&plugin](const Json& given) {
+    return message_of<InputError>([&] { resolve_options(plugin, given); });
+  };
+  EXPECT_EQ(resolve_options(plugin, {{"p", 1}, {"n", 9}}), (Json{{"p", 1.}, {"n", 9}}));
+  EXPECT_EQ(resolve_options(plugin, {{"n", "all"}}).at("n"), "all");
+  EXPECT_SAYS(said({{"p", 1.5}}), "/p: expected a number from 0 to 1, got 1.5");
+  EXPECT_SAYS(said({{"p", -.5}}), "/p: expected a number from 0 to 1, got -0.5");
+  EXPECT_SAYS(said({{"n", 10}}), "/n: expected a whole number of 9 or less, got 10");
+
+  const auto refused = [](const char* bound) {
+    return message_of<PluginError>(
+        [bound] { read_options(std::string(R"({"p": {"default": 2, "help": "", "source": "", )") + bound + "}}"); });
+  };
+  EXPECT_SAYS(refused(R"("max": 1)"), "options: /p/max: expected a number, not below a default that is one");
+  EXPECT_SAYS(refused(R"("max": "many")"), "options: /p/max: expected a number");
 }
 
 TEST(Plugin, DescriptorIsReadFromTheBytes) {

@@ -7,9 +7,11 @@
 #include <string>
 
 #include <lgabench/core/scratch.hpp>
+#include <lgabench/core/version.hpp>
 #include <lgabench/record/answer_source.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/outcome.hpp>
+#include <lgabench/record/run_record.hpp>
 #include <lgabench/record/test_scenes.hpp>
 
 #include "testing.hpp"
@@ -86,6 +88,13 @@ TEST(TestScenes, SetsOfTrainingSeeds) {
   EXPECT_EQ(scene_set(TestScenes::shared, 5), 0u);
   for (const TestScenes scenes : {TestScenes::shared, TestScenes::per_seed})
     EXPECT_EQ(read_test_scenes(JsonReader(Json(scenes), "file")), scenes);
+}
+
+TEST(RunRecord, VersionsThatComputeTheSameCells) {
+  EXPECT_TRUE(same_cells("0.2.0", LGABENCH_VERSION)) << "runs of 0.2 are verified and resumed";
+  EXPECT_TRUE(same_cells("0.2.0", "0.2.7"));
+  EXPECT_FALSE(same_cells("0.1.0", LGABENCH_VERSION));
+  EXPECT_FALSE(same_cells("0.4.0", "0.3.0"));
 }
 
 TEST(Layout, AReportsFilesAreAmongARuns) {

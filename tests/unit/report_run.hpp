@@ -127,7 +127,8 @@ class FabricatedRun : public TemporaryDirectory {
 
   static Json selected_json(const Spec& s) {
     const Json quality{{"precision", 1.0}, {"recall", 0.75}, {"size", 3}, {"true_size", 4}};
-    const bool selects = s.method == "lga" || s.method == "human" || s.method == "lga_hill";
+    const bool selects =
+        s.method == "lga" || s.method == "human" || s.method == "lga_hill" || !s.selection_errors.is_null();
     return {
         {"selection",
          {{"target", {{"object_types", {"heart"}}, {"textures", {"red", "tiger"}}}},

@@ -163,8 +163,13 @@ TEST(Index, HasEveryRunAndItsMethodsBestFirst) {
 
 TEST(ErrorCurves, AreOfOneKindOfErrorsAndBeginWithTheRowWithout) {
   FabricatedRun run;
+  Spec other{"lga_s", 3};
+  other.options = {{"epochs", 750}};
+  run.add(other);
   const auto add = [&run](int won, const Json& errors, const std::string& suffix, const char* failure) {
     Spec spec{"lga" + suffix, won};
+    spec.options = {{"epochs", 9}};
+    spec.provenance = "truth";
     spec.selection_errors = errors;
     spec.failure = failure;
     run.add(spec);
@@ -185,7 +190,13 @@ TEST(ErrorCurves, AreOfOneKindOfErrorsAndBeginWithTheRowWithout) {
   EXPECT_EQ(curve["points"][2]["empty"], .6);
   EXPECT_EQ(summary["rows"][curve["points"][1]["row"].get<std::size_t>()]["method"], "lga+missing=0.1");
   EXPECT_NEAR(curve["slope"].get<double>(), -.2, 1e-12);
-  EXPECT_EQ(chart_named(report.document, "errors_missing_cells_mujoco_test_20").series.size(), 1u);
+  const report::Chart& chart = chart_named(report.document, "errors_missing_cells_mujoco_test_20");
+  ASSERT_EQ(chart.series.size(), 1u);
+  EXPECT_EQ(chart.series[0].name, "LGA epochs=9") << "as tables name the row";
+  std::string sources;
+  for (const report::Note& note : report.document.notes) sources += note.text + "\n";
+  EXPECT_SAYS(sources, "φ̂ of LGA missing=0.1 epochs=9: true φ̂ with errors made in it: no human data");
+  EXPECT_SAYS(sources, "φ̂ of LGA epochs=9: true φ̂: no human data");
   EXPECT_SAYS(read_file(run.path / "report.html"), "What an error of the Selection costs");
 }
 

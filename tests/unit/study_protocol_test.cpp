@@ -72,7 +72,7 @@ TEST_F(StudyProtocol, BeginsOnlyFilledAndAsItWasPinned) {
   write_file(path / "consent.txt", "I agree to something else.\n");
   EXPECT_SAYS(not_ready(read_protocol(file), file), "the consent differs from what");
   write_file(path / "consent.txt", "I agree, [[NAME]].\n");
-  EXPECT_SAYS(not_ready(read_protocol(file), file), "1 blanks to fill");
+  EXPECT_SAYS(not_ready(read_protocol(file), file), "1 blanks to fill in");
   EXPECT_EQ(blanks(read_protocol(file)), (std::vector<std::string>{"consent: [[NAME]]"}));
   ready_protocol(path, "crossover", {{"seed", 8}});
   EXPECT_SAYS(not_ready(read_protocol(file), file), "the protocol differs from what");

@@ -89,7 +89,7 @@ Participant read_participant(const fs::path& file) {
   consent.only({"given", "statement", "ethics"});
   consent.at("statement").string();
   consent.at("ethics").string();
-  if (!consent.at("given").boolean()) consent.at("given").fail("true: answers are used with consent alone");
+  if (!consent.at("given").boolean()) consent.at("given").fail("true: answers are used only with consent");
   for (const JsonReader& answer : reader.at("answers").elements()) read_answer(answer, participant);
   return participant;
 }

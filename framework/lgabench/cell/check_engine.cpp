@@ -83,7 +83,7 @@ std::string judge_task(const TaskInfo& task_info, const PluginInfo& engine, Chec
   std::string differs;
   const auto backwards = [&] {
     for (std::size_t i = scenes.size(); i-- > 0;)
-      if (play(*environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended otherwise";
+      if (play(*environment, scenes[i]).bytes != forwards[i].bytes) differs = "a scene played again ended differently";
   };
   backwards();
   const long long before = ProcessState::now().heap_bytes;
@@ -113,7 +113,7 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
   } catch (const PluginError&) {
     throw;
   } catch (const std::exception& e) {
-    report.problem(doing, e.what(), "this call must succeed: a run makes the same");
+    report.problem(doing, e.what(), "this call must succeed: a run makes it too");
   }
   report.hashes = {{"episodes", sha256(all)}};
   return report;

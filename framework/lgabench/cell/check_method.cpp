@@ -154,7 +154,7 @@ class MethodCheck {
     } catch (const MethodGone&) {
       throw;
     } catch (const std::exception& e) {
-      report_.problem(doing_, e.what(), "this call must succeed: a run makes the same");
+      report_.problem(doing_, e.what(), "this call must succeed: a run makes it too");
     }
     if (is_library()) judge_process();
     note_refused_calls();
@@ -382,7 +382,7 @@ class MethodCheck {
     same("training", first.training, second.training);
     same("actions", first.actions, second.actions);
     if (!is_library()) return;
-    report_.judge("memory of a use", grown > (1 << 20) ? fmt::format("{} KiB are not given back", grown / 1024) : "",
+    report_.judge("memory of a use", grown > (1 << 20) ? fmt::format("{} KiB are not freed", grown / 1024) : "",
                   "given back", "the second use must end with as much memory as the first");
   }
 

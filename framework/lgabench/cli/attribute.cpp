@@ -92,7 +92,7 @@ int attribute(AttributeArguments a) {
   expect_run(a.run);
   if (a.out.empty())
     a.out = fs::path(fs::absolute(a.run / "").lexically_normal().parent_path().string() + "-attributed");
-  if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": is there already");
+  if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": exists already");
   const RunRecord record = read_run_record(a.run);
   expect_same_version(a.run, record, "attribute");
   const std::vector<Recorded> cells = without_causes(a, record);
@@ -121,28 +121,30 @@ int attribute(AttributeArguments a) {
 
 void add_attribute(CLI::App& app, int& exit) {
   auto a = std::make_shared<AttributeArguments>();
-  CLI::App* verb = app.add_subcommand(
-      "attribute", "Find out what the failures of a finished run are attributed to, where it was not asked");
+  CLI::App* verb = app.add_subcommand("attribute",
+                                      "Attribute the failures of a finished run to the abstraction, perception or the "
+                                      "policy, for rows where that was not done");
   verb->add_option("RUN", a->run, "The run's directory")->required();
-  verb->add_option("--rows", a->rows, "Rows, by name; several with commas (default: all that lack causes)")
+  verb->add_option("--rows", a->rows, "Rows, by name, separated by commas (default: all rows without attribution)")
       ->delimiter(',');
-  verb->add_option("--out", a->out, "The copy's directory (default: RUN-attributed)");
-  verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
+  verb->add_option("--out", a->out, "The directory for the copy (default: RUN-attributed)");
+  verb->add_option("--jobs", a->jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
+  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and counts as failed")
       ->check(within(1, 1e7))
       ->capture_default_str();
-  verb->add_option("--methods", a->methods, "FILE.py:Class of methods in Python; several with commas")->delimiter(',');
-  verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
+  verb->add_option("--methods", a->methods, "Methods in Python, as FILE.py:Class; separate several with commas")
+      ->delimiter(',');
+  verb->add_option("--python", a->python, "The interpreter for methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   arrange(*verb, "", {{"RUN", "RUN"}, {"--rows", "ROW,..."}, {"--out", "DIR"}});
   arrange(*verb, "How cells are computed",
           {{"--jobs", "N"}, {"--timeout", "SECONDS"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
   verb->footer(
-      "Example: lgabench attribute runs/q1-leaderboard --rows my_method\n"
-      "In presets of the leaderboard, a method that is not the installation's own is told nothing true, so its\n"
-      "failures have no cause. This command computes the cells again, in fresh processes that are told the truth in\n"
-      "the end, and writes a copy of the run with the causes; how long that takes is said first. A row whose\n"
-      "actions are not the recorded ones, bit for bit, is left out: exit 1. `leaderboard add` takes the run itself.");
+      "Example: lgabench attribute runs/q1-leaderboard --rows my_method\nIn the leaderboard's presets, a method that "
+      "did not come with this installation is never told the truth, so its failures are not attributed. This command "
+      "computes the cells again, in fresh processes that learn the truth at the end, and writes a copy of the run with "
+      "the causes; it says first how long that will take. A row whose actions are not the recorded ones, bit for bit, "
+      "is left out: exit 1. `leaderboard add` takes the original run.");
   verb->callback([a, &exit] { exit = attribute(*a); });
 }
 

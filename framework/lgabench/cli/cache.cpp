@@ -70,13 +70,14 @@ void add_cache(CLI::App& app, int& exit) {
   };
   auto a = std::make_shared<CacheArguments>();
   CLI::App* verb = app.add_subcommand("cache", "Show how large the cache of demonstrations is, or empty it");
-  verb->add_option("what", a->what, "size, or clear: remove its files")->check(one_of("action", {"size", "clear"}));
-  verb->add_option("--cache", a->directory, "Where it is (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
-  verb->add_flag("--json", a->json, "One JSON object on stdout");
+  verb->add_option("what", a->what, "size: print it; clear: remove its files")
+      ->check(one_of("action", {"size", "clear"}));
+  verb->add_option("--cache", a->directory, "Its directory (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
+  verb->add_flag("--json", a->json, "Print one JSON object");
   arrange(*verb, "", {{"what", "size|clear"}, {"--cache", "DIR"}});
   verb->footer(
-      "What is removed is made again when a run needs it. A cell that runs meanwhile loses nothing but time.\n"
-      "Example: lgabench cache clear");
+      "Demonstrations that were removed are made again when a run needs them. A cell that is running at the time loses "
+      "nothing but time.\nExample: lgabench cache clear");
   verb->callback([a, &exit] {
     exit = cache(a->directory.empty() ? default_cache() : fs::path(a->directory), a->what == "clear", a->json);
   });

@@ -125,25 +125,24 @@ int check_plugin(const CheckPluginArguments& a) {
 
 void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckPluginArguments>();
-  CLI::App* verb = app.add_subcommand("check-plugin", "Check a plugin for mistakes, and say how to mend them");
+  CLI::App* verb = app.add_subcommand("check-plugin", "Check a plugin for mistakes, and say how to fix them");
   verb->add_option("file", a->file, "The plugin's library, FILE.so, or a method in Python, FILE.py:CLASS")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--python", a->python, "The interpreter of a method in Python")->capture_default_str();
-  verb->add_option("--set", a->settings, "An option of the plugin; may be given again")->allow_extra_args(false);
+  verb->add_option("--python", a->python, "The interpreter for a method in Python")->capture_default_str();
+  verb->add_option("--set", a->settings, "An option of the plugin; can be repeated")->allow_extra_args(false);
   verb->add_option("--environment", a->environment, "The environment to check it in")
       ->check(one_of("environment", environment_ids()));
-  verb->add_option("--timeout", a->timeout_s, "Seconds for each of the two processes")
+  verb->add_option("--timeout", a->timeout_s, "Time limit of each of the two processes, in seconds")
       ->check(within(1, 1e6))
       ->capture_default_str();
-  verb->add_flag("--json", a->json, "One JSON object on stdout");
+  verb->add_flag("--json", a->json, "Print one JSON object");
   arrange(*verb, "",
           {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--environment", "ID"}, {"--timeout", "SECONDS"}});
   verb->footer(
-      "Two fresh processes use it as cells do, with the same seed. Exit 1 if there is a problem.\n"
-      "Without --environment, an engine is used in all of them, and a method in the first that has a scenario\n"
-      "with a command that is tested but never demonstrated.\n"
-      "Example: lgabench check-plugin build/my_method.so");
+      "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "
+      "--environment, an engine is checked in every environment, and a method in the first that has a scenario with a "
+      "command that is tested but never demonstrated.\nExample: lgabench check-plugin build/my_method.so");
   verb->callback([a, &exit] { exit = check_plugin(*a); });
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scenes.hpp>
@@ -37,6 +38,7 @@ struct CheckScenarioArguments {
 Scenario scenario_of(const std::string& word) {
   const fs::path file = word;
   if (file.extension() != ".json") return load_scenario(word);
+  if (std::error_code not_there; !fs::exists(file, not_there)) throw InputError(word + ": no such file");
   lgabench::add_scenario_path(fs::absolute(file).parent_path());
   return load_scenario(file.stem().string());
 }
@@ -129,13 +131,13 @@ void judge_sentences(const Scenario& scenario, CheckReport& report) {
 }
 
 int check_scenario(const CheckScenarioArguments& a) {
-  const auto in_suite = [&a](const std::string& id) {
-    return suite_scenario(load_suite(a.suite), id, Truth::released);
-  };
+  std::optional<Suite> suite;
+  if (!a.suite.empty()) suite = load_suite(a.suite);
+  const auto in_suite = [&suite](const std::string& id) { return suite_scenario(*suite, id, Truth::released); };
   const bool is_file = fs::path(a.file).extension() == ".json";  // else an id, which may be a variant of the suite
-  const Scenario scenario = a.suite.empty() ? scenario_of(a.file)
-                            : is_file       ? in_suite(scenario_of(a.file).id)
-                                            : in_suite(a.file);
+  const Scenario scenario = !suite    ? scenario_of(a.file)
+                            : is_file ? in_suite(scenario_of(a.file).id)
+                                      : in_suite(a.file);
   const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   const PluginInfo& engine = a.engine.empty() ? usual_engine(catalogue) : catalogue.find("engine", a.engine);
   const auto environment = make_environment(scenario, load_engine(engine));
@@ -145,6 +147,7 @@ int check_scenario(const CheckScenarioArguments& a) {
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);
   std::vector<std::string> layouts = a.layouts;
+  if (layouts.empty() && suite) layouts = suite->design.layouts;
   if (layouts.empty()) {
     layouts = layouts_of(scenario);
     layouts.resize(std::min<std::size_t>(layouts.size(), 2));
@@ -169,15 +172,16 @@ void add_check_scenario(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckScenarioArguments>();
   CLI::App* verb = app.add_subcommand("check-scenario", worker_summary("check-scenario"));
   verb->add_option("scenario", a->file, "The scenario's file, or its id")->required();
-  verb->add_option("--scenes", a->scenes, "How many of each arm and layout")
+  verb->add_option("--scenes", a->scenes, "Scenes per arm and layout")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  verb->add_option("--layout", a->layouts, "One of the task's, several with commas (default: its first two)")
+  verb->add_option("--layout", a->layouts,
+                   "Layouts of the task, separated by commas (default: those of --suite, else the task's first two)")
       ->delimiter(',')
       ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--suite", a->suite, "As that suite has it: its training scenes, its arms");
-  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
-  verb->add_option("--out", a->out, "The picture's file; SCENARIO.png if not given");
+  verb->add_option("--suite", a->suite, "Check the scenario as this suite plays it: its training scenes, its arms");
+  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites use)");
+  verb->add_option("--out", a->out, "The file for the picture (default: SCENARIO.png)");
   add_plugin_path(*verb, a->plugin_path);
   add_scenario_path(*verb);
   arrange(*verb, "",

@@ -142,7 +142,7 @@ std::string submit_script(const fs::path& out) {
 void expect_repeatable(const RunArguments& run) {
   for (const auto& [given, option] :
        {std::pair{run.fresh, "--fresh"}, {run.dry_run, "--dry-run"}, {!run.debug.empty(), "--debug"}})
-    if (given) throw InputError(fmt::format("{}: of run alone; an element resumes where it stopped", option));
+    if (given) throw InputError(fmt::format("{}: an option of run only; an element resumes where it stopped", option));
 }
 
 int write_scripts(ClusterArguments a) {
@@ -169,7 +169,7 @@ int write_scripts(ClusterArguments a) {
             a.timings.empty() ? "by cells measured elsewhere (--timings: by your own)"
                               : "by the cells of " + a.timings.string());
   if (expected_s > .8 * usable_s)
-    to_stdout("--time {} is short for that: {} elements would fit, or submit the array again\n", a.time,
+    to_stdout("--time {} is too short for that: {} elements would fit, or submit the array again\n", a.time,
               static_cast<int>(a.elements * expected_s / (.6 * usable_s)) + 1);
   to_stdout("To submit: {}/submit\nThen: lgabench status {}\n", shell_line({out.string()}), shell_line({out.string()}));
   return ok;
@@ -182,22 +182,22 @@ void add_cluster(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("cluster", "Write scripts that compute a run as a Slurm job array");
   add_run_options(*verb, a->run);
   verb->add_option("--elements", a->elements,
-                   "Elements of the job array, each a part of the run; few long ones are best")
+                   "Number of elements of the job array, each a part of the run; a few long ones are best")
       ->required()
       ->check(CLI::Range(1, 100000));
   verb->add_option("--time", a->time, "Time limit of an element, as HH:MM:SS")->required();
-  verb->add_option("--partition", a->partition, "Slurm's partition");
-  verb->add_option("--cpus", a->cpus, "Cores of an element, each computing a cell")
+  verb->add_option("--partition", a->partition, "Slurm partition");
+  verb->add_option("--cpus", a->cpus, "Cores per element, each computing a cell")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   verb->add_option("--timings", a->timings,
-                   "A run, for instance of the preset smoke, from whose times to predict the duration");
+                   "A run, for instance of the preset smoke, whose times are used to predict the duration");
   arrange(*verb, "The array",
           {{"--elements", "N"}, {"--time", "TIME"}, {"--partition", "NAME"}, {"--cpus", "N"}, {"--timings", "RUN"}});
   verb->footer(
-      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\n"
-      "Writes array.sbatch, merge.sbatch (which then merges the parts and makes the report) and submit into --out.\n"
-      "All other options are those of run, without --fresh, --dry-run and --debug. It submits nothing.");
+      "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\nWrites three "
+      "scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. It "
+      "submits nothing itself.\nAll other options are those of run, except --fresh, --dry-run and --debug.");
   verb->callback([a, &exit] { exit = write_scripts(*a); });
 }
 

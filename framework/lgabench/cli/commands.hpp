@@ -14,9 +14,9 @@ inline constexpr const char* about = "A benchmark of state abstraction in imitat
 inline constexpr std::array<std::pair<const char*, const char*>, 5> worker_verbs{{
     {"select", "Ask which features matter for a command, and print the Selection"},
     {"demos", "Write the oracle's demonstrations of a scenario as robomimic HDF5"},
-    {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG"},
+    {"render", "Draw a scene, its ids and its goal mask, or a contact sheet, as a PNG file"},
     {"replay", "Play a recorded episode again, as an animation or a film strip"},
-    {"check-scenario", "Sample and play a scenario's scenes, and say what is wrong with it"},
+    {"check-scenario", "Sample and play a scenario's scenes, and say what is wrong with the scenario"},
 }};
 /// What a verb of worker_verbs does.
 inline const char* worker_summary(std::string_view verb) {

@@ -31,22 +31,20 @@ void add_compare(CLI::App& app, int& exit) {
       "compare",
       "Compare two runs scene by scene: success and seconds of each row; exit 1 if B is worse beyond chance");
   verb->add_option("A", options->a, "A run's directory")->required();
-  verb->add_option(
-      "B", options->b,
-      "Another run's, of the same suite and number of episodes; with --rows it may be left out, and is then A");
+  verb->add_option("B", options->b,
+                   "Another run's directory, with the same suite and number of episodes; with --rows it may be left "
+                   "out and is then A");
   verb->add_option("--rows", options->rows, "Compare a row of A with a row of B, whatever their methods and options")
       ->delimiter(',')
       ->expected(2);
-  verb->add_flag("--times", options->times, "Seconds of each phase, not only of whole cells");
+  verb->add_flag("--times", options->times, "Print the seconds of each phase, not only of whole cells");
   verb->add_flag("--json", options->json, "Print JSON instead of tables");
   arrange(*verb, "", {{"A", "A"}, {"B", "B"}, {"--rows", "ROW_A,ROW_B"}});
   verb->footer(
-      "Example: lgabench compare runs/before runs/after\n"
-      "         lgabench compare runs/paper runs/mine --rows lga,my_method\n"
-      "The verdict comes first: is a row worse beyond chance, does a cell of A's fail in B, or is it missing there?\n"
-      "Exit 1: one of these; with --rows, cells may be missing.\n"
-      "Rows are paired by method and options, not by name, also with those of a run of 0.1. Cells that played other "
-      "scenes are listed and not compared.");
+      "Example: lgabench compare runs/before runs/after\n         lgabench compare runs/paper runs/mine --rows "
+      "lga,my_method\nThe verdict comes first: whether a row is worse beyond chance, or a cell of A fails in B or is "
+      "missing there.\nExit 1: any of these; with --rows, cells may be missing.\nRows are paired by method and "
+      "options, not by name, including rows of a run of 0.1. Cells that played other scenes are listed, not compared.");
   verb->callback([options, &exit] {
     std::optional<report::RowPair> rows;
     if (!options->rows.empty()) rows = report::RowPair{options->rows[0], options->rows[1]};

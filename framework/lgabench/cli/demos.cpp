@@ -83,24 +83,24 @@ void add_demos(CLI::App& app, int&) {
   CLI::App* verb = app.add_subcommand("demos", worker_summary("demos"));
   verb->add_option("scenario", a->scenario, "A scenario's id; scenes are drawn from its true distribution");
   verb->add_option("--selection", a->selection,
-                   "Draw targets from what a method selected instead: a cell's selection.json");
+                   "Draw targets from what a method selected instead: the selection.json of a cell");
   verb->add_option("--layout", a->layout,
-                   "How objects are placed, of lgabench list layouts --of SCENARIO; the first of them if not given")
+                   "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)")
       ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--n", a->n, "How many demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  verb->add_option("--n", a->n, "Number of demonstrations")->check(CLI::Range(1, 1'000'000))->capture_default_str();
   verb->add_option("--seed", a->seed, "Training seed")->capture_default_str();
-  verb->add_option("--noisy", a->noisy, "DART: noisy rollouts for each demonstration")
+  verb->add_option("--noisy", a->noisy, "DART: number of noisy rollouts per demonstration")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   verb->add_option("--noise", a->noise,
-                   "DART: standard deviation of the noise in the last rollout, up to which it grows evenly")
+                   "DART: standard deviation of the noise in the last rollout; it grows linearly up to there")
       ->check(within(0, 10))
       ->capture_default_str();
-  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites are played on)");
+  verb->add_option("--engine", a->engine, "An engine, by plugin id (default: the one that suites use)");
   add_plugin_path(*verb, a->plugin_path);
   add_scenario_path(*verb);
   auto* out = verb->add_option("--out", a->out, "The HDF5 file to write");
-  verb->add_option("--inspect", a->inspect, "Print what is in a file of demonstrations")->excludes(out);
+  verb->add_option("--inspect", a->inspect, "Print what a file of demonstrations holds")->excludes(out);
   arrange(*verb, "", {{"scenario", "SCENARIO"}});
   arrange(*verb, "What is demonstrated",
           {{"--selection", "FILE"},
@@ -114,9 +114,8 @@ void add_demos(CLI::App& app, int&) {
            {"--scenario-path", "DIR"}});
   arrange(*verb, "Files", {{"--out", "FILE"}, {"--inspect", "FILE"}});
   verb->footer(
-      "Example: lgabench demos heart --n 10 --out heart.hdf5\n"
-      "As a method of a run saw them: lgabench demos heart --selection runs/NAME/cells/KEY/selection.json --out "
-      "lga.hdf5");
+      "Example: lgabench demos heart --n 10 --out heart.hdf5\nAs a method of a run got them: lgabench demos heart "
+      "--selection runs/NAME/cells/KEY/selection.json --out lga.hdf5");
   verb->callback([a] { a->inspect.empty() ? write(*a) : inspect(a->inspect); });
 }
 

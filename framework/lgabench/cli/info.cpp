@@ -27,7 +27,7 @@ void print(const PluginInfo& plugin) {
   for (const auto& [name, option] : plugin.options.items()) {
     to_stdout("  {} = {}\n      {} ({})\n", name, canonical(option["default"]), option["help"].get<std::string>(),
               option["source"].get<std::string>());
-    if (option.contains("min")) to_stdout("      {} or more\n", canonical(option["min"]));
+    if (const std::string range = range_text(option); !range.empty()) to_stdout("      {}\n", range);
     if (option.contains("words")) to_stdout("      or one of {}\n", canonical(option["words"]));
     if (option.contains("values")) to_stdout("      one of {}\n", canonical(option["values"]));
     if (option.value("framework", false)) to_stdout("      the framework's: a suite may set it for all methods\n");
@@ -188,8 +188,8 @@ void add_info(CLI::App& app, int& exit) {
   CLI::App* verb =
       app.add_subcommand("info", "Show everything known about a method, engine, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
-  verb->add_option("name", arguments->name, "As `lgabench list` prints it")->required()->type_name("NAME");
-  verb->add_flag("--json", arguments->json, "One JSON object on stdout; an array where several things have the name");
+  verb->add_option("name", arguments->name, "A name that `lgabench list` prints")->required()->type_name("NAME");
+  verb->add_flag("--json", arguments->json, "Print one JSON object, or an array where several things share the name");
   add_plugin_path(*verb, arguments->directories);
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {

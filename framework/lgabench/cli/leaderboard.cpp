@@ -57,7 +57,7 @@ void expect_board(const fs::path& board) {
 }
 
 std::string replay_words(const Json& line) {
-  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended otherwise",
+  return fmt::format("{} of {} cells bit-identical, {} of {} episodes ended differently",
                      line.at("bit_identical").get<int>(), line.at("cells").size(), line.at("flips").get<int>(),
                      line.at("episodes").get<int>());
 }
@@ -106,7 +106,7 @@ int verify(LeaderboardArguments a) {
     const std::string found = a.verify.fresh ? fresh_words(entry, *line) : replay_words(*line);
     to_stdout("{} {}: {} (nonce {})\n", passed ? "agrees " : "DIFFERS", directory.string(), found,
               line->at("nonce").get<std::string>());
-    to_stderr("To let it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
+    to_stderr("To make it count: lgabench leaderboard vouch {} {}\n", entry.id(), entry.verifications.size() + 1);
     differs = differs || !passed;
   }
   if (unverified > 0) to_stderr("{} of {} entries were not verified\n", unverified, entries.size());
@@ -154,34 +154,37 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("ACTION", a->action, "add, verify, vouch, build, check or withdraw")
       ->required()
       ->check(one_of("action", actions));
-  verb->add_option("WHAT", a->what,
-                   "add: a run's directory; verify (else all), vouch, withdraw: an entry's, or its id");
-  verb->add_option("LINE", a->line, "vouch: a line's number in verifications.jsonl, or withdrawn");
+  verb->add_option(
+      "WHAT", a->what,
+      "add: a run's directory; verify, vouch, withdraw: an entry's directory or id (verify without one: all entries)");
+  verb->add_option("LINE", a->line, "vouch: the number of a line in verifications.jsonl, or `withdrawn`");
   verb->add_option("--board", a->board, "The leaderboard's directory")->capture_default_str();
   verb->add_option("--entry", a->about,
-                   "add: a file that says who submits it, and from which source (docs/leaderboard.md)");
+                   "add: a file that says who submits the rows, and where their source code is (docs/leaderboard.md)");
   verb->add_option("--rows", a->rows, "add: only these rows of the run")->delimiter(',');
   CLI::Option* const cells =
-      verb->add_option("--cells", a->verify.cells, "verify: how many cells, chosen by a nonce drawn now")
+      verb->add_option("--cells", a->verify.cells, "verify: how many cells to play, chosen by a nonce drawn now")
           ->check(CLI::Range(1, 1000000))
           ->capture_default_str();
-  verb->add_flag("--fresh", a->verify.fresh, "verify: play on other test scenes, and compare success")->excludes(cells);
-  verb->add_option("--by", a->verify.by, "verify: who verifies");
-  verb->add_option("--jobs", a->jobs, "verify: cells computed at once (default: one a core)")
+  verb->add_flag("--fresh", a->verify.fresh, "verify: play on new test scenes, and compare success")->excludes(cells);
+  verb->add_option("--by", a->verify.by, "verify: your name, as the one who verifies");
+  verb->add_option("--jobs", a->jobs, "verify: cells to compute at once (default: one per core)")
       ->check(CLI::Range(1, 4096));
   verb->add_option("--timeout", a->verify.pool.timeout_s, "verify: seconds after which a cell is stopped")
       ->check(within(1, 1e7))
       ->capture_default_str();
-  verb->add_option("--methods", a->methods, "verify: FILE.py:Class of methods in Python")->delimiter(',');
-  verb->add_option("--python", a->python, "verify: the interpreter of methods in Python")->capture_default_str();
+  verb->add_option("--methods", a->methods, "verify: methods in Python, as FILE.py:Class")->delimiter(',');
+  verb->add_option("--python", a->python, "verify: the interpreter for methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
-  verb->add_option("--against", a->against, "build, check: a revision of git, whose outcomes must not have changed");
+  verb->add_option("--against", a->against, "build, check: a git revision; outcomes that it has must not have changed");
   verb->add_flag("--maintainer", a->maintainer,
                  "build, check: with --against, vouched.json, labels.json and tracks.json may differ");
-  verb->add_option("--documents", a->documents, "build, check: documents with tables of the board between markers")
+  verb->add_option("--documents", a->documents,
+                   "build, check: documents that contain tables of the board between markers")
       ->delimiter(',');
-  verb->add_option("--archive", a->archive, "build: pack the board, once it is checked, with license and citation");
-  verb->add_option("--reason", a->reason, "withdraw: why");
+  verb->add_option("--archive", a->archive,
+                   "build: pack the board into an archive once it is checked, with license and citation");
+  verb->add_option("--reason", a->reason, "withdraw: the reason");
   arrange(
       *verb, "",
       {{"ACTION", "add|verify|vouch|build|check|withdraw"}, {"WHAT", "WHAT"}, {"LINE", "LINE"}, {"--board", "DIR"}});
@@ -198,11 +201,11 @@ void add_leaderboard(CLI::App& app, int& exit) {
   arrange(*verb, "build and check",
           {{"--documents", "FILE,..."}, {"--archive", "OUT.tar.gz"}, {"--against", "REVISION"}, {"--maintainer", ""}});
   verb->footer(
-      "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\n"
-      "add refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\n"
-      "verify plays cells again, confined and without a cache, and records what it finds; vouch lets a line that was\n"
-      "found count: without it a line is a claim, and an entry has no rank. check reads files alone.\n"
-      "Exit 1: refused, different, or a problem. Exit 2: none of these, and verify could not verify some entry.");
+      "Example: lgabench leaderboard add runs/q1-leaderboard --entry me.json && lgabench leaderboard build\nadd "
+      "refuses a run that is not the whole preset on the board's scenes, and lists what is missing.\nverify plays "
+      "cells again, confined and without a cache, and records the outcome as a line; vouch makes that line count: "
+      "until then it is only a claim, and the entry has no rank. check only reads files.\nExit 1: refused, different, "
+      "or a problem. Exit 2: none of these, but verify could not verify some entry.");
   verb->callback([a, actions, verb, &app, &exit] {
     expect_options_of(*verb, a->action, actions);
     if (!a->what.empty() && (a->action == "build" || a->action == "check"))

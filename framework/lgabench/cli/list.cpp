@@ -162,16 +162,16 @@ void add_list(CLI::App& app, int& exit) {
   };
   const auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand(
-      "list", "List methods, engines, environments, suites and scenarios, and plugins that were refused");
+      "list", "List methods, engines, environments, suites and scenarios, and any plugins that were refused");
   verb->add_option("KIND", arguments->kind,
-                   fmt::format("Only the words of one kind, a line each: {}", fmt::join(kinds, ", ")))
+                   fmt::format("Print only the names of one kind, one per line: {}", fmt::join(kinds, ", ")))
       ->type_name("KIND")
       ->check(one_of("kind", {kinds.begin(), kinds.end()}));
   verb->add_option("--of", arguments->of,
-                   "With KIND: those that a run of this suite takes; layouts and sources also of a scenario")
+                   "With KIND: only those that a run of this suite accepts; for layouts and sources also a scenario's")
       ->type_name("SUITE");
   verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
-  verb->add_flag("--json", arguments->json, "One JSON object on stdout");
+  verb->add_flag("--json", arguments->json, "Print one JSON object");
   add_plugin_path(*verb, arguments->directories);
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {

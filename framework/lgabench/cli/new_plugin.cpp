@@ -44,14 +44,17 @@ void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
   if (std::error_code error; fs::exists(directory, error))
-    throw InputError(fmt::format("{}: is there already; nothing was written", directory.string()));
+    throw InputError(fmt::format("{}: exists already; nothing was written", directory.string()));
   const fs::path prefix = fs::weakly_canonical(program_directory().parent_path());
   const fs::path templates = data_directory() / "templates";
+  const std::string version = LGABENCH_VERSION;
+  const std::string number = version.substr(0, version.find('-'));  // as CMake compares it
   const auto write = [&](const fs::path& from, const std::string& to) {
     write_file(directory / to, filled(read_file(templates / from), {{"@NAME@", a.name},
                                                                     {"@CLASS@", class_name(a.name)},
                                                                     {"@KIND@", a.kind},
-                                                                    {"@VERSION@", LGABENCH_VERSION},
+                                                                    {"@VERSION@", version},
+                                                                    {"@NUMBER@", number},
                                                                     {"@PREFIX@", prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
@@ -78,12 +81,12 @@ void new_plugin(const NewPluginArguments& a) {
 
 void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
-  CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project of a new plugin, for you to change");
+  CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project for a new plugin, for you to change");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
   verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")
       ->check(one_of("kind", {"method", "engine", "python"}))
       ->capture_default_str();
-  verb->add_option("--directory", a->directory, "Where to write it; by default ./NAME, which must not exist yet");
+  verb->add_option("--directory", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
   arrange(*verb, "", {{"--kind", "method|engine|python"}, {"--directory", "DIR"}});
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {

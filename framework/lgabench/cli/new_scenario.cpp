@@ -91,7 +91,7 @@ Json scenario_json(const NewScenarioArguments& a) {
 void new_scenario(NewScenarioArguments a) {
   const fs::path file = (a.directory / (a.name + ".json")).lexically_normal();
   if (std::error_code error; fs::exists(file, error))
-    throw InputError(fmt::format("{}: is there already; nothing was written", file.string()));
+    throw InputError(fmt::format("{}: exists already; nothing was written", file.string()));
   ask(a.commands, "--command TEXT", "What is the command?", false);
   ask(a.types, "--types", "Which object types does it mean? (with commas between them, or ALL)", true);
   const Json json = scenario_json(a);
@@ -116,26 +116,29 @@ void add_new_scenario(CLI::App& app, int& exit) {
   const auto list = [verb](const char* name, Words& words, const char* help) {
     verb->add_option(name, words, help)->delimiter(',')->allow_extra_args(false);
   };
-  verb->add_option("name", a->name, "Its id, and the name of its file")->required();
-  verb->add_option("--command", a->commands, "The command's words; asked for if left out; may be given again")
+  verb->add_option("name", a->name, "The scenario's id, and the name of its file")->required();
+  verb->add_option("--command", a->commands, "The command's words; asked for if left out; can be repeated")
       ->allow_extra_args(false);
-  verb->add_option("--unseen", a->unseen, "A command that is tested but never demonstrated; may be given again")
+  verb->add_option("--unseen", a->unseen, "A command that is tested but never demonstrated; can be repeated")
       ->allow_extra_args(false);
   list("--types", a->types, "Object types that the command means, or ALL; asked for if left out");
   list("--textures", a->textures, "Their textures, or ALL");
-  list("--other-types", a->other_types, "Object types of the task's other objects: what a sweep must not touch");
+  list("--other-types", a->other_types, "Object types of what a sweep must not touch");
   list("--other-textures", a->other_textures, "Their textures, or ALL");
-  verb->add_option("--space", a->space, "The feature space: which words there are (lgabench render --gallery objects)")
+  verb->add_option("--space", a->space,
+                   "The feature space, whose words you may use (lgabench render --gallery objects draws them)")
       ->check(one_of("space", {"tabletop", "household"}))
       ->capture_default_str();
-  verb->add_option("--task", a->task, "What is done with it")->check(one_of("task", tasks()))->capture_default_str();
+  verb->add_option("--task", a->task, "What to do with the object")
+      ->check(one_of("task", tasks()))
+      ->capture_default_str();
   verb->add_option("--angle", a->angle_deg, "rotate: by how much, in degrees");
   verb->add_flag("--clockwise", a->clockwise, "rotate: clockwise, seen from above");
-  verb->add_option("--distractors", a->distractors, "How many other objects a test scene has")->capture_default_str();
-  verb->add_flag("--hard", a->hard, "A second arm, where a distractor shares the target's type or texture");
+  verb->add_option("--distractors", a->distractors, "Number of other objects in a test scene")->capture_default_str();
+  verb->add_flag("--hard", a->hard, "Add an arm where a distractor shares the target's type or texture");
   verb->add_flag("--near-miss", a->near_miss,
-                 "A further arm, where all others share the target's type or texture, and each other's");
-  verb->add_option("--directory", a->directory, "Where the file is written")->capture_default_str();
+                 "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
+  verb->add_option("--directory", a->directory, "The directory for the file")->capture_default_str();
   arrange(*verb, "", {{"name", "NAME"}, {"--directory", "DIR"}});
   arrange(*verb, "The command",
           {{"--command", "TEXT"},

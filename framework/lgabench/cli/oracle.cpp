@@ -12,7 +12,7 @@ OracleActions actions_in(PlayedScenes& scenes, const OracleRequest& request) {
   const PlayedScenes::Played& played = scenes.cell(request.cell.string());
   const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
   Environment* const environment = scenes.on(played.cell.engine, played.scenario);
-  if (!environment) throw InputError("the run's engine is not there: " + played.cell.engine);
+  if (!environment) throw InputError("the run's engine is not installed: " + played.cell.engine);
   environment->reset(scene);
   OracleActions all;
   for (const SceneObject& object : scene.objects)

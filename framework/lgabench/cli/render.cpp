@@ -100,32 +100,34 @@ void add_render(CLI::App& app, int&) {
   std::vector<std::string> galleries{"objects", "textures", "scenes"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
-  verb->add_option(
-          "--gallery", arguments->gallery,
-          "Draw one sheet instead: all objects, all textures, or a scene of each scenario, of one environment if named")
+  verb->add_option("--gallery", arguments->gallery,
+                   "Draw one sheet instead: all objects, all textures, or a scene of every scenario (or of those of "
+                   "one environment)")
       ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
-                   "With --gallery: write the place of each picture on the sheet as JSON, and print nothing")
+                   "With --gallery: write the position of each picture on the sheet as JSON, and print nothing")
       ->excludes(scenario);
   verb->add_option("--index", arguments->index, "Number of the scene")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
   verb->add_option("--layout", arguments->layout,
-                   "How objects are placed, of lgabench list layouts --of SCENARIO; the first of them if not given")
+                   "How objects are placed: one of `lgabench list layouts --of SCENARIO` (default: the first)")
       ->check(one_of("layout", installed_layouts()));
-  verb->add_option("--split", arguments->split, "Which of the separate sets of scenes")
+  verb->add_option("--split", arguments->split, "Which set of scenes")
       ->check(one_of("split", {"train", "dev", "test"}))
       ->capture_default_str();
   verb->add_option("--arm", arguments->arm,
-                   "One of the scenario's tests (lgabench info SCENARIO), or train; else its first test");
+                   "An arm of the scenario's test (lgabench info SCENARIO), or train (default: its first arm)");
   verb->add_option("--suite", arguments->suite,
-                   "As that suite has it: its arms, and with variants SCENARIO_VARIANT for the scenario");
-  verb->add_option("--truth", arguments->truth, "The scenario's true distributions, where released and printed differ")
+                   "Draw the scenario as this suite plays it: its arms; in a suite with variants, name the scenario "
+                   "SCENARIO_VARIANT");
+  verb->add_option("--truth", arguments->truth,
+                   "Which true distributions to use where released and printed ones differ")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--seed", arguments->seed, "Seed of the scenes")->capture_default_str();
-  verb->add_option("--out", arguments->out, "The picture's file; SCENARIO-INDEX.png or GALLERY.png if not given");
+  verb->add_option("--out", arguments->out, "The file for the picture (default: SCENARIO-INDEX.png or GALLERY.png)");
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
@@ -140,9 +142,8 @@ void add_render(CLI::App& app, int&) {
            {"--seed", "N"},
            {"--scenario-path", "DIR"}});
   verb->footer(
-      "Draws the scene before the first action; the mask is the one of the command's true Selection.\n"
-      "Example: lgabench render red_heart --index 3 --out scene.png\n"
-      "         lgabench render --gallery objects --out objects.png");
+      "Draws the scene before the action; the mask is that of the command's true Selection.\nExample: lgabench render "
+      "red_heart --index 3 --out scene.png\n         lgabench render --gallery objects --out objects.png");
   verb->callback([arguments] {
     if (arguments->scenario.empty() && arguments->gallery.empty())
       throw InputError("render: expected a scenario's id, or --gallery");

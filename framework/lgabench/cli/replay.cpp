@@ -151,17 +151,16 @@ void add_replay(CLI::App& app, int&) {
   auto a = std::make_shared<ReplayArguments>();
   CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
   verb->add_option("run", a->run, "The run's directory")->required();
-  verb->add_option(
-          "episode", a->episode,
-          "The cell's key or its first digits, the arm, the scene's number; without an arm, the scenario's first")
+  verb->add_option("episode", a->episode,
+                   "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
+                   "scenario's first arm")
       ->required();
-  verb->add_option("--out", a->out, "An animation, FILE.gif, or a film strip, FILE.png")->required();
+  verb->add_option("--out", a->out, "FILE.gif for an animation, FILE.png for a film strip")->required();
   add_plugin_path(*verb, a->plugin_path);
   arrange(*verb, "", {{"run", "RUN"}, {"episode", "KEY/ARM/INDEX"}, {"--out", "FILE"}, {"--plugin-path", "PATH"}});
   verb->footer(
-      "The recorded action is carried out on the recorded engine; the method is not asked. Pink: where suction holds, "
-      "or the "
-      "spatula.\nExample: lgabench replay runs/q1 752bdc8e/test/3 --out episode.gif");
+      "Carries out the recorded action on the recorded engine, without the method. Pink marks where the suction cup "
+      "holds, or the spatula.\nExample: lgabench replay runs/q1 752bdc8e/test/3 --out episode.gif");
   verb->callback([a] { replay(*a); });
 }
 

@@ -107,12 +107,12 @@ void add_report(CLI::App& app, int& exit) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb = app.add_subcommand(
-      "report", "Make a run's tables, figures and report.html again from its cells, and print the tables");
+      "report", "Make a run's tables, figures and report.html anew from its cells, and print the tables");
   verb->add_option("RUN", options->runs,
-                   "The run's directory; of several, such as runs/*, also a page that compares them")
+                   "The run's directory; given several, such as runs/*, it also writes a page that compares them")
       ->required();
-  verb->add_option("--index", options->index, "Where that page is written (default: index.html beside the first run)");
-  verb->add_option("--format", options->format, "What to print: text, md, latex (every table), json or csv")
+  verb->add_option("--index", options->index, "Where to write that page (default: index.html beside the first run)");
+  verb->add_option("--format", options->format, "What to print; latex is every table")
       ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
   CLI::Option* const claims =
@@ -125,8 +125,8 @@ void add_report(CLI::App& app, int& exit) {
       ->expected(2)
       ->excludes(claims);
   verb->add_option("--judge", options->judge,
-                   "Who judges an episode: physics, as it was played; or pose, which prints what would be a success if "
-                   "its action had to be the oracle's but for --within, and writes nothing")
+                   "How to judge episodes: physics, as they were played; or pose, which counts an action as a success "
+                   "if it is the oracle's up to --within, and only prints, writing no files")
       ->check(one_of("judge", {"physics", "pose"}))
       ->capture_default_str();
   CLI::Option* const within_m =
@@ -136,8 +136,7 @@ void add_report(CLI::App& app, int& exit) {
                 options->tolerance.begin_m = metres.at(0);
                 options->tolerance.end_m = metres.at(1);
               },
-              "With --judge pose: metres between the places where the two actions begin, and where they end "
-              "[0.07,0.10]")
+              "With --judge pose: how many metres apart the two actions may begin and end [0.07,0.10]")
           ->delimiter(',')
           ->expected(2)
           ->check(within(0, 10));

@@ -96,14 +96,13 @@ void add_run(CLI::App& app, int& exit) {
   CLI::App* verb = app.add_subcommand("run", "Compute a suite's cells and print its table");
   add_run_options(*verb, *a);
   verb->footer(
-      "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\n"
-      "An ablation: lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'\n"
-      "With another model's answers: lgabench run q1 --methods lga,lga_s --answers cassette:M.jsonl\n"
-      "With a model asked now: lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl\n"
-      "  (the server named by OPENAI_BASE_URL, any that follows its API, with the key in OPENAI_API_KEY)\n"
-      "A row is named by its method's id; of several rows of one id, those that set options also by these, as "
-      "lga+loss=squared here. The report's head lists every option that differs from a plugin's default.\n"
-      "On two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
+      "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\nAn ablation: lgabench run q1 "
+      "--methods lga,lga+loss=squared --set '*.epochs=200'\nAnother model's recorded answers: lgabench run q1 "
+      "--methods lga,lga_s --answers cassette:M.jsonl\nA model asked now: lgabench run q1 --methods lga --answers "
+      "openai --model M --cassette M.jsonl\n  (the server at OPENAI_BASE_URL, any with OpenAI's API; its key is in "
+      "OPENAI_API_KEY)\nA row's name is its method's id; where several rows share an id, the options that set them "
+      "apart follow, as in lga+loss=squared. The head of the report lists every option that differs from a plugin's "
+      "default.\nOn two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
   verb->callback([a, &app, &exit] {
     a->program = app.version();
     exit = run(*a);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <thread>
 
 #include <lgabench/abstraction/asked_model.hpp>
@@ -12,6 +13,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/cli/cache.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/shell.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/python_method.hpp>
@@ -79,6 +81,17 @@ std::string by_option(const std::string& complaint) {
   return complaint;
 }
 
+// A layout that nobody has: the suite's own are offered, not those of all environments.
+void expect_layouts(const Suite& suite, const Words& layouts) {
+  std::set<std::string> there;
+  for (const std::string& id : suite.design.scenarios)
+    for (const std::string& layout : layouts_of(load_scenario(id))) there.insert(layout);
+  const Words all = installed_layouts();
+  for (const std::string& layout : layouts)
+    if (std::find(all.begin(), all.end(), layout) == all.end())
+      throw InputError("--layout: " + none_named("layout", layout, {there.begin(), there.end()}));
+}
+
 // The command line's part of the design, checked by the same reader as a suite's file.
 Design design_of(const RunArguments& a, const Suite& suite) {
   Json overrides = Json::object();
@@ -88,6 +101,7 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   give("methods", a.methods);
   give("engines", a.engines);
   give("scenarios", a.scenarios);
+  expect_layouts(suite, a.layouts);
   give("layouts", a.layouts);
   if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
@@ -147,7 +161,7 @@ fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
   const fs::path there = is_run(plan.out) ? plan.out : earlier_run(plan.out, suffix, plan.request);
   if (there.empty())
     throw InputError(
-        fmt::format("--resume: no run of this command is in {}; without --resume it begins one of {} cells",
+        fmt::format("--resume: no run of this command is in {}; without --resume a new run of {} cells begins",
                     plan.out.parent_path().string(), plan.cells.size()));
   to_stderr("going on in {}\n", there.string());
   return there;
@@ -219,93 +233,92 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("suite", a.suite, "A suite's id, or a .json file of one")->required();
   verb.add_option(
       "--preset", a.preset,
-      "A setting of the suite, of those that `lgabench list presets --of SUITE` prints; paper: the suite's own");
+      "One of the suite's presets, which `lgabench list presets --of SUITE` prints; paper: the suite as it is");
   list("--methods", a.methods,
-       "Methods, by plugin id or as FILE.py:Class; a variant as ID+OPTION=VALUE+OPTION=VALUE; selected_by:METHOD for "
-       "one "
-       "that selects alone, while the shipped lga+policy=heat_map learns and acts");
+       "Methods, by plugin id or as FILE.py:Class; ID+OPTION=VALUE+OPTION=VALUE for a variant; selected_by:METHOD to "
+       "use only METHOD's Selections, while the shipped lga+policy=heat_map learns and acts");
   list("--engines", a.engines, "Engines, by plugin id");
   list("--scenarios", a.scenarios, "Scenarios");
-  list("--layout", a.layouts, "Ways to place objects: lgabench list layouts --of SUITE; several with commas");
-  list("--demos", a.demonstrations, "Numbers of demonstrations of each seen command: 10,20");
-  list("--seeds", a.seeds, "Training seeds: 0,1,2 or 0:3");
+  list("--layout", a.layouts,
+       "How objects are placed: `lgabench list layouts --of SUITE`; separate several with commas");
+  list("--demos", a.demonstrations, "Numbers of demonstrations per seen command, such as 10,20");
+  list("--seeds", a.seeds, "Training seeds, such as 0,1,2 or 0:3");
   list("--selection-errors", a.selection_errors,
-       "Errors made in what methods select: each true feature missing, each wrong one added with that probability; "
-       "none, missing=P, added=P or added=P+missing=P");
-  verb.add_option("--episodes", a.episodes, "Test scenes of each arm");
-  verb.add_option("--jobs", a.jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
-  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and has failed")
+       "Errors to make in what methods select: missing=P drops each true feature with probability P, added=P adds each "
+       "wrong one, added=P+missing=P does both; none");
+  verb.add_option("--episodes", a.episodes, "Test scenes per arm");
+  verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
+  verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
       ->check(within(1, 1e7))
       ->capture_default_str();
   verb.add_option("--memory", a.memory_gib,
-                  "Memory limit of a cell, in GiB (default: its share of the machine's, 4 at least)")
+                  "Memory limit of a cell, in GiB (default: its share of the machine's memory, at least 4)")
       ->check(within(.1, 1e6));
-  verb.add_option("--python", a.python, "The interpreter of methods in Python")->capture_default_str();
-  verb.add_option("--shard", a.shard, "Only part i of n of the cells, as i/n; lgabench merge puts the parts together");
+  verb.add_option("--python", a.python, "The interpreter for methods in Python")->capture_default_str();
+  verb.add_option("--shard", a.shard, "Compute only part I of N of the cells; lgabench merge combines the parts");
   add_plugin_path(verb, a.plugin_path);
   add_scenario_path(verb);
-  verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, for a shard with -IofN after it)");
+  verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
   verb.add_option("--cache", a.cache,
                   "Where demonstrations are kept (default: $LGABENCH_CACHE, else ~/.cache/lgabench)");
   auto* resume = verb.add_flag("--resume", a.resume,
-                               "Continue the run in --out, or without --out that of the same command; cells of another "
-                               "build are computed again");
+                               "Continue the run in --out or, without --out, the earlier run of the same command; "
+                               "recompute cells of another build");
   verb.add_flag("--fresh", a.fresh, "Delete the run in --out first")->excludes(resume);
-  verb.add_option("--limit", a.limit, "Only the first N cells; not for the leaderboard")->check(CLI::Range(1, 1 << 30));
+  verb.add_option("--limit", a.limit, "Compute only the first N cells; not for the leaderboard")
+      ->check(CLI::Range(1, 1 << 30));
   verb.add_option("--set", a.settings,
-                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the "
-                  "preset's options, but not a row's own; may be given again")
+                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's "
+                  "options, but not a row's own; can be repeated")
       ->take_all();
   verb.add_option("--answers", a.answers,
-                  "Where a language model's answers come from. recorded: each scenario's own (lgabench info SCENARIO); "
-                  "another word of lgabench list sources: only that source; cassette:FILE: a server's replies, as "
-                  "lgabench select --suite records them; FILE.json: answers in a file of yours (docs/formats); openai: "
-                  "a server, asked by the cells as they run; none: for "
-                  "methods that ask no language model")
+                  "Where a language model's answers come from. recorded: each scenario's recorded answers (lgabench "
+                  "info SCENARIO); another name from lgabench list sources: only that source; cassette:FILE: a "
+                  "server's replies, recorded by lgabench select --suite; FILE.json: your own answers (docs/formats); "
+                  "openai: a server, asked during the run; none: no answers, for methods that ask no language model")
       ->check([](const std::string& word) { return answers_complaint(word, true); })
       ->capture_default_str();
   verb.add_option("--model", a.model, "With --answers openai: the server's model");
   verb.add_option("--cassette", a.cassette,
-                  "With --answers openai: file to which its replies are added; runs may share it, and no question that "
-                  "it answers is asked again");
+                  "With --answers openai: the file to append replies to; runs may share it, and questions that it "
+                  "answers are not asked again");
   verb.add_option("--max-queries", a.max_queries,
-                  "With --answers openai: questions that a cell may ask the server; -1: no limit")
+                  "With --answers openai: the most questions that a cell may ask the server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb.add_option("--request", a.request,
-                  "With --answers openai: a JSON merge patch of each request to the server, whose null leaves a field "
-                  "out: '{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
-  verb.add_option("--reply-timeout", a.reply_timeout_s,
-                  "With --answers openai: seconds that the server may take for a reply")
+                  "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
+                  "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
+  verb.add_option("--reply-timeout", a.reply_timeout_s, "With --answers openai: seconds to wait for a reply")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  verb.add_option("--concurrency", a.concurrency, "With --answers openai: questions asked at once")
+  verb.add_option("--concurrency", a.concurrency, "With --answers openai: how many questions to ask at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   verb.add_option("--truth", a.truth,
-                  "The true distributions: those that the paper's authors released with their code, or those printed "
-                  "in its appendix, where they differ")
+                  "Which true distributions to use where they differ: those released with the paper's code, or those "
+                  "printed in its appendix")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb.add_option(
       "--humans", a.humans,
-      "A directory of participants' .json files: methods that ask people then have a cell for each of them");
+      "A directory of participants' .json files; methods that ask people then get a cell for each participant");
   verb.add_flag("--rehearsal", a.rehearsal,
-                "With --humans: accept files of a rehearsal or of simulated people; run, tables and claims are "
-                "marked, and the run is not for the leaderboard");
-  verb.add_flag(
-      "--unconfined", a.unconfined,
-      "Without the confinement of methods, which then run as you, with your files (docs/trust.md); not for the "
-      "leaderboard");
-  verb.add_option("--debug", a.debug,
-                  "Compute one cell, named by the first digits of its KEY (list prints all keys), in the foreground "
-                  "and unconfined: a plugin under gdb, Python where breakpoint() works. Its results are not kept")
+                "With --humans: accept files from a rehearsal or from simulated people; the run, its tables and claims "
+                "are marked, and the leaderboard does not take it");
+  verb.add_flag("--unconfined", a.unconfined,
+                "Do not confine methods: they then run as you, with access to your files (docs/trust.md); not for the "
+                "leaderboard");
+  verb.add_option(
+          "--debug", a.debug,
+          "Compute one cell in the foreground and unconfined: a plugin under gdb, Python with breakpoint() working; "
+          "results are not kept. KEY: the first digits of the cell's key (--debug list prints all keys)")
       ->type_name("KEY");
   verb.add_flag("--no-reference", a.no_reference,
                 "Leave out the reference rows: constant_action, random_object, oracle, and the suite's own");
   verb.add_flag("--json", a.json, "Print summary.json instead of the table");
   verb.add_flag("--dry-run", a.dry_run,
-                "Compute nothing: print how many cells there are, how long they would take, and how much disk");
+                "Compute nothing; print the number of cells, and the time and disk space that they would take");
   arrange(verb, "", {{"suite", "SUITE"}});
   arrange(verb, "What is computed", {{"--preset", "PRESET"},      {"--methods", "METHOD,..."},
                                      {"--engines", "ENGINE,..."}, {"--scenarios", "SCENARIO,..."},
@@ -319,9 +332,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
                                      {"--humans", "DIR"},         {"--rehearsal", ""},
                                      {"--no-reference", ""}});
   arrange(
-      verb, "How much of it",
+      verb, "How much is computed",
       {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});
-  arrange(verb, "With what",
+  arrange(verb, "How cells are computed",
           {{"--jobs", "N"},
            {"--timeout", "SECONDS"},
            {"--memory", "GIB"},
@@ -329,7 +342,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--scenario-path", "DIR"},
            {"--python", "PROGRAM"},
            {"--unconfined", ""}});
-  arrange(verb, "Where it goes", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});
+  arrange(verb, "Output", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});
 }
 
 }  // namespace lgabench::cli

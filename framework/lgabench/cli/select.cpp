@@ -217,15 +217,16 @@ void add_select(CLI::App& app, int&) {
   auto arguments = std::make_shared<SelectArguments>();
   CLI::App* verb = app.add_subcommand("select", worker_summary("select"));
   auto* command = verb->add_option("command", arguments->command, "A scenario's id, or a command in quotes");
-  verb->add_option("--suite", arguments->suite, "Every command of this suite's scenarios instead")->excludes(command);
+  verb->add_option("--suite", arguments->suite, "Ask about every command of this suite's scenarios instead")
+      ->excludes(command);
   verb->add_option(
           "--answers", arguments->answers,
-          "recorded: the scenario's own; another word of lgabench list sources: only that source; openai: ask a "
-          "server now; cassette:FILE: a server's recorded replies; FILE.json: recorded answers in a file of yours")
+          "recorded: the scenario's recorded answers; another name from lgabench list sources: only that source; "
+          "openai: ask a server now; cassette:FILE: a server's recorded replies; FILE.json: your own answers")
       ->check([](const std::string& word) { return answers_complaint(word, false); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
-                   "The true distribution to compare with, where released and printed differ")
+                   "Which true distribution to compare with where released and printed ones differ")
       ->check(one_of("truth", {"released", "printed"}))
       ->capture_default_str();
   verb->add_option("--task", arguments->task, "The task, for a command in quotes")
@@ -233,23 +234,23 @@ void add_select(CLI::App& app, int&) {
       ->capture_default_str();
   verb->add_option("--space", arguments->space, "The feature space, for a command in quotes")->capture_default_str();
   verb->add_option("--cassette", arguments->cassette,
-                   "With --answers openai: file to which the server's replies are added");
-  verb->add_option("--model", arguments->model, "The server's model; of a cassette, by default its only one");
-  verb->add_option("--concurrency", arguments->concurrency, "Questions asked at once")
+                   "With --answers openai: the file to append the server's replies to");
+  verb->add_option("--model", arguments->model,
+                   "The server's model; for a cassette, the model whose replies to use (default: its only one)");
+  verb->add_option("--concurrency", arguments->concurrency, "How many questions to ask at once")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   verb->add_option("--request", arguments->request,
-                   "With --answers openai: a JSON merge patch of each request, whose null leaves a field out: "
+                   "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
                    "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
-  verb->add_option("--reply-timeout", arguments->reply_timeout_s,
-                   "With --answers openai: seconds that the server may take for a reply")
+  verb->add_option("--reply-timeout", arguments->reply_timeout_s, "With --answers openai: seconds to wait for a reply")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  verb->add_option("--max-queries", arguments->max_queries, "Most questions to ask a server; -1: no limit")
+  verb->add_option("--max-queries", arguments->max_queries, "The most questions to ask a server; -1: no limit")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   add_scenario_path(*verb);
-  verb->add_flag("--json", arguments->json, "Print a line of JSON for each command, as in a cell's selection.json");
+  verb->add_flag("--json", arguments->json, "Print one line of JSON per command, as in a cell's selection.json");
   arrange(*verb, "", {{"command", "COMMAND"}});
   const std::string tasks = fmt::format("{}", fmt::join(installed_task_ids(), "|"));
   arrange(*verb, "What is asked",
@@ -267,12 +268,11 @@ void add_select(CLI::App& app, int&) {
            {"--request", "JSON"},
            {"--reply-timeout", "SECONDS"}});
   verb->footer(
-      "openai asks the server named by OPENAI_BASE_URL (any that follows its API) with the key in OPENAI_API_KEY: one "
-      "question for each object type and texture. An interrupted command continues from the cassette.\n"
-      "Example: lgabench select red_heart\n"
-      "For lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai --model M --cassette "
-      "M.jsonl\n"
-      "         lgabench select \"Bring me a fruit.\" --space household --answers openai --model M --cassette M.jsonl");
+      "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
+      "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "
+      "red_heart\nTo record for lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "
+      "--model M --cassette M.jsonl\n         lgabench select \"Bring me a fruit.\" --space household --answers openai "
+      "--model M --cassette M.jsonl");
   verb->callback([arguments] {
     if (arguments->command.empty() && arguments->suite.empty())
       throw InputError("select: expected a command, a scenario's id, or --suite");

@@ -131,8 +131,8 @@ void add_status(CLI::App& app, int& exit) {
   verb->add_flag("--json", options->json, "Print JSON instead of a table");
   arrange(*verb, "", {{"DIR", "DIR"}});
   verb->footer(
-      "Example: lgabench status runs/q1\n"
-      "Exit 0: all parts are complete, or running. Exit 3: some must be run again; --array lists them.");
+      "Example: lgabench status runs/q1\nExit 0: all parts are complete or running. Exit 3: some must be run again; "
+      "the --array that it prints lists them.");
   verb->callback([options, &exit] { exit = print_status(options->directories, options->json); });
 }
 

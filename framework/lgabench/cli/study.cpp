@@ -56,8 +56,8 @@ int new_study(const StudyArguments& a) {
   write_file(a.path / "consent.txt", read_file(templates / "consent.txt.in"));
   write_file(a.path / "README.md", filled(read_file(templates / "README.md.in"), values));
   for (const char* file : {"protocol.json", "consent.txt", "README.md"}) to_stdout("{}\n", (a.path / file).string());
-  to_stdout("\nTo see what is to be filled:\n  lgabench study check {}\n", a.path.string());
-  to_stdout("To try it in a browser before:\n  lgabench study serve {} --out {} --rehearsal\n",
+  to_stdout("\nTo see what is left to fill in:\n  lgabench study check {}\n", a.path.string());
+  to_stdout("To try it in a browser first:\n  lgabench study serve {} --out {} --rehearsal\n",
             (a.path / "protocol.json").string(), (a.path / "tried").string());
   return ok;
 }
@@ -75,7 +75,7 @@ int check(const StudyArguments& a) {
             protocol.crossover() ? "a crossover" : "each command in both conditions", protocol.spares.size());
   const fs::path pin = study::pin_file(file);
   if (a.pin && blanks.empty() && !fs::exists(pin)) write_file(pin, study::pin_of(protocol).dump(1) + "\n");
-  if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill", file.string(), blanks.size()));
+  if (!blanks.empty()) throw InputError(fmt::format("{}: {} blanks to fill in", file.string(), blanks.size()));
   if (const std::string why = study::not_ready(protocol, file); !why.empty())
     throw InputError(fmt::format("{}: {}", file.string(), why));
   to_stdout("pinned: {}\n", protocol.pin);
@@ -145,7 +145,7 @@ int rehearse(const StudyArguments& a) {
   server.stop();
   serving.join();
   if (failure) std::rethrow_exception(failure);
-  to_stdout("{} simulated people took part. What comes of it:\n  lgabench study report {}\n", a.people, a.out.string());
+  to_stdout("{} simulated people took part. The results:\n  lgabench study report {}\n", a.people, a.out.string());
   to_stdout("  lgabench run q1 --humans {} --rehearsal\n", (a.out / "participants").string());
   return ok;
 }
@@ -173,37 +173,39 @@ void add_study(CLI::App& app, int& exit) {
   const std::vector<std::string> actions{"new", "check", "serve", "rehearse", "report"};
   CLI::App* verb = app.add_subcommand("study", "Run a user study in a browser, for the rows Human and LGA-HILL");
   verb->add_option("what", a->what,
-                   "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: show the pages "
-                   "of DIR's protocol; rehearse: let simulated people take part; report: show the results")
+                   "new: write a protocol into DIR, to be filled in; check: say what is missing; serve: serve the "
+                   "pages of DIR's protocol; rehearse: let simulated people take part; report: show the results")
       ->required()
       ->check(one_of("action", actions));
-  verb->add_option("path", a->path, "The study's directory, or its protocol; for report, what serve wrote")->required();
-  verb->add_option("--out", a->out,
-                   "serve, rehearse: where answers are stored; a study in that directory is continued");
+  verb->add_option("path", a->path, "The study's directory or its protocol; for report, the directory that serve wrote")
+      ->required();
+  verb->add_option("--out", a->out, "serve, rehearse: where to store answers; a study already there is continued");
   verb->add_option("--protocol", a->protocol, "new: the paper's study, or one where nobody sees a command twice")
       ->check(one_of("protocol", {"paper", "crossover"}))
       ->capture_default_str();
   verb->add_flag("--pin", a->pin,
-                 "check: fix the protocol, by writing the hashes of what must no longer change beside it");
+                 "check: fix the protocol: write the hashes of what must no longer change into a file beside it");
   verb->add_option("--bind", a->bind, "serve: the address to listen on")->capture_default_str();
-  verb->add_option("--port", a->port, "serve: the port; 0: any that is free")
+  verb->add_option("--port", a->port, "serve: the port; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: a proxy with TLS is in front of this server");
-  verb->add_option("--host", a->host, "serve: the name (and port) by which that proxy is reached");
-  verb->add_option("--invitation", a->invitation,
-                   "serve: letters and digits of your own; only who opens the link with them can begin")
+  verb->add_flag("--behind-tls-proxy", a->behind_tls_proxy, "serve: this server is behind a proxy that does TLS");
+  verb->add_option("--host", a->host, "serve: the host name (and port) of that proxy");
+  verb->add_option(
+          "--invitation", a->invitation,
+          "serve: letters and digits of your choice; only people who open the link that contains them can begin")
       ->check([](const std::string& text) {
         return is_word(text) ? std::string() : "expected letters and digits, got \"" + text + "\"";
       });
-  verb->add_option("--begins", a->begins, "serve: at most so many people begin in a minute")
+  verb->add_option("--begins", a->begins, "serve: how many people may begin per minute")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   verb->add_option("--people", a->people, "rehearse: how many simulated people take part")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  verb->add_flag("--rehearsal", a->rehearsal,
-                 "serve: try it, without a pin; the answers are marked and no tool takes them for people's");
+  verb->add_flag(
+      "--rehearsal", a->rehearsal,
+      "serve: try the study out, without a pin; its answers are marked, and no tool takes them for people's");
   arrange(*verb, "", {{"what", "new|check|serve|rehearse|report"}, {"path", "DIR"}, {"--out", "DIR"}});
   arrange(*verb, "The protocol", {{"--protocol", "paper|crossover"}, {"--pin", ""}});
   arrange(*verb, "The server",
@@ -216,9 +218,8 @@ void add_study(CLI::App& app, int& exit) {
            {"--rehearsal", ""}});
   arrange(*verb, "Simulated people", {{"--people", "N"}});
   verb->footer(
-      "docs/study.md says how, from nothing to a first participant.\n"
-      "Example: lgabench study new my_study\n"
-      "         lgabench study serve my_study/protocol.json --out my_study/data");
+      "docs/study.md explains every step up to the first participant.\nExample: lgabench study new my_study\n         "
+      "lgabench study serve my_study/protocol.json --out my_study/data");
   verb->callback([a, actions, verb, &exit] {
     expect_options_of(*verb, a->what, actions);
     exit = carry_out(*a);

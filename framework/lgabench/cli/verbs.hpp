@@ -84,7 +84,7 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
 
 /// --plugin-path, as every verb has it.
 inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths) {
-  verb.add_option("--plugin-path", paths, "Look for plugins here too: a directory, or a .so file; may be given again")
+  verb.add_option("--plugin-path", paths, "Also look for plugins here: a directory or a .so file; can be repeated")
       ->type_name("PATH")
       ->allow_extra_args(false);
 }
@@ -96,7 +96,7 @@ inline void add_scenario_path(CLI::App& verb) {
           [](const std::vector<fs::path>& directories) {
             for (const fs::path& directory : directories) lgabench::add_scenario_path(directory);
           },
-          "Look for scenarios here too: a directory of .json files; may be given again")
+          "Also look for scenarios here: a directory of .json files; can be repeated")
       ->type_name("DIR")
       ->allow_extra_args(false);
 }

@@ -120,10 +120,10 @@ void print_other_bytes(const std::vector<Compared>& cells) {
     episodes += cell.agreement.episodes;
   }
   for (const report::PooledAgreement& pool : report::pooled(agreements(cells)))
-    to_stdout("{}: {} episodes succeeded there alone, {} here alone, over {} cells (McNemar {}){}\n",
+    to_stdout("{}: {} episodes succeeded only there, {} only here, over {} cells (McNemar {}){}\n",
               pool.row.empty() ? "all rows" : pool.row, pool.only_recorded, pool.only_recomputed, pool.cells,
               report::p_text(pool.p_holm), pool.differs() ? ": differs" : "");
-  to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended otherwise\n", others,
+  to_stdout("NOT bit-identical: {} of {} cells; {} of {} episodes that can be compared ended differently\n", others,
             cells.size(), flips, episodes);
   if (const auto excused = others - differing(cells))
     to_stdout(
@@ -235,34 +235,34 @@ int verify(const VerifyArguments& a) {
 void add_verify(CLI::App& app, int& exit) {
   auto a = std::make_shared<VerifyArguments>();
   CLI::App* verb = app.add_subcommand(
-      "verify", "Compute cells of a finished run again with this build, and say whether they are what was recorded");
+      "verify",
+      "Compute cells of a finished run again with this build, and say whether the results are the recorded ones");
   verb->add_option("RUN", a->run, "The run's directory")->required();
-  auto* sample = verb->add_option("--sample", a->sample, "How many cells, drawn at random")
+  auto* sample = verb->add_option("--sample", a->sample, "Number of cells, drawn at random")
                      ->check(CLI::Range(1, 1 << 30))
                      ->capture_default_str();
   verb->add_option("--seed", a->seed, "Seed of that draw (default: a new one each time, which is printed)");
   verb->add_flag("--all", a->all, "Every finished cell")->excludes(sample);
-  verb->add_flag("--strict", a->strict, "Exit 1 instead of 5: demand the same bytes, whatever build the record names");
-  verb->add_option("--jobs", a->jobs, "Cells computed at once (default: one a core)")->check(CLI::Range(1, 4096));
-  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and has failed")
+  verb->add_flag("--strict", a->strict, "Demand the same bytes whatever build the record names: exit 1 instead of 5");
+  verb->add_option("--jobs", a->jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
+  verb->add_option("--timeout", a->timeout_s, "Seconds after which a cell is stopped and counts as failed")
       ->check(within(1, 1e7))
       ->capture_default_str();
-  verb->add_option("--methods", a->methods, "FILE.py:Class of methods in Python; several with commas")->delimiter(',');
-  verb->add_option("--python", a->python, "The interpreter of methods in Python")->capture_default_str();
+  verb->add_option("--methods", a->methods, "Methods in Python, as FILE.py:Class; separate several with commas")
+      ->delimiter(',');
+  verb->add_option("--python", a->python, "The interpreter for methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
   verb->add_flag("--json", a->json, "Print JSON instead of lines");
   arrange(*verb, "", {{"RUN", "RUN"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
   arrange(*verb, "Which cells", {{"--sample", "N"}, {"--seed", "N"}, {"--all", ""}});
   arrange(*verb, "How they are computed and judged", {{"--strict", ""}, {"--jobs", "N"}, {"--timeout", "SECONDS"}});
   verb->footer(
-      "Example: lgabench verify runs/q1 --sample 5\n"
-      "Says of each cell: bit-identical; same outcomes; other outcomes; differs. With the recorded build, processor\n"
-      "and data the bytes must be the same. Where the record names others, the verdict over all cells is \"agrees\" "
-      "if\n"
-      "at most 1 % of the episodes ended otherwise, in no row more of them one way than chance allows.\n"
-      "Exit 0: every cell is bit-identical. Exit 1: the verdict is \"differs\", or a cell was edited. Exit 5: it\n"
-      "is \"agrees\": bytes differ, and the record names another build, processor or data.\n"
-      "A run of another version (0.1 for 0.2) is refused, with the version to verify it with.");
+      "Example: lgabench verify runs/q1 --sample 5\nSays of each cell: bit-identical, same outcomes, other outcomes, "
+      "or differs. With the recorded build, processor and data the bytes must be the same. Where the record names "
+      "others, the verdict over all cells is \"agrees\" if at most 1 % of the episodes ended differently, and in no "
+      "row more of them in one direction than chance allows.\nExit 0: every cell is bit-identical. Exit 1: the verdict "
+      "is \"differs\", or a cell was edited. Exit 5: it is \"agrees\": bytes differ, and the record names another "
+      "build, processor or data.\nA run of 0.1 is refused: verify it with 0.1.");
   verb->callback([a, &exit] { exit = verify(*a); });
 }
 

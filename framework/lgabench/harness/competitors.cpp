@@ -73,7 +73,7 @@ bool is_reference_row(const std::string& id) {
 
 // The row that a written one is an example of: its id, and whether it selects alone.
 std::string group_of(const std::string& written) {
-  const std::string id = row_words(without_selected_by(written)).front();
+  const std::string id = row_id(written);
   return selects_alone(written) ? selected_by + id : id;
 }
 
@@ -105,7 +105,7 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
   std::map<std::string, std::set<std::string>> told;  // group -> options in which its rows differ
   std::vector<std::string> groups;
   for (const std::string& written : design.methods) {
-    const std::string id = row_words(without_selected_by(written)).front();
+    const std::string id = row_id(written);
     if (is_reference_row(id))  // tables find a row by its name
       throw InputError(fmt::format("methods: \"{}\" is a reference row; expected a method of another id", id));
     infos.push_back(&catalogue.find("method", id));

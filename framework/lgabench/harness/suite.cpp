@@ -48,7 +48,7 @@ const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
   std::vector<std::string> known{"*"};
-  for (const std::string& method : methods) known.push_back(row_words(without_selected_by(method)).front());
+  for (const std::string& method : methods) known.push_back(row_id(method));
   options.only(known);
   for (const auto& method : options.json().items()) {
     const JsonReader values = options.at(method.key());
@@ -175,7 +175,7 @@ const PluginInfo& usual_engine(const Catalogue& catalogue) {
   std::vector<const PluginInfo*> there;
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.kind == "engine") there.push_back(&plugin);
-  if (there.empty()) throw InputError("no engine is there (lgabench list)");
+  if (there.empty()) throw InputError("no engine is installed (lgabench list)");
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list))
     for (const std::string& id : load_suite(suite).design.engines)

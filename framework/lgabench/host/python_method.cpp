@@ -68,11 +68,27 @@ std::string last_line(std::string text) {
   return text.substr(text.rfind('\n') + 1);
 }
 
+// Why an interpreter did not start, or lgabench's package in it, and what to do.
+std::string not_started_text(const std::string& interpreter) {
+  std::error_code no_link;
+  const fs::path leads = fs::read_symlink(interpreter, no_link);
+  if (interpreter.find('/') != interpreter.npos && !no_link && !fs::exists(interpreter))
+    return fmt::format(
+        "{}: leads to {}, which is not there: make the virtual environment again, or name another "
+        "interpreter with --python",
+        interpreter, leads.string());
+  return fmt::format("{}: cannot be started; --python names the interpreter", interpreter);
+}
+
 // What it printed. @throws PluginError with its last words where it failed.
 std::string answer_of(const std::string& interpreter, const std::string& word, const Confinement* confinement) {
   const auto [out, error, status] = output_of(interpreter, word, confinement);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started)
-    throw PluginError(fmt::format("{}: cannot be started; --python names the interpreter", interpreter));
+  if (WIFEXITED(status) && WEXITSTATUS(status) == not_started) throw PluginError(not_started_text(interpreter));
+  if (status != 0 && error.find("No module named 'numpy'") != error.npos)
+    throw PluginError(fmt::format(
+        "{0}: has no NumPy, which methods in Python need: {0} -m pip install numpy, or name an interpreter that has it "
+        "with --python (/usr/bin/python3 with Debian's python3-numpy)",
+        interpreter));
   if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
   return out;
 }
@@ -111,9 +127,12 @@ bool is_python_method(const std::string& word) {
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
   PluginInfo plugin;
-  if (written.find(".py:") == written.npos)
+  if (written.find(".py:") == written.npos) {
+    std::error_code not_there;
+    if (!fs::exists(written, not_there)) throw PluginError(written + ": no such file");
     throw PluginError(
         fmt::format("{0}: expected {0}:CLASS; it has: {1}", written, fmt::join(classes_of(written), ", ")));
+  }
   try {
     const Json json = description_of(interpreter, fs::absolute(written).string());
     const JsonReader reader(json, written);
@@ -125,10 +144,10 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
     plugin.asks = reader.at("asks").string();
     plugin.sha256 = reader.at("sha256").string();
     plugin.questionnaire = reader.at("questionnaire").boolean();
-    plugin.options = read_options(canonical(reader.at("options").json()));
+    plugin.options = read_options(canonical(reader.at("options").json())).options;
     for (const auto& option : plugin.options.items())  // a CloningMethod's alone
       JsonReader(option.value(), "options", "/" + option.key())
-          .only({"default", "help", "source", "values", "min", "needs"});
+          .only({"default", "help", "source", "values", "min", "max", "needs"});
     for (const char* member : {"class", "interpreter", "reads", "user_base", "versions"})
       plugin.python[member] = reader.at(member).json();
     plugin.fingerprint = canonical(plugin.python["versions"]);

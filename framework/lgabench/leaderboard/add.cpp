@@ -61,6 +61,16 @@ Rows rows_of(const RunResults& run, const std::vector<std::string>& wanted) {
   return rows;
 }
 
+// How much of a row's preset is there, and the first places that are not.
+void add_missing(const std::string& row, const std::vector<std::string>& places, std::size_t of, Reasons& reasons) {
+  constexpr std::size_t most = 10;
+  if (places.empty()) return;
+  reasons.add(fmt::format("{}: {} of the preset's {} cells are there", row, of - places.size(), of));
+  for (std::size_t i = 0; i < std::min(most, places.size()); ++i)
+    reasons.add(fmt::format("missing: {} {}", row, places[i]));
+  if (places.size() > most) reasons.add(fmt::format("missing: {}, {} more cells", row, places.size() - most));
+}
+
 // What of a cell's settings is not the board's, the first of them; "" where all is.
 std::string other_setting(const Json& cell, const Json& expected) {
   for (const auto& [member, value] : expected.items()) {
@@ -170,11 +180,13 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   const bool may_be_told =
       first.method.is_reference() || is_shipped(first.method.id, version_of(run, "method", first.method.id), shipped);
   Json data = Json::object();
-  for (const Cell& cell : cells_of_row(installed, first.method, first.engine, first.answers)) {
+  const std::vector<Cell> cells = cells_of_row(installed, first.method, first.engine, first.answers);
+  std::vector<std::string> missing;
+  for (const Cell& cell : cells) {
     const Place place{cell.scenario_id(), cell.layout, cell.demonstrations, cell.training_seed};
     const auto found = row.find(place);
     if (found == row.end()) {
-      reasons.add(fmt::format("missing: {} {}", first.method.name, place.text()));
+      missing.push_back(place.text());
       continue;
     }
     Json expected = to_json(cell);
@@ -193,6 +205,7 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
       data.update(cell.data);
     }
   }
+  add_missing(first.method.name, missing, cells.size(), reasons);
   entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
   return entry;
 }
@@ -210,7 +223,8 @@ int other_cells(const Entry& there, const Entry& here) {
 void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
   if (run.record.smoke) reasons.add("a smoke or limited run (run.json: smoke)");
   if (run.record.confinement.rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
-  if (run.not_run > 0) reasons.add(fmt::format("{} cells of the run have not been played", run.not_run));
+  if (run.not_run > 0)
+    reasons.add(fmt::format("{} cell{} of the run not played yet", run.not_run, run.not_run == 1 ? "" : "s"));
   for (const CellResult& cell : run.cells)
     if (!cell.participant.empty()) {
       reasons.add("answers of people (--humans), for which the board has no place");
@@ -222,8 +236,7 @@ void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
 std::vector<AnswerFile> answers_of(const fs::path& run, const Entry& entry) {
   std::vector<AnswerFile> files;
   for (AnswerFile& file : kept_answers(run))
-    if (file.name == entry.identity.answers_sha256 + kept_ending(entry.identity.answers))
-      files.push_back(std::move(file));
+    if (file.name == answers_file(entry.identity).filename()) files.push_back(std::move(file));
   return files;
 }
 
@@ -263,12 +276,12 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
     Entry there = read_entry(board, entry.place());
     const Json evidence = entry.evidence.front();
     if (const int differing = other_cells(there, entry))
-      reasons.add(fmt::format("{}: this identity is there, with other outcomes in {} of {} cells",
+      reasons.add(fmt::format("{}: this identity is on the board, with other outcomes in {} of {} cells",
                               entry.place().string(), differing, there.cells.size()));
     else if (!there.withdrawn.is_null())
       reasons.add(fmt::format("{}: this identity was withdrawn", entry.place().string()));
     else if (std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end())
-      reasons.add(fmt::format("{}: this run is there", entry.place().string()));
+      reasons.add(fmt::format("{}: this run is on the board already", entry.place().string()));
     there.evidence.push_back(evidence);
     known.push_back(std::move(there));
     entries.pop_back();

@@ -106,12 +106,23 @@ void expect_same_scenes(const std::vector<Entry>& entries, Checked& checked) {
 }
 
 void expect_answers(const fs::path& board, const Entry& entry, Checked& checked) {
-  const std::string ending = kept_ending(entry.identity.answers);
-  if (ending.empty()) return;
-  const fs::path file = board / "answers" / (entry.identity.answers_sha256 + ending);
+  const fs::path kept = answers_file(entry.identity), file = board / kept;
+  if (kept.empty()) return;
   if (!fs::exists(file) || sha256_file(file) != entry.identity.answers_sha256)
     checked.problems.push_back(
         fmt::format("{}: {} is not there, or not what its name says", entry.place().string(), file.string()));
+}
+
+// Files of answers that no entry names: nobody would ever read them.
+void expect_no_other_answers(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
+  std::set<fs::path> named;
+  for (const Entry& entry : entries) named.insert(answers_file(entry.identity));
+  std::error_code none_there;
+  for (const auto& file : fs::directory_iterator(board / "answers", none_there)) {
+    const fs::path kept = "answers" / file.path().filename();
+    if (named.count(kept) == 0)
+      checked.problems.push_back(fmt::format("{}: no entry is based on it; remove it", kept.string()));
+  }
 }
 
 std::string between(const std::string& bytes, const char* begin, const char* end) {
@@ -214,6 +225,7 @@ Checked check(const fs::path& board, const CheckOptions& options) {
       }
     }
     expect_vouched(entries, vouched, checked);
+    if (entries.size() == checked.entries) expect_no_other_answers(board, entries, checked);
   } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }

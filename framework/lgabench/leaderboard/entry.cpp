@@ -23,6 +23,11 @@ Json to_json(const Identity& identity) {
   return json;
 }
 
+fs::path answers_file(const Identity& identity) {
+  const std::string ending = kept_ending(identity.answers);
+  return ending.empty() ? fs::path() : fs::path("answers") / (identity.answers_sha256 + ending);
+}
+
 bool is_id(const std::string& text) {
   return !text.empty() && text.find_first_not_of(
                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -133,7 +138,7 @@ std::vector<fs::path> entry_directories(const fs::path& board) {
     std::vector<fs::path> names;
     for (const auto& entry : fs::directory_iterator(directory)) {
       if (!entry.is_directory())
-        throw InputError(fmt::format("{}: expected directories alone here", entry.path().string()));
+        throw InputError(fmt::format("{}: expected only directories here", entry.path().string()));
       names.push_back(entry.path());
     }
     std::sort(names.begin(), names.end());

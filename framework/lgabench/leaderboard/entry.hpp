@@ -22,6 +22,9 @@ struct Identity {
   std::uint64_t scene_seed = 0;
 };
 Json to_json(const Identity& identity);
+/// The board's copy of the answers that a row is based on, answers/SHA256.ENDING, relative to the board; "" where they
+/// are shipped, or there are none.
+fs::path answers_file(const Identity& identity);
 /// Letters, digits, _ and -: an id that may stand in a path.
 bool is_id(const std::string& text);
 /// The first 16 digits of the SHA-256 of its canonical JSON.

@@ -185,7 +185,7 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     if (const std::string name = file.path().filename();
         name != "entry.json" && name != "cells.jsonl" && name != "verifications.jsonl")
       throw InputError(
-          fmt::format("{}: expected entry.json, cells.jsonl and verifications.jsonl alone here", file.path().string()));
+          fmt::format("{}: expected only entry.json, cells.jsonl and verifications.jsonl here", file.path().string()));
   const fs::path file = path / "entry.json";
   const std::string bytes = read_bounded(file);
   const Json json = parse_json(bytes, file.string());

@@ -47,12 +47,11 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.program = options.program;
   plan.pool = options.pool;
   plan.attributes_others = false;
-  const std::string ending = kept_ending(entry.identity.answers);
-  const fs::path kept = board / "answers" / (entry.identity.answers_sha256 + ending);
+  const fs::path kept = answers_file(entry.identity);
   if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
-    plan.live.emplace(LiveModel{kept, false, -1});
-  else if (!ending.empty())
-    plan.answers.push_back({kept.filename(), kept, Json::object()});
+    plan.live.emplace(LiveModel{board / kept, false, -1});
+  else if (!kept.empty())
+    plan.answers.push_back({kept.filename(), board / kept, Json::object()});
   return plan;
 }
 

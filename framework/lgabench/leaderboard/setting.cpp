@@ -105,9 +105,11 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
     std::vector<std::string> boards;
     for (const auto& [name, members] : installed.suite.presets.items())
       if (members.contains("scene_seed")) boards.push_back(name);
-    throw InputError(fmt::format("{}: preset \"{}\" has no scene_seed of its own, so it is none of the board's ({})",
-                                 installed.suite.file, preset,
-                                 boards.empty() ? "none" : fmt::format("{}", fmt::join(boards, ", "))));
+    throw InputError(fmt::format(
+        "{}: preset \"{}\" is not one of the leaderboard's, which have a scene_seed of their own{}",
+        installed.suite.file, preset,
+        boards.empty() ? "; the suite has none"
+                       : fmt::format(": play lgabench run {} --preset {}", suite, fmt::join(boards, " or "))));
   }
   const Design& design = installed.design;
   Setting& setting = installed.setting;

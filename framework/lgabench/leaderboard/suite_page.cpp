@@ -243,18 +243,12 @@ std::string success_bits(const Entry& entry) {
   return base64(bytes);
 }
 
-// The board's copy of the answers that a row is based on; "" where they are shipped, or there are none.
-std::string kept_answers_of(const Identity& identity) {
-  const std::string ending = kept_ending(identity.answers);
-  return ending.empty() ? "" : "answers/" + identity.answers_sha256 + ending;
-}
-
 std::string command_of(const Entry& entry) {
   const Identity& identity = entry.identity;
   std::vector<std::string> words{"lgabench",           "run",       entry.setting.suite, "--preset",
                                  entry.setting.preset, "--engines", identity.engine};
   if (!identity.row.is_reference()) words.insert(words.end(), {"--methods", entry.spec(), "--no-reference"});
-  const std::string kept = kept_answers_of(identity);
+  const std::string kept = answers_file(identity).string();
   words.insert(words.end(), {"--answers", kept.empty() ? to_string(identity.answers)
                                           : std::holds_alternative<FileAnswers>(identity.answers)
                                               ? kept
@@ -432,7 +426,7 @@ Json suite_data(const std::vector<NamedTable>& tables) {
            {"learns", learns(entry.identity.row)},
            {"version", entry.identity.row.version},
            {"answers", to_string(entry.identity.answers)},
-           {"kept_answers", kept_answers_of(entry.identity)},
+           {"kept_answers", answers_file(entry.identity).string()},
            {"command", command_of(entry)},
            {"authors", entry.about.at("authors")},
            {"license", entry.about.at("license")},

@@ -127,7 +127,8 @@ void expect_verification(const JsonReader& line, const Entry& entry) {
     if (line.at(text).string().size() > most_words) line.at(text).fail(fmt::format("at most {} bytes", most_words));
   expect_date(line.at("when"));
   line.at("machine").at("processor").string();
-  if (line.at("cells").strings().empty()) line.at("cells").fail("a cell or more: none says nothing of the entry");
+  if (line.at("cells").strings().empty())
+    line.at("cells").fail("at least one cell: without any, it says nothing about the entry");
   for (const char* count : {"bit_identical", "flips", "episodes"})
     line.at(count).integer(0, std::numeric_limits<int>::max());
   if (kind == "replay")

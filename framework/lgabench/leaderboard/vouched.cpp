@@ -53,7 +53,7 @@ std::string vouch(const fs::path& board, const std::string& name, const std::str
   Vouched vouched = read_vouched(board);
   const std::string hash = line_hash(line);
   if (!vouched[entry.hash()].insert(hash).second)
-    throw InputError(fmt::format("{}: line {} was vouched for before", entry.place().string(), which));
+    throw InputError(fmt::format("{}: line {} is vouched for already", entry.place().string(), which));
   write_file(board / vouched_file, Json(vouched).dump(1) + "\n");
   return hash;
 }

@@ -21,8 +21,8 @@ struct PluginDescriptor {
   char version[32];  // the plugin's own
   char summary[160];
   char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
-  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n, "needs": {...},
-  // "framework": true}, ...}; beside them "questionnaire": true, see LGABENCH_QUESTIONNAIRE
+  // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n, "max": n,
+  // "needs": {...}, "framework": true}, ...}; beside them "questionnaire": true, see LGABENCH_QUESTIONNAIRE
   char options_json[4096];
 };
 static_assert(sizeof(PluginDescriptor) == 4664, "the descriptor has no padding");

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 struct PluginInfo {
   fs::path file;
   std::string kind, id, version, summary, fingerprint;
-  Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "words"?, "needs"?, "framework"?}}
+  Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "max"?, "words"?, "needs"?,
+                       // "framework"?}}
   std::string sha256;  // of the file
   std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
   /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "user_base",
@@ -69,9 +70,13 @@ std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
 Json option_value(const std::string& word);
 /// The other way: the value as a command line and a row's name write it.
 std::string option_text(const Json& value);
+/// What "min" and "max" of an option allow: "from 0 to 1", "of 1 or more", "of 1 or less", or "".
+std::string range_text(const Json& option);
 /// "ID+OPTION=VALUE+OPTION=VALUE", as rows are written and named -> "ID", "OPTION=VALUE", "OPTION=VALUE". Behind the
 /// first '+' another one separates only at the end and before a letter, so that a value may be 1e+30.
 std::vector<std::string> row_words(const std::string& row);
+/// The method's id of such a row: also of one that selects alone.
+std::string row_id(const std::string& row);
 
 /// What a row begins with whose plugin selects alone, while the shipped policy learns and acts: "selected_by:ROW".
 constexpr const char* selected_by = "selected_by:";

@@ -21,7 +21,19 @@ bool contains(const Json& values, const Json& value) {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
+bool within(const Json& option, double value) {
+  return (!option.contains("min") || value >= option.at("min").get<double>()) &&
+         (!option.contains("max") || value <= option.at("max").get<double>());
+}
+
 }  // namespace
+
+std::string range_text(const Json& option) {
+  const bool from = option.contains("min"), to = option.contains("max");
+  if (from && to) return fmt::format("from {} to {}", canonical(option.at("min")), canonical(option.at("max")));
+  if (from) return fmt::format("of {} or more", canonical(option.at("min")));
+  return to ? fmt::format("of {} or less", canonical(option.at("max"))) : "";
+}
 
 Json option_value(const std::string& word) {
   const Json value = json_or_null(word);
@@ -41,6 +53,8 @@ std::vector<std::string> row_words(const std::string& row) {
   }
   return words;
 }
+
+std::string row_id(const std::string& row) { return row_words(without_selected_by(row)).front(); }
 
 bool selects_alone(const std::string& row) { return row.rfind(selected_by, 0) == 0; }
 
@@ -75,8 +89,8 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
         given.at(name).fail(fmt::format("one of {} ({}){}", canonical(values), option.at("help").get<std::string>(),
                                         suggestion(option_text(value), texts)));
     }
-    if (option.contains("min") && value.get<double>() < option.at("min").get<double>())
-      given.at(name).fail(fmt::format("{} of {} or more", type_of(usual), canonical(option.at("min"))));
+    if (value.is_number() && !within(option, value.get<double>()))
+      given.at(name).fail(fmt::format("{} {}", type_of(usual), range_text(option)));
     resolved[name] = std::move(value);
   }
   return resolved;

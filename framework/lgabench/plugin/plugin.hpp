@@ -6,8 +6,8 @@
 //     "epochs": {"default": 750, "help": "passes over the demonstrations", "source": "paper, appendix"}})")
 //
 // An option's default fixes its type (text, number, whole number, boolean); "values", if given, lists all it may be;
-// "min" the least a number may be, "words" texts that may stand in its place; "needs", of an option with "values",
-// which other options a value goes with:
+// "min" and "max" the least and the most that a number may be, "words" texts that may stand in its place; "needs", of
+// an option with "values", which other options a value goes with:
 // {"value": {"other option": [its values]}}. Anything else is refused before a cell runs. "framework": true is for
 // options that mean what CloningMethod's of that name do: a suite sets them for all methods ("*"), and no others.
 #pragma once

@@ -105,8 +105,6 @@ std::string text(const char (&field)[Size], const char* name) {
   return value;
 }
 
-constexpr const char* questionnaire = "questionnaire";
-
 bool offers(const Json& option, const Json& value) {
   const Json values = option.is_object() ? option.value("values", Json()) : Json();
   return values.is_array() && std::find(values.begin(), values.end(), value) != values.end();
@@ -133,20 +131,19 @@ bool is_name(const std::string& id) {
          std::all_of(id.begin(), id.end(), [&lower](char c) { return lower(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-bool is_questionnaire(const std::string& options_json) {
-  const Json options = json_or_null(options_json);
-  return options.is_object() && options.value(questionnaire, Json()) == true;
-}
-
 // Complaints of InputError's kind are the plugin's fault here.
-Json read_options(const std::string& options_json) {
+DeclaredOptions read_options(const std::string& options_json) {
   try {
-    Json options = parse_json(options_json, "options");
+    DeclaredOptions declared{parse_json(options_json, "options")};
+    Json& options = declared.options;
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
-    if (const auto said = options.find(questionnaire); said != options.end() && said->is_boolean()) options.erase(said);
+    if (const auto said = options.find("questionnaire"); said != options.end() && said->is_boolean()) {
+      declared.questionnaire = said->get<bool>();
+      options.erase(said);
+    }
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
-      reader.only({"default", "help", "source", "values", "min", "words", "needs", "framework"});
+      reader.only({"default", "help", "source", "values", "min", "max", "words", "needs", "framework"});
       const Json& usual = reader.at("default").json();
       if (usual.is_structured() || usual.is_null()) reader.at("default").fail("a text, number or boolean");
       reader.at("help").string();
@@ -158,12 +155,14 @@ Json read_options(const std::string& options_json) {
       }
       if (reader.has("min") && (!usual.is_number() || usual.get<double>() < reader.at("min").number()))
         reader.at("min").fail("a number, not above a default that is one");
+      if (reader.has("max") && (!usual.is_number() || usual.get<double>() > reader.at("max").number()))
+        reader.at("max").fail("a number, not below a default that is one");
       if (reader.has("words") && (!usual.is_number() || reader.at("words").strings().empty()))
         reader.at("words").fail("texts, beside a default that is a number");
       if (reader.has("needs")) check_needs(reader, options);
       if (reader.has("framework")) reader.at("framework").boolean();
     }
-    return options;
+    return declared;
   } catch (const InputError& e) {
     throw PluginError(e.what());
   }
@@ -230,8 +229,9 @@ PluginInfo inspect_plugin(const fs::path& file) {
         fmt::format("descriptor: id \"{}\", expected lower-case letters, digits and underscores", plugin.id));
   plugin.version = text(d.version, "version");
   plugin.summary = text(d.summary, "summary");
-  plugin.options = read_options(text(d.options_json, "options"));
-  plugin.questionnaire = is_questionnaire(text(d.options_json, "options"));
+  DeclaredOptions declared = read_options(text(d.options_json, "options"));
+  plugin.options = std::move(declared.options);
+  plugin.questionnaire = declared.questionnaire;
   plugin.sha256 = sha256(bytes);
   return plugin;
 }

@@ -10,11 +10,14 @@ namespace lgabench {
 /// The one descriptor in the bytes of a whole ELF library. @throws PluginError, also for another plugin interface.
 PluginDescriptor find_descriptor(std::string_view bytes);
 
-/// A descriptor's options, checked. @throws PluginError with the place of what is wrong.
-Json read_options(const std::string& options_json);
+/// What a descriptor's options say.
+struct DeclaredOptions {
+  Json options;                // as PluginInfo::options
+  bool questionnaire = false;  // said beside them, and no option
+};
 
-/// Whether they say "questionnaire": true, which is no option.
-bool is_questionnaire(const std::string& options_json);
+/// Checked. @throws PluginError with the place of what is wrong.
+DeclaredOptions read_options(const std::string& options_json);
 
 /// Lower-case letters, digits and underscores, a letter first: a plugin's id.
 bool is_name(const std::string& id);

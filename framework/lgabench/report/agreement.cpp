@@ -75,7 +75,7 @@ CellAgreement compare_outcomes(const CellResult& recorded, const CellResult& rec
     both.only_recomputed += pair.only_second;
     both.episodes += pair.episodes;
     if (pair.only_first + pair.only_second > 0)
-      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here, {} episodes ended otherwise",
+      changed += fmt::format("{}arm {}: {} of {} succeeded there, {} here, {} episodes ended differently",
                              changed.empty() ? "" : "; ", arm, pair.won_first, pair.episodes, pair.won_second,
                              pair.only_first + pair.only_second);
   }

@@ -12,7 +12,7 @@ namespace lgabench::report {
 enum class Agreement {
   identical,       // every byte of what holds no clock
   same_outcomes,   // every episode succeeded or failed as recorded; actions or training differ
-  other_outcomes,  // some episodes ended otherwise: whether they are few enough, the verdict over all cells says
+  other_outcomes,  // some episodes ended differently: whether they are few enough, the verdict over all cells says
   differs          // the same bytes are owed, or nothing can be compared: another Selection, scene or arm
 };
 /// "bit-identical", "same outcomes", "other outcomes", "differs"
@@ -47,7 +47,7 @@ constexpr double most_flips = .01;
 /// What cells that were computed again come to, all together.
 enum class Reproduction {
   identical,  // every cell, to the bit
-  agrees,     // at most most_flips of the episodes ended otherwise, no more of them one way than chance allows
+  agrees,     // at most most_flips of the episodes ended differently, no more of them one way than chance allows
   differs
 };
 /// "identical", "agrees", "differs"

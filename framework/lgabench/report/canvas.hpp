@@ -31,6 +31,8 @@ class Canvas {
   virtual ~Canvas() = default;
   /// What follows until close() belongs to the series: its colour.
   virtual void open(const Series& series) = 0;
+  /// What follows until close() is the entry of the series in the legend.
+  virtual void open_entry(const Series& series) = 0;
   /// What follows until close() is the point.
   virtual void open(const ChartPoint& point, Series::Kind kind) = 0;
   virtual void close() = 0;

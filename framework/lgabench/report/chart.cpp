@@ -170,6 +170,7 @@ class Drawing {
     const auto entry = [&](const Series& series, const std::string& name) {
       const double wide = sample + 6 + spare_width * text_width(name, small_text);
       if (x > left && x + wide > chart_.width - 4) x = left, y += row;
+      canvas_.open_entry(series);
       canvas_.open(series);
       if (series.joined || series.kind == Series::reference)
         canvas_.path({{'m', {x, y}}, {'l', {x + sample, y}}}, line_pen(series));
@@ -180,6 +181,7 @@ class Drawing {
       }
       canvas_.close();
       canvas_.text(name, x + sample + 6, y + 4, Anchor::start, small_text, false, Ink::ink);
+      canvas_.close();
       x += wide + between;
     };
     for (const Series& series : chart_.series)

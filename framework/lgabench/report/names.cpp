@@ -64,7 +64,7 @@ const std::map<std::string, Known>& known() {
 
 // nullptr for an id that methods.json does not have.
 const Known* find(const std::string& method) {
-  const auto it = known().find(row_words(without_selected_by(method)).front());
+  const auto it = known().find(row_id(method));
   return it == known().end() ? nullptr : &it->second;
 }
 
@@ -94,7 +94,7 @@ MethodStyles::MethodStyles(const std::vector<std::string>& methods, std::map<std
   std::map<std::string, std::size_t> variants;  // so far, by id
   for (const std::string& method : ordered) {
     if (styles_.count(method) != 0) continue;
-    const std::string id = row_words(without_selected_by(method)).front();
+    const std::string id = row_id(method);
     const std::size_t variant = variants[id]++;
     std::size_t mark = 0;
     MethodStyle& style = styles_[method];
@@ -125,14 +125,15 @@ const MethodStyle& MethodStyles::operator()(const std::string& method) const {
   return it == styles_.end() ? none : it->second;
 }
 
-std::string provenance_words(const std::string& provenance) {
-  if (provenance == "rule") return "computed by the method: nobody was asked";
-  if (provenance == "recorded") return "a language model's recorded answers";
-  if (provenance == "live") return "a language model asked during this run";
-  if (provenance == "cassette") return "a language model's replies, replayed";
-  if (provenance == "truth") return "true φ̂: no human data";
-  if (provenance == "simulated_edit") return "simulated edit: no human data";
-  if (provenance == "human") return "people's answers";
+std::string provenance_words(const std::string& provenance, bool erring) {
+  const char* errors = erring ? ", with errors made in φ̂" : "";
+  if (provenance == "rule") return fmt::format("computed by the method: nobody was asked{}", errors);
+  if (provenance == "recorded") return fmt::format("a language model's recorded answers{}", errors);
+  if (provenance == "live") return fmt::format("a language model asked during this run{}", errors);
+  if (provenance == "cassette") return fmt::format("a language model's replies, replayed{}", errors);
+  if (provenance == "truth") return erring ? "true φ̂ with errors made in it: no human data" : "true φ̂: no human data";
+  if (provenance == "simulated_edit") return fmt::format("simulated edit{}: no human data", errors);
+  if (provenance == "human") return fmt::format("people's answers{}", errors);
   return "";
 }
 

@@ -49,7 +49,8 @@ class MethodStyles {
 };
 
 /// A Selection's provenance in words for a reader, e.g. "true φ̂: no human data"; "" for none.
-std::string provenance_words(const std::string& provenance);
+/// `erring`: errors were made in it on purpose.
+std::string provenance_words(const std::string& provenance, bool erring);
 
 /// Whether two wordings differ by more than a final full stop.
 bool worded_otherwise(const std::string& asked_as, const std::string& utterance);

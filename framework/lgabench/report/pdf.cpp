@@ -38,6 +38,7 @@ std::string pdf_string(const std::string& text) {
 class Pdf : public Canvas {
  public:
   void open(const Series& series) override { series_ = series.style.reference() ? "#59626d" : series.style.colour; }
+  void open_entry(const Series&) override {}
   void open(const ChartPoint&, Series::Kind) override {}
   void close() override {}
   void path(const Path& path, const Pen& pen) override {

@@ -30,7 +30,7 @@ std::set<std::string> sources(const Summary& summary, const MethodStyles& styles
   std::set<std::string> lines;
   for (const PhiOfRow& of : distinct_phi(summary)) {
     const PhiOfCommand& phi = of.row->phi[of.command];
-    const std::string words = provenance_words(phi.provenance);
+    const std::string words = provenance_words(phi.provenance, phi.erring);
     lines.insert(fmt::format("φ̂ of {}: {}{}.", styles.name(of.row->method), words.empty() ? phi.provenance : words,
                              phi.source.empty() ? "" : ", " + phi.source));
   }
@@ -53,18 +53,19 @@ Section how_to_read() {
       reading,
       List{{{"Success is the mean over scenarios of the mean over training seeds of the share of test episodes that "
              "succeeded."},
-            {"Brackets hold a 95 % interval: Wilson's where the number is one policy's in one scenario; otherwise a "
-             "percentile interval of 2,000 resamples. The scenarios are taken as they are; in each, test scenes and "
-             "training seeds (participants, where there are several) are drawn again, crossed where the seeds share "
-             "their scenes, else scenes within seeds, and with them two imagined scenes, one success and one failure. "
-             "Three seeds on the same 20 scenes count as 20 scenes. What other scenarios would do is not in it; claims "
-             "test that apart."},
-            {"A change against an arm is the difference of a policy's two rates, averaged alike; the arms are paired "
-             "scene by scene. Its interval is found in the same way (one policy: Bonett and Price's for paired "
-             "proportions)."},
-            {"A test input was seen in training where all that the policy is given, pictures and text, is there to the "
-             "byte: a high share measures what was learned by heart. – where a policy does not tell."},
-            {"Reference rows are not methods: the best constant action knows the training actions alone, the random "
+            {"Brackets hold a 95 % interval: Wilson's if the number is one policy's in one scenario, else a percentile "
+             "interval of 2,000 resamples. Scenarios are not resampled; within each, test scenes and training seeds "
+             "(or participants, if there are several) are: crossed if the seeds share their scenes, else scenes within "
+             "seeds. Two imagined scenes, one success and one failure, are added. Three seeds on the same 20 scenes "
+             "count as 20 scenes. How other scenarios would turn out is not part of it; the claims test that "
+             "separately."},
+            {"The change against an arm is the difference of a policy's two rates, averaged in the same way; arms are "
+             "paired scene by scene. Its interval is found in the same way (for one policy: Bonett and Price's for "
+             "paired proportions)."},
+            {"A test input counts as seen in training if everything that the policy is given, pictures and text, "
+             "occurred there byte for byte: a high share measures what was memorised. – where a policy does not report "
+             "it."},
+            {"Reference rows are not methods: the best constant action knows only the training actions, the random "
              "visible object is handled by the oracle's rule, the oracle knows the target. The last two learn nothing "
              "and are the same for every number of demonstrations."}}});
   return section;

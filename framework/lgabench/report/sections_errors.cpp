@@ -37,7 +37,7 @@ Chart chart_of(const Material& material, const ErrorCurve& first) {
     if (curve.layout != first.layout || curve.engine != first.engine || curve.arm != first.arm ||
         curve.kind != first.kind || curve.demonstrations != first.demonstrations)
       continue;
-    Series series{Series::measured, display_name(curve.method), material.styles(curve.method), true};
+    Series series{Series::measured, material.styles.name(curve.method), material.styles(curve.method), true};
     for (const ErrorCurve::Point& point : curve.points) {
       at.insert(point.p);
       series.points.push_back({point.p, point.success, point.low, point.high,

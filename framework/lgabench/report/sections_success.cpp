@@ -1,4 +1,4 @@
-// Success: of each method and reference row, its change between arms, what of it may have been learned by heart.
+// Success: of each method and reference row, its change between arms, what of it may have been memorised.
 #include <fmt/format.h>
 
 #include <algorithm>

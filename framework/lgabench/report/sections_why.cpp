@@ -137,7 +137,7 @@ Section phi(const Material& material) {
     const std::string place = fmt::format("/{}/", of.command);
     for (const auto& [about, set] : phi.quality) {
       std::vector<TableCell> cells{command_text(phi.utterance, phi.seen, tell), named(material, row.method), about,
-                                   provenance_words(phi.provenance), phi.source};
+                                   provenance_words(phi.provenance, phi.erring), phi.source};
       for (const auto& [group, names] : {std::pair("object_types", &set.object_types), {"textures", &set.textures}}) {
         const std::string numbers = fmt::format("{}quality/{}/{}/", place, about, group);
         cells.emplace_back(phi_number(row, numbers + "precision", names->precision, 2));

@@ -83,7 +83,8 @@ std::optional<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, 
                       words_of(selections, "asked_as"),
                       mean_cost(selections, "lm_queries"),
                       mean_cost(selections, "human_seconds"),
-                      mean_quality(qualities)};
+                      mean_quality(qualities),
+                      !cells.front()->configuration.selection_errors.none()};
 }
 
 // The same for every command that the arm gives.

@@ -29,6 +29,7 @@ struct PhiOfCommand {
   std::string provenance, source, asked_as;
   std::optional<double> lm_queries, human_seconds;
   Quality quality;
+  bool erring = false;  // errors were made in it on purpose
 };
 Json to_json(const PhiOfCommand& phi);
 

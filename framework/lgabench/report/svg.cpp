@@ -22,10 +22,12 @@ class Svg : public Canvas {
  public:
   void open(const Series& series) override {
     const std::string& own = series.style.colour;
-    text_ += series.style.reference() ? std::string("<g>")
-                                      : fmt::format("<g class=\"series\" color=\"{0}\" style=\"--c:{1}\">", own,
-                                                    own == "#000000" ? "var(--ink,#000000)" : own);
+    text_ += "<g class=\"series\"" + named(series);
+    if (!series.style.reference())
+      text_ += fmt::format(" color=\"{0}\" style=\"--c:{1}\"", own, own == "#000000" ? "var(--ink,#000000)" : own);
+    text_ += '>';
   }
+  void open_entry(const Series& series) override { text_ += fmt::format("<g class=\"entry\"{}>", named(series)); }
   void open(const ChartPoint& point, Series::Kind kind) override {
     text_ += point.row ? fmt::format("<g class=\"point\" tabindex=\"0\" role=\"button\" data-row=\"{}\"", *point.row)
                        : "<g class=\"point\" tabindex=\"0\" role=\"img\"";
@@ -58,6 +60,13 @@ class Svg : public Canvas {
   const std::string& drawn() const { return text_; }
 
  private:
+  // What a page's script hides together: a row's curve, and the paper's of the same name. A mark alone has no name.
+  static std::string named(const Series& series) {
+    if (series.name.empty()) return "";
+    return fmt::format(" data-series=\"{}\"{}", escaped(series.name),
+                       series.kind == Series::published ? " data-published=\"\"" : "");
+  }
+
   std::string text_;
 };
 

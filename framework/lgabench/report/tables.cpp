@@ -101,7 +101,7 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
       if (acts_the_same(row)) same_as.insert(row.shift->against);
       for (const PhiOfCommand& phi : row.phi) {
         if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
-          people[row.method] = provenance_words(phi.provenance);
+          people[row.method] = provenance_words(phi.provenance, phi.erring);
         if (phi.provenance == "cassette") models.insert(phi.source);
         if (phi.provenance == "live") live.insert(phi.source);
       }

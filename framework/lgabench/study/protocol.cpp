@@ -205,11 +205,11 @@ Json pin_of(const Protocol& protocol) {
 
 std::string not_ready(const Protocol& protocol, const fs::path& file) {
   if (const std::vector<std::string> empty = blanks(protocol); !empty.empty())
-    return fmt::format("{} blanks to fill; lgabench study check lists them", empty.size());
+    return fmt::format("{} blanks to fill in; lgabench study check lists them", empty.size());
   const fs::path pin = pin_file(file);
   std::error_code error;
   if (!fs::exists(pin, error))
-    return fmt::format("not pinned; once nothing is to change any more: lgabench study check {} --pin",
+    return fmt::format("not pinned; once nothing will change any more: lgabench study check {} --pin",
                        file.parent_path().empty() ? "." : file.parent_path().string());
   const Json pinned = read_json(pin), now = pin_of(protocol);
   for (const char* part : {"protocol", "consent", "stimuli"})

@@ -241,7 +241,7 @@ Section left_out_section(const StudyResults& results) {
   add(fmt::format("Trials that do not count: {} interrupted, {} too long, {} for practice", results.interrupted,
                   results.too_long, results.practice));
   add(fmt::format("Trials whose clicks do not add up to what was submitted: {}", results.disagree));
-  add(fmt::format("Trials that took another time by the server's clock, by more than 2 s: {}", results.clocks_apart));
+  add(fmt::format("Trials whose duration differs by more than 2 s on the server's clock: {}", results.clocks_apart));
   section.add(everywhere, std::move(list));
   return section;
 }

@@ -102,7 +102,7 @@ struct Server::Impl {
       port = http.bind_to_port(where.address, where.port) ? where.port : -1;
     if (port <= 0)
       throw InputError(
-          fmt::format("{}:{}: cannot be listened on: is another program there?", where.address, where.port));
+          fmt::format("{}:{}: cannot listen there: does another program use that port?", where.address, where.port));
     for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
       hosts.push_back(fmt::format("{}:{}", own, port));
       if (port == 80) hosts.emplace_back(own);  // a browser leaves HTTP's own port out

@@ -1,17 +1,27 @@
 """python -m lgabench ...: the command line, with this interpreter for methods in Python."""
 import os
 import pathlib
+import shutil
 import sys
 
 PROGRAM = pathlib.Path(__file__).with_name("_install") / "bin" / "lgabench"
 PLAYS = ("run", "check-plugin", "verify")
 
 
+def typed() -> str:
+    """What starts this package's program from a shell: commands that the program prints begin with it."""
+    script = pathlib.Path(sys.executable).with_name("lgabench")
+    found = shutil.which("lgabench")
+    if found and script.exists() and os.path.samefile(found, script):
+        return "lgabench"
+    return str(script if script.exists() else PROGRAM)
+
+
 def main() -> None:
     words = sys.argv[1:]
     if words and words[0] in PLAYS and not any(word.split("=")[0] == "--python" for word in words):
         words = [*words, "--python", sys.executable]
-    os.execv(PROGRAM, [str(PROGRAM), *words])
+    os.execv(PROGRAM, [typed(), *words])
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ function fit(within = document) {
         cell.classList.toggle("none", cell.textContent.trim() === "–");
       });
     frame.classList.toggle("list", list);
-    scrolls || (!list && frame.scrollHeight > frame.clientHeight + 1) ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
+    scrolls || frame.scrollHeight > frame.clientHeight + 1 ? frame.setAttribute("tabindex", 0) : frame.removeAttribute("tabindex");
     const first = frame.querySelector("tbody tr:not(.group)");
     const name = !list && scrolls && first ? first.querySelectorAll("th").length - 1 : -1;  // the column of the rows' names
     for (const row of frame.querySelectorAll("tr:not(.group)"))
@@ -99,21 +99,45 @@ addEventListener("afterprint", () => {
   fit();
 });
 
-// Of all buttons of a table, or points of a chart, one is a stop of the tab key; the arrow keys lead to the others.
+// A name in a legend hides what belongs to it in its chart, and shows it again; the paper's curves have an entry for all.
+for (const chart of document.querySelectorAll("svg.chart")) {
+  const entries = [...chart.querySelectorAll(".entry")];
+  const key = (element) => "published" in element.dataset ? "" : element.dataset.series;
+  const draw = () => {
+    const off = new Set(entries.filter((entry) => entry.getAttribute("aria-pressed") === "false").map(key));
+    for (const series of chart.querySelectorAll(":scope > .series"))
+      off.has(series.dataset.series) || off.has(key(series)) ? series.setAttribute("display", "none") : series.removeAttribute("display");
+  };
+  for (const entry of entries) {
+    entry.setAttribute("role", "button");
+    entry.setAttribute("aria-pressed", "true");
+    entry.onclick = () => {
+      entry.setAttribute("aria-pressed", entry.getAttribute("aria-pressed") === "false");
+      draw();
+    };
+    entry.onkeydown = (event) => {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      event.preventDefault();
+      entry.onclick();
+    };
+  }
+}
+
+// Of all buttons of a table, or points and names of a chart, one is a stop of the tab key; the arrow keys lead to the others.
 const middle = (element) => {
   const box = element.getBoundingClientRect();
   return [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
 };
 const ways = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 for (const box of document.querySelectorAll("main table, svg.chart")) {
-  const items = [...box.querySelectorAll("button, .point")];
+  const items = [...box.querySelectorAll("button, .point, .entry")];
   items.forEach((item, i) => item.setAttribute("tabindex", i ? -1 : 0));
   const stop = (item) => {
     items.forEach((other) => other.setAttribute("tabindex", other === item ? 0 : -1));
     item.focus();
   };
   box.addEventListener("click", (event) => {
-    const item = event.target.closest("button, .point");
+    const item = event.target.closest("button, .point, .entry");
     if (item) stop(item);
   });
   box.addEventListener("keydown", (event) => {
@@ -123,7 +147,7 @@ for (const box of document.querySelectorAll("main table, svg.chart")) {
     if (end) return stop(end);
     const [x, y] = middle(document.activeElement);
     let next = null, least = Infinity;  // the nearest on that side, more along the way than beside it
-    for (const item of items) {
+    for (const item of items.filter((one) => one.getClientRects().length)) {
       const [m, n] = middle(item), along = (m - x) * way[0] + (n - y) * way[1];
       const beside = Math.abs((m - x) * way[1]) + Math.abs((n - y) * way[0]);
       if (item !== document.activeElement && along > .5 && along + 4 * beside < least) next = item, least = along + 4 * beside;

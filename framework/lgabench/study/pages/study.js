@@ -218,7 +218,7 @@ function list(set, feature, names, chosen, changed) {
     only.setAttribute('aria-pressed', only.getAttribute('aria-pressed') === 'false');
     filter();
   }}, 'Chosen only');
-  const tiles = make('ul', {class: 'tiles', role: 'group', 'aria-label': `${title}: arrow keys move, space chooses`});
+  const tiles = make('ul', {class: 'tiles', 'aria-label': `${title}: arrow keys move, space chooses`});
   const shown = () => boxes.filter(box => !box.closest('li').hidden);
 
   function choose(some, on) {
