@@ -415,7 +415,7 @@ NB_MODULE(_core, m) {
                    })
       .def_prop_ro("most_instances", [](const Scenario& s) { return find_environment(s.environment).most_instances(); })
       .def_prop_ro("action_space_json", [](const Scenario& s) {
-        return canonical(to_json(find_environment(s.environment).action_space()));
+        return canonical(to_json(actions_of(s)));
       });
   m.def("scenario", &scenario_at, "id"_a.none(), "path"_a.none());
   nb::class_<One>(m, "Environment")
