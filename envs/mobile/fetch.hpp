@@ -24,7 +24,7 @@ struct FetchContent : SceneContent {
   std::pair<int, int> distractors{7, 7};  // fewest and most other objects, all numbers with equal odds
   std::optional<NearMiss> near_miss;      // among other objects and receivers: see docs/protocol.md, section 7
   double least_visible = .9;              // share of the target's pixels
-  std::optional<double> caption_error;    // how likely a caption errs at its likeliest; none: perception is perfect
+  std::optional<double> caption_error;    // see perceive_in_bad_light(); none: perception is perfect
 };
 
 /// Names of the members of "train" and of "tests", as EnvironmentType asks for them.

@@ -239,7 +239,8 @@ class MobileType final : public EnvironmentType {
     const std::optional<double> error =
         fetched ? fetched->caption_error : dynamic_cast<const Content&>(scenes).caption_error;
     if (!error) return nullptr;
-    return [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, stream); };
+    const auto model = fetched ? perceive_in_bad_light : perceive;
+    return [e = *error, model](Observation seen, RandomStream stream) { return model(std::move(seen), e, stream); };
   }
   Observation draw(const Scene& scene) const override {
     static Renderer& renderer = *new Renderer(front_camera());

@@ -27,6 +27,14 @@ std::map<std::string, Names> textures_of(const char* file, const char* member) {
   return read;
 }
 
+std::map<std::string, Names> confusions_of(const char* file, const char* member) {
+  const Table table(file);
+  const JsonReader of = table.reader.at(member);
+  std::map<std::string, Names> read;
+  for (const auto& [name, entry] : of.json().items()) read[name] = of.at(name).at("as").strings();
+  return read;
+}
+
 }  // namespace
 
 const std::map<std::string, Names>& natural_textures() {
@@ -44,14 +52,18 @@ const std::map<std::string, Names>& receiver_textures() {
   return all;
 }
 
-const std::map<std::string, std::vector<std::string>>& confusions() {
-  static const auto all = [] {
-    const Table table("confusions.json");
-    const JsonReader of = table.reader.at("confusions");
-    std::map<std::string, std::vector<std::string>> read;
-    for (const auto& [type, entry] : of.json().items()) read[type] = of.at(type).at("as").strings();
-    return read;
-  }();
+const std::map<std::string, Names>& confusions() {
+  static const auto all = confusions_of("confusions.json", "confusions");
+  return all;
+}
+
+const std::map<std::string, Names>& fetch_confusions() {
+  static const auto all = confusions_of("fetch_confusions.json", "types");
+  return all;
+}
+
+const std::map<std::string, Names>& texture_confusions() {
+  static const auto all = confusions_of("fetch_confusions.json", "textures");
   return all;
 }
 
