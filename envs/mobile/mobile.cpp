@@ -214,7 +214,9 @@ class MobileType final : public EnvironmentType {
     return task.id == fetch ? fetch_plans() : plans();
   }
   PictureSize picture_size() const override { return front_camera().size; }
-  int most_instances() const override { return most_fetch_objects; }
+  int most_instances(const TaskInfo& task) const override {
+    return task.id == fetch ? most_fetch_objects : most_objects;
+  }
   Vec2 in_picture(Vec3 point_m) const override {
     if (front_camera().depth(point_m) <= 0) return {-1e6, -1e6};  // behind the camera
     const Vec2 at = front_camera().at(point_m);

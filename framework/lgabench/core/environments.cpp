@@ -100,6 +100,11 @@ const ActionSpace& actions_of(const Scenario& scenario) {
   return environment.action_space_of(find_task(environment, scenario.task));
 }
 
+int most_instances_of(const Scenario& scenario) {
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  return environment.most_instances(find_task(environment, scenario.task));
+}
+
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id) {
   std::vector<std::string> known;
   for (const TaskInfo& task : environment.tasks()) {
