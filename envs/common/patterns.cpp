@@ -171,6 +171,19 @@ Rgb rainbow(double, double v) {
   return bands[static_cast<std::size_t>(fraction(v) * 7)];
 }
 
+// Leftovers on porcelain: red and brown blots of changing size.
+Rgb stained(double u, double v) {
+  const double blot = fractal_noise(81, u, v, 4, 4) + .25 * value_noise(84, u, v, 12, 12);
+  if (blot < .78) return {240, 240, 236};
+  return mixed({186, 84, 40}, {92, 50, 24}, 5 * (blot - .78));
+}
+
+// A ripe banana's peel.
+Rgb freckled(double u, double v) {
+  const double spot = value_noise(85, u, v, 9, 9) + .35 * value_noise(86, u, v, 20, 20);
+  return spot < .86 ? Rgb{237, 201, 72} : Rgb{104, 66, 24};
+}
+
 // --- shapes that are repeated
 
 // Dots on a staggered lattice, two in each of n x n cells, of a radius given in cells.
@@ -260,6 +273,9 @@ Pattern material(const std::string& name) {
       {"tiger", {0.12, tiger}},
       {"magma", {0.14, magma}},
       {"rainbow", {0.105, rainbow}},
+      {"white", plain({240, 240, 236})},
+      {"white with food stains", {0.12, stained}},
+      {"yellow with brown spots", {0.08, freckled}},
   };
   const auto found = materials.find(name);
   return found == materials.end() ? Pattern{} : found->second;

@@ -8,15 +8,12 @@
 #include <mobile/tables.hpp>
 
 namespace lgabench::mobile {
-namespace {
 
 double read_share(const JsonReader& reader) {
   const double share = reader.number();
   if (!(share >= 0 && share <= 1)) reader.fail("a number within [0, 1]");
   return share;
 }
-
-}  // namespace
 
 const Content& content_of(const Scenario& scenario, const std::string& arm) {
   return dynamic_cast<const Content&>(arm == "train" ? *scenario.train : *scenario.arm(arm).scenes);

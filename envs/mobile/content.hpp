@@ -23,6 +23,9 @@ struct Content : SceneContent {
 
 const Content& content_of(const Scenario& scenario, const std::string& arm);
 
+/// @throws InputError for a number outside of [0, 1].
+double read_share(const JsonReader& reader);
+
 std::vector<std::string> scenario_members();
 std::vector<std::string> scene_members();
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training);

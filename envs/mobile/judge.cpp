@@ -1,5 +1,7 @@
 #include <mobile/judge.hpp>
 
+#include <mobile/receivers.hpp>
+
 namespace lgabench::mobile {
 namespace {
 
@@ -8,7 +10,7 @@ constexpr double moved_m = .05;    // of a centre: more is not where it was
 constexpr double leaning_m = .12;  // a tall thing's centre, where it leans in the vessel
 
 Vec3 centre_of(const SceneObject& object, const Pose& pose) {
-  return pose.position_m + rotated(Vec3{0, 0, standing_model(object.object_type).height_m / 2}, pose.rotation);
+  return pose.position_m + rotated(Vec3{0, 0, model_of(object.object_type).height_m / 2}, pose.rotation);
 }
 
 bool rests_in(const Vessel& vessel, Vec3 centre) {
@@ -20,7 +22,10 @@ bool rests_in(const Vessel& vessel, Vec3 centre) {
 
 Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
               std::size_t taken) {
-  if (!rests_in(task.goal, centre_of(scene.objects[taken], now[taken]))) return failure::dropped_elsewhere;
+  const Vec3 centre = centre_of(scene.objects[taken], now[taken]);
+  for (const Vessel& wrong : task.wrong)
+    if (rests_in(wrong, centre)) return failure::wrong_receiver;
+  if (!rests_in(task.goal, centre)) return failure::dropped_elsewhere;
   for (std::size_t i = 0; i < now.size(); ++i) {
     if (i == taken) continue;
     const Vec3 is = centre_of(scene.objects[i], now[i]), way = is - centre_of(scene.objects[i], before[i]);

@@ -8,7 +8,8 @@
 namespace lgabench::mobile {
 
 /// Poses in the order of `scene.objects`, at rest: as they were at the scene's beginning, and now. `taken`: the object
-/// that was carried, a target. Pure. @returns failure::none, dropped_elsewhere or moved_another.
+/// that was carried, a target. Pure. @returns failure::none, wrong_receiver,
+/// dropped_elsewhere or moved_another.
 Failure judge(const Scene& scene, const Task& task, const std::vector<Pose>& before, const std::vector<Pose>& now,
               std::size_t taken);
 

@@ -11,9 +11,11 @@
 #include <lgabench/core/suggest.hpp>
 #include <mobile/content.hpp>
 #include <mobile/drive.hpp>
+#include <mobile/fetch.hpp>
 #include <mobile/judge.hpp>
 #include <mobile/perception.hpp>
 #include <mobile/plan.hpp>
+#include <mobile/receivers.hpp>
 #include <mobile/renderer.hpp>
 #include <mobile/sampler.hpp>
 #include <mobile/tables.hpp>
@@ -21,22 +23,35 @@
 namespace lgabench::mobile {
 namespace {
 
-const std::array<Task, 2>& tasks() {
+const std::array<Task, 2>& fixed_tasks() {
   static const std::array<Task, 2> all{Task{"bring", tray, {-.3, .95}, pi / 2},
                                        Task{"throw_away", bin, {-.45, -.8}, -pi / 2}};
   return all;
 }
 
+Task fetch_task(const Scene& scene) {
+  const SceneObject* goal = scene.find(receiver);
+  if (!goal || !is_receiver(goal->object_type)) throw InputError("scene: expected a receiver with the role receiver");
+  Task task{fetch, vessel_of(goal->object_type, goal->position_m), before(goal->position_m), 0};
+  for (const SceneObject& o : scene.objects)
+    if (o.role != receiver && is_receiver(o.object_type)) task.wrong.push_back(vessel_of(o.object_type, o.position_m));
+  return task;
+}
+
 class Mobile final : public Environment {
  public:
-  explicit Mobile(std::unique_ptr<PhysicsWorld> world) : world_(std::move(world)), renderer_(front_camera()) {
+  Mobile(std::unique_ptr<PhysicsWorld> world, bool fetches) : world_(std::move(world)), renderer_(front_camera()) {
     std::vector<BodyModel> models;
     for (const Furniture& thing : furniture()) models.push_back(thing.body);
+    for (std::size_t i = 0; fetches && i < receiver_types().size(); ++i) {
+      models_[receiver_types()[i]] = static_cast<int>(models.size());
+      models.push_back(model_of(receiver_types()[i]).body);
+    }
     for (const auto& [type, textures] : natural_textures()) {
       models_[type] = static_cast<int>(models.size());
       models.push_back(standing_model(type).body);
     }
-    world_->load(models, first_ + most_objects);
+    world_->load(models, first_ + (fetches ? most_fetch_objects : most_objects));
   }
 
   const ActionSpace& action_space() const override { return plans(); }
@@ -53,7 +68,7 @@ class Mobile final : public Environment {
                                      scene.scenario, scene.index, object.object_type));
       placements.push_back({model->second, object.pose});
     }
-    task_ = &find_task(scene.task);
+    task_ = task_of(scene);
     world_->reset(placements);
     scene_ = scene;
     objects_ = std::move(objects);
@@ -88,7 +103,7 @@ class Mobile final : public Environment {
                                     [&](const VisibleObject& o) { return o.instance_id == instance_id; });
     if (found == objects_.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
     const std::size_t index = static_cast<std::size_t>(found - objects_.begin());
-    const ObjectModel& model = standing_model(found->object_type);
+    const ObjectModel& model = model_of(found->object_type);
     const Pose now = world_->pose(first_ + static_cast<int>(index));
     const Vec3 grasp = now.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, now.rotation);
     const Camera& camera = front_camera();
@@ -109,10 +124,10 @@ class Mobile final : public Environment {
     Plan plan;
     plan.u = std::clamp((nearest.y + .5) / camera.size.columns, 0., 1.);
     plan.v = std::clamp((nearest.x + .5) / camera.size.rows, 0., 1.);
-    plan.waypoint_m = task_->waypoint_m;
-    plan.cosine = std::cos(task_->heading_rad);
-    plan.sine = std::sin(task_->heading_rad);
-    plan.drop_m = task_->goal.centre;
+    plan.waypoint_m = task_.waypoint_m;
+    plan.cosine = std::cos(task_.heading_rad);
+    plan.sine = std::sin(task_.heading_rad);
+    plan.drop_m = task_.goal.centre;
     return plan;
   }
 
@@ -128,6 +143,14 @@ class Mobile final : public Environment {
   void look() const {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
+  }
+
+  // What the carried object is let go above.
+  Vessel under(Vec2 drop_m) const {
+    if (task_.id != fetch || task_.goal.outer().contains(drop_m)) return task_.goal;
+    for (const Vessel& other : task_.wrong)
+      if (other.outer().contains(drop_m)) return other;
+    return {drop_m, 0, table_top_m, table_top_m, table_top_m};
   }
 
   // What the ray through the plan's place in the picture meets first.
@@ -155,17 +178,18 @@ class Mobile final : public Environment {
     if (meets_person(plan.waypoint_m, plan.drop_m)) return failure::blocked_way;
 
     std::vector<bool> fixed(first_, true);
-    fixed.resize(first_ + objects.size(), false);
+    for (const SceneObject& o : objects) fixed.push_back(is_receiver(o.object_type));
     result.recoverable = false;  // it has left the table
-    result.truncated = !carry({*world_, fixed}, first_ + static_cast<int>(taken), surface.point_m, plan, task_->goal);
+    result.truncated =
+        !carry({*world_, fixed}, first_ + static_cast<int>(taken), surface.point_m, plan, under(plan.drop_m));
     if (result.truncated) return failure::truncated;
-    return judge(scene_, *task_, before_, poses(), taken);
+    return judge(scene_, task_, before_, poses(), taken);
   }
 
   std::unique_ptr<PhysicsWorld> world_;
   mutable Renderer renderer_;
   std::map<std::string, int> models_;  // by type
-  const Task* task_ = nullptr;         // the scene's
+  Task task_;                          // the scene's
   Scene scene_;
   mutable std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<Pose> before_;
@@ -175,43 +199,58 @@ class MobileType final : public EnvironmentType {
  public:
   MobileType()
       : tasks_{{"bring", {layout}, std::nullopt, {}, "bring_fruit"},
-               {"throw_away", {layout}, std::nullopt, {}, "throw_away_drink"}},
-        failures_{failure::missed_object, failure::wrong_object,      failure::blocked_way,
-                  failure::out_of_reach,  failure::dropped_elsewhere, failure::moved_another} {
-    for (TaskInfo& task : tasks_) task.failures = {failures_.begin() + 2, failures_.end()};
+               {"throw_away", {layout}, std::nullopt, {}, "throw_away_drink"},
+               {fetch, {layout}, SecondRole{receiver, "the thing to put it on or into"}, {}, "fetch_fruit"}},
+        failures_{failure::missed_object,     failure::wrong_object,  failure::blocked_way,   failure::out_of_reach,
+                  failure::dropped_elsewhere, failure::moved_another, failure::wrong_receiver} {
+    for (TaskInfo& task : tasks_) task.failures = {failures_.begin() + 2, failures_.end() - (task.id == fetch ? 0 : 1)};
   }
 
   const std::string& id() const override { return id_; }
   const std::vector<TaskInfo>& tasks() const override { return tasks_; }
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return plans(); }
+  const ActionSpace& action_space_of(const TaskInfo& task) const override {
+    return task.id == fetch ? fetch_plans() : plans();
+  }
   PictureSize picture_size() const override { return front_camera().size; }
-  int most_instances() const override { return most_objects; }
+  int most_instances(const TaskInfo& task) const override {
+    return task.id == fetch ? most_fetch_objects : most_objects;
+  }
   Vec2 in_picture(Vec3 point_m) const override {
     if (front_camera().depth(point_m) <= 0) return {-1e6, -1e6};  // behind the camera
     const Vec2 at = front_camera().at(point_m);
     return {at.y + .5, at.x + .5};
   }
-  std::vector<std::string> scenario_members(const TaskInfo&) const override { return mobile::scenario_members(); }
-  std::vector<std::string> scene_members(const TaskInfo&) const override { return mobile::scene_members(); }
+  std::vector<std::string> scenario_members(const TaskInfo& task) const override {
+    return task.id == fetch ? std::vector<std::string>{} : mobile::scenario_members();
+  }
+  std::vector<std::string> scene_members(const TaskInfo& task) const override {
+    return task.id == fetch ? fetch_scene_members() : mobile::scene_members();
+  }
   std::shared_ptr<const SceneContent> read_content(const Scenario& scenario, const JsonReader& file,
                                                    const JsonReader* scenes, bool training) const override {
+    if (scenario.task == fetch) return std::make_shared<FetchContent>(read_fetch_content(scenario, scenes, training));
     return std::make_shared<Content>(mobile::read_content(scenario, file, scenes, training));
   }
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
-    return sample_scene(scenario, request, index);
+    return scenario.task == fetch ? sample_fetch(scenario, request, index) : sample_scene(scenario, request, index);
   }
   Perceive perception(const SceneContent& scenes) const override {
-    const std::optional<double> error = dynamic_cast<const Content&>(scenes).caption_error;
+    const auto* fetched = dynamic_cast<const FetchContent*>(&scenes);
+    const std::optional<double> error =
+        fetched ? fetched->caption_error : dynamic_cast<const Content&>(scenes).caption_error;
     if (!error) return nullptr;
-    return [e = *error](Observation seen, RandomStream stream) { return perceive(std::move(seen), e, stream); };
+    const auto model = fetched ? perceive_in_bad_light : perceive;
+    return [e = *error, model](Observation seen, RandomStream stream) { return model(std::move(seen), e, stream); };
   }
   Observation draw(const Scene& scene) const override {
     static Renderer& renderer = *new Renderer(front_camera());
     return renderer.render(visible_objects(scene));
   }
-  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario&) const override {
-    return make_environment(std::move(engine));
+  std::string world_of(const Scenario& scenario) const override { return scenario.task == fetch ? fetch : ""; }
+  std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
+    return make_environment(std::move(engine), scenario.task == fetch);
   }
 
  private:
@@ -222,14 +261,15 @@ class MobileType final : public EnvironmentType {
 
 }  // namespace
 
-const Task& find_task(const std::string& id) {
-  for (const Task& task : tasks())
-    if (task.id == id) return task;
-  throw InputError(none_named("task", id, {tasks()[0].id, tasks()[1].id}));
+Task task_of(const Scene& scene) {
+  if (scene.task == fetch) return fetch_task(scene);
+  for (const Task& task : fixed_tasks())
+    if (task.id == scene.task) return task;
+  throw InputError(none_named("task", scene.task, {fixed_tasks()[0].id, fixed_tasks()[1].id, fetch}));
 }
 
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world) {
-  return std::make_unique<Mobile>(std::move(world));
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches) {
+  return std::make_unique<Mobile>(std::move(world), fetches);
 }
 
 }  // namespace lgabench::mobile

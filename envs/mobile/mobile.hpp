@@ -8,27 +8,33 @@
 
 namespace lgabench::mobile {
 
-/// On the table, at most; an engine is told four more, the furniture.
-constexpr int most_objects = 6;
+/// On the table, at most; an engine is told four more, the furniture. In `fetch` with three receivers among them.
+constexpr int most_objects = 6, most_fetch_objects = 11;
 
 namespace failure {
 using namespace lgabench::failure;
 inline constexpr const char *missed_object = "missed_object", *wrong_object = "wrong_object";
 inline constexpr const char *blocked_way = "blocked_way", *out_of_reach = "out_of_reach";
 inline constexpr const char *dropped_elsewhere = "dropped_elsewhere", *moved_another = "moved_another";
+inline constexpr const char* wrong_receiver = "wrong_receiver";
 }  // namespace failure
 
-/// Where the things of a task go, and how the oracle stands there.
+/// The task whose goal stands in its scene: the receiver that the command means.
+constexpr const char* fetch = "fetch";
+
+/// Where the things of a scene go, and how the oracle stands there.
 struct Task {
   std::string id;
   Vessel goal;
   Vec2 waypoint_m;
   double heading_rad;
+  std::vector<Vessel> wrong = {};  // receivers that the command does not mean
 };
-/// @throws InputError that lists the known ones.
-const Task &find_task(const std::string &id);
+/// @throws InputError that lists the known ones; for a scene without what its task needs.
+Task task_of(const Scene& scene);
 
 /// Takes the engine, loads the furniture and every object type that scenes can show into it once, and plays on it.
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world);
+/// `fetches`: the receivers too, for scenes of that task alone.
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches = false);
 
 }  // namespace lgabench::mobile

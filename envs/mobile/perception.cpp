@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
+#include <string>
+#include <utility>
 
 #include <mobile/tables.hpp>
 
@@ -91,27 +95,30 @@ void merge_touching(Observation& seen, RandomStream& stream) {
   for (Instance& instance : table) instance.pixels = pixels[instance.id];
 }
 
+using Confusions = std::map<std::string, std::vector<std::string>>;
+
 // Draws the same numbers whether it errs or not.
-void caption(Instance& instance, double error, RandomStream& stream) {
+void confuse(std::string& word, double error, const Confusions& confusions, const char* else_said,
+             RandomStream& stream) {
   const bool wrong = stream.uniform() < error;
   const double which = stream.uniform();
   if (!wrong) return;
-  const auto known = confusions().find(instance.object_type);
-  const std::size_t others = known == confusions().end() ? 0 : known->second.size();
+  const auto known = confusions.find(word);
+  const std::size_t others = known == confusions.end() ? 0 : known->second.size();
   const auto chosen = static_cast<std::size_t>(which * static_cast<double>(others + 1));
-  instance.object_type = chosen < others ? known->second[chosen] : an_object;
+  word = chosen < others ? known->second[chosen] : else_said;
 }
 
-}  // namespace
-
-Observation perceive(Observation seen, double caption_error, RandomStream stream) {
+// Calls caption(instance, stream) for each segment, which says what it is.
+template <typename Caption>
+Observation segmented(Observation seen, RandomStream& stream, const Caption& caption) {
   merge_touching(seen, stream);
   std::array<bool, 256> missed{};
   for (Instance& instance : seen.instances) {
     const double p = std::min(most_missed, missed_pixels / std::max(instance.pixels, 1));
     missed[instance.id] = stream.uniform() < p;
     const int border = static_cast<int>(stream.below(2 * border_pixels + 1)) - border_pixels;
-    caption(instance, caption_error, stream);
+    caption(instance, stream);
     move_border(seen, instance.id, border);
   }
   auto& table = seen.instances;
@@ -123,6 +130,58 @@ Observation perceive(Observation seen, double caption_error, RandomStream stream
   }
   for (Instance& instance : table) instance.pixels = pixels[instance.id];
   return seen;
+}
+
+// Of each segment, the share of its border that lies on another one.
+std::array<double, 256> covered(const Observation& seen) {
+  std::array<double, 256> border{}, on_another{};
+  for_each_neighbours(seen.size, {0, seen.size.rows - 1, 0, seen.size.columns - 1}, [&](std::size_t a, std::size_t b) {
+    const std::uint8_t i = seen.ids[a], k = seen.ids[b];
+    if (i == k) return;
+    for (const std::uint8_t id : {i, k}) {
+      ++border[id];
+      on_another[id] += i != 0 && k != 0;
+    }
+  });
+  for (std::size_t id = 0; id < border.size(); ++id) border[id] = border[id] > 0 ? on_another[id] / border[id] : 0;
+  return border;
+}
+
+// Dim light, and the colour of a lamp: what the whole picture is multiplied by.
+struct Exposure {
+  double gain, cast;  // cast: 1 the warmest, -1 the coldest
+
+  explicit Exposure(RandomStream& stream) : gain(stream.uniform(.45, 1)), cast(stream.uniform(-1, 1)) {}
+  double dim() const { return (1 - gain) / .55; }
+  void apply(std::vector<std::uint8_t>& rgb) const {
+    constexpr double tint = .2;
+    const std::array<double, 3> factors{gain * (1 + tint * cast), gain, gain * (1 - tint * cast)};
+    for (std::size_t i = 0; i < rgb.size(); ++i)
+      rgb[i] = static_cast<std::uint8_t>(std::min(std::lround(rgb[i] * factors[i % 3]), 255L));
+  }
+};
+
+}  // namespace
+
+Observation perceive(Observation seen, double caption_error, RandomStream stream) {
+  return segmented(std::move(seen), stream, [&](Instance& instance, RandomStream& random) {
+    confuse(instance.object_type, caption_error, confusions(), an_object, random);
+  });
+}
+
+Observation perceive_in_bad_light(Observation seen, double caption_error, RandomStream stream) {
+  constexpr double small_pixels = 400, most = .9;
+  const Exposure exposure(stream);
+  exposure.apply(seen.rgb);
+  const std::array<double, 256> hidden = covered(seen);
+  return segmented(std::move(seen), stream, [&](Instance& instance, RandomStream& random) {
+    const double small = std::min(1., small_pixels / std::max(instance.pixels, 1)), partly = hidden[instance.id];
+    confuse(instance.object_type, std::min(most, caption_error * (1 + small + 4 * partly)), fetch_confusions(),
+            an_object, random);
+    const std::string said = instance.texture;
+    confuse(instance.texture, std::min(most, caption_error * (exposure.dim() + std::abs(exposure.cast) + small)),
+            texture_confusions(), said.c_str(), random);
+  });
 }
 
 }  // namespace lgabench::mobile

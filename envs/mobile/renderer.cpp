@@ -4,7 +4,7 @@
 
 #include <common/raster.hpp>
 #include <common/solids.hpp>
-#include <mobile/place.hpp>
+#include <mobile/receivers.hpp>
 
 namespace lgabench::mobile {
 namespace {
@@ -87,7 +87,8 @@ struct Renderer::Impl {
   }
 
   Placed place(const VisibleObject& object) {
-    Placed placed(solids.of(object.object_type, standing_model(object.object_type).mesh), object.pose);
+    const ObjectModel& model = model_of(object.object_type);
+    Placed placed(solids.of(model.body.name, model.mesh), object.pose);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
     look_at(placed);

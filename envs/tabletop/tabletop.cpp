@@ -135,7 +135,7 @@ class TabletopType final : public EnvironmentType {
   const std::vector<std::string>& failures() const override { return failures_; }
   const ActionSpace& action_space() const override { return two_poses(); }
   PictureSize picture_size() const override { return Workspace::picture; }
-  int most_instances() const override { return most_instances_; }
+  int most_instances(const TaskInfo&) const override { return most_instances_; }
   // The corner of the first pixel is half a pixel before its centre.
   Vec2 in_picture(Vec3 point_m) const override {
     const Vec2 at = tabletop::in_picture(point_m.x, point_m.y);

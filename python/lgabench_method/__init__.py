@@ -187,7 +187,7 @@ class Services:
     seed: int                # governs all that is random
     log: TrainingLog
     files: str               # a directory for pictures and curves of the method's own; kept with the cell
-    layout: dict[str, Any]   # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places
+    layout: dict[str, Any]   # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places, stations
 
 
 class Policy(Protocol):

@@ -89,7 +89,7 @@ class CheckPlugin(Case):
         engine = BUILD / "lib/lgabench/plugins/kinematic.so"
         report = json.loads(self.call("check-plugin", engine, "--json", "--environment", "mobile").stdout)
         oracles = {finding["check"] for finding in report["findings"] if finding["check"].startswith("oracle")}
-        self.assertEqual(oracles, {"oracle, bring", "oracle, throw_away"})
+        self.assertEqual(oracles, {"oracle, bring", "oracle, throw_away", "oracle, fetch"})
         self.assertIn("no environment", self.call("check-plugin", engine, "--environment", "moon", expect=2).stderr)
 
     def test_shipped_plugins_are_good(self):

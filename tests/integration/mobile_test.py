@@ -27,6 +27,20 @@ class Mobile(Case):
         self.assertIn("moved", (self.dir / "run/report.html").read_text())
         self.call("verify", "run", "--sample", "2")
 
+    def test_what_to_fetch_and_where_to_put_it_is_found(self):
+        methods = "human,lga+policy=centroid,gcbc_seg,factorial+scenes=truth+input=object_mask"
+        self.call("run", "fetch", "--preset", "smoke", "--scenarios", "fetch_fruit", "--methods", methods, "--out", "run")
+        self.assert_matches_schemas("run")
+        rows = {(row["method"], row["arm"]): row for row in json.loads((self.dir / "run/summary.json").read_text())["rows"]
+                if row["scenario"] == "(mean)"}
+        for arm in "few", "many", "near":
+            self.assertEqual(rows["human", arm]["success"], 1)
+            self.assertEqual(rows["oracle", arm]["success"], 1)
+            self.assertLess(rows["constant_action", arm]["success"], .3)
+        self.assertLess(rows["factorial", "near"]["success"], .6)
+        self.assertLess(rows["human", "perceived"]["success"], 1)
+        self.call("verify", "run", "--sample", "2")
+
     def test_every_shipped_plugin_plays_here_as_on_the_tabletop(self):
         listed = json.loads(self.call("list", "--json").stdout)
         methods, engines = ([plugin["id"] for plugin in listed[kind]] for kind in ("methods", "engines"))
@@ -44,6 +58,9 @@ class Mobile(Case):
                 self.assertNotIn("method_error", sum(played, []))
 
     def test_every_arm_can_be_drawn(self):
+        for arm in "few", "many", "near", "perceived":
+            self.call("render", "fetch_ripe_fruit", "--suite", "fetch", "--arm", arm, "--out", f"{arm}.png")
+            self.assertTrue((self.dir / f"{arm}.png").read_bytes().startswith(b"\x89PNG"))
         for scenario in "bring_fruit", "throw_away_drink":
             for arm in "train", "same_place", "moved", "crowd", "perceived", "perceived_hard":
                 split = "train" if arm == "train" else "test"
@@ -51,7 +68,7 @@ class Mobile(Case):
                 self.assertTrue((self.dir / f"{arm}.png").read_bytes().startswith(b"\x89PNG"))
 
     def test_environments_are_listed_and_a_name_of_two_things_shows_both(self):
-        self.assertIn("\nenvironments\n  mobile    tasks: bring, throw_away\n  tabletop  tasks: pick_and_place, ", self.call("list").stdout)
+        self.assertIn("\nenvironments\n  mobile    tasks: bring, throw_away, fetch\n  tabletop  tasks: pick_and_place, ", self.call("list").stdout)
         said = self.call("info", "mobile").stdout
         self.assertIn("mobile, a suite in mobile\n", said)
         self.assertIn("\nmobile, an environment\n  task        bring\n", said)

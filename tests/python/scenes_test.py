@@ -12,7 +12,7 @@ import lgabench
 FULL = os.environ.get("LGABENCH_FULL") == "1"
 ENGINE = "kinematic"  # always built
 EXAMPLES = ("heart", "rotate_block", "stack_small_block_on_hexagon", "sweep_block_without_touching_line", "bring_fruit",
-            "throw_away_drink")  # one of each task and environment
+            "throw_away_drink", "fetch_fruit")  # one of each task and environment
 
 
 def same(a, b):

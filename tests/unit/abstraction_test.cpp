@@ -233,6 +233,13 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
       {"many_letters", {"claude", "claude"}},
       {"many_vessels", {"claude", "claude"}},
       {"many_vowels", {"claude", "claude"}},
+      {"fetch_cleaner", {"claude_fetch", "claude_fetch"}},
+      {"fetch_cutlery", {"claude_fetch", "claude_fetch"}},
+      {"fetch_dirty_plate", {"claude_fetch", "claude_fetch"}},
+      {"fetch_drink", {"claude_fetch", "claude_fetch"}},
+      {"fetch_fruit", {"claude_fetch", "claude_fetch"}},
+      {"fetch_ripe_fruit", {"claude_fetch", "claude_fetch"}},
+      {"fetch_unripe_fruit", {"claude_fetch", "claude_fetch"}},
       {"bring_fruit", {"claude", "claude"}},
       {"throw_away_drink", {"claude", "claude"}}};
   int of_study = 0;
@@ -270,8 +277,9 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("rotate_block", "Rotate the block."), "gpt4_study"); }),
               "vowel_with_multiple_colors");
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
-  EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
-              "expected recorded or one of claude, claude_clutter, gpt4_released, gpt4_study, got \"gpt4\"");
+  EXPECT_SAYS(
+      message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
+      "expected recorded or one of claude, claude_clutter, claude_fetch, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 

@@ -318,8 +318,9 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
-  EXPECT_SAYS(refusal(json),
-              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, gpt4_released, gpt4_study");
+  EXPECT_SAYS(
+      refusal(json),
+      "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");
@@ -469,6 +470,22 @@ TEST(Action, OfAnotherSpaceIsDataAsWell) {
   EXPECT_SAYS(message_of<InputError>([&] { read_action_space({bad, "plan"}); }), "/rotations/0/1");
   bad["rotations"][0] = {2};
   EXPECT_SAYS(message_of<InputError>([&] { read_action_space({bad, "plan"}); }), "two numbers or four");
+}
+
+TEST(Action, MayLeadToStations) {
+  ActionSpace plan{{{"u", "", 0, 1}, {"v", "", 0, 1}, {"x", "m", 0, 4}, {"y", "m", 0, 4}}, {}, {{1, 0}}};
+  EXPECT_FALSE(to_json(plan).contains("stations")) << "files of tasks without stations are as they were";
+  plan.stations = {{2, 3}, {{{.25, .5}, {1, 2}}, {{.25, .75}, {3, 4}}}};
+  const Json json = to_json(plan);
+  EXPECT_EQ(to_json(read_action_space({json, "plan"})), json);
+  const auto refusal = [&json](const char* place, const Json& value) {
+    Json bad = json;
+    bad[Json::json_pointer(place)] = value;
+    return message_of<InputError>([&] { read_action_space({bad, "plan"}); });
+  };
+  EXPECT_SAYS(refusal("/stations/numbers/1", 4), "/stations/numbers/1");
+  EXPECT_SAYS(refusal("/stations/all/0/seen", {.1}), "/stations/all/0/seen: expected two numbers");
+  EXPECT_SAYS(refusal("/stations/all/1/values", {.1}), "/stations/all/1/values: expected 2 numbers");
 }
 
 TEST(Scene, HashCoversEveryField) {

@@ -44,8 +44,8 @@ TEST(Environments, TasksNameTheirLayoutsSecondSetAndExample) {
 TEST(Environments, FailureWordsKeepTheirOrder) {
   const Words words = failure_words();
   EXPECT_EQ(words, (Words{"missed_object", "wrong_object", "blocked_way", "out_of_reach", "dropped_elsewhere",
-                          "moved_another", "bad_placement", "bad_angle", "missed_zone", "touched_obstacle",
-                          "left_workspace", "truncated", "abstraction_empty", "method_error"}));
+                          "moved_another", "wrong_receiver", "bad_placement", "bad_angle", "missed_zone",
+                          "touched_obstacle", "left_workspace", "truncated", "abstraction_empty", "method_error"}));
 }
 
 TEST(Environments, DrawWhatAnEpisodeBeginsWith) {

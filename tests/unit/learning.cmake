@@ -1,4 +1,4 @@
-lgabench_unit_test(learning_test SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp noisy_copies_test.cpp shown_input_test.cpp
+lgabench_unit_test(learning_test SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
                    LINK lgabench_learning)
 target_compile_options(learning_test PRIVATE -O1)
 lgabench_unit_test(learning_allocations_test SOURCES learning_allocations_test.cpp LINK lgabench_learning)

@@ -1,2 +1,2 @@
-lgabench_unit_test(mobile_test SOURCES mobile_scenes_test.cpp mobile_episodes_test.cpp mobile_perception_test.cpp LINK lgabench_mobile)
+lgabench_unit_test(mobile_test SOURCES mobile_scenes_test.cpp mobile_episodes_test.cpp mobile_fetch_test.cpp mobile_perception_test.cpp LINK lgabench_mobile lgabench_harness)
 add_dependencies(mobile_test engines)

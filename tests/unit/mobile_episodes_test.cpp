@@ -108,10 +108,16 @@ TEST(MobileEpisode, TheFirstDemonstrationRepeatedSeldomSucceedsInSamePlace) {
   }
 }
 
+Vec2 waypoint_of(const std::string& task) {
+  Scene scene;
+  scene.task = task;
+  return task_of(scene).waypoint_m;
+}
+
 TEST(MobilePlace, BlocksTheWayThroughThings) {
   EXPECT_FALSE(blocked({0, 0}));
-  EXPECT_FALSE(blocked(find_task("bring").waypoint_m));
-  EXPECT_FALSE(blocked(find_task("throw_away").waypoint_m));
+  EXPECT_FALSE(blocked(waypoint_of("bring")));
+  EXPECT_FALSE(blocked(waypoint_of("throw_away")));
   EXPECT_TRUE(blocked({.31, 0})) << "the table's edge, less the robot's radius";
   EXPECT_FALSE(blocked({.29, 0}));
   EXPECT_TRUE(blocked({2, .8})) << "behind the table";
@@ -119,7 +125,7 @@ TEST(MobilePlace, BlocksTheWayThroughThings) {
   EXPECT_TRUE(blocked(bin.centre));
   EXPECT_FALSE(blocked({-2, -2}));
 
-  const Vec2 before_person = find_task("bring").waypoint_m;
+  const Vec2 before_person = waypoint_of("bring");
   EXPECT_FALSE(meets_person(before_person, tray.centre));
   EXPECT_FALSE(meets_person(before_person, {tray.centre.x, tray.outer().high.y})) << "the tray's far edge";
   EXPECT_TRUE(meets_person(before_person, person));

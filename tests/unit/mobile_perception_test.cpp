@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include <mobile/fetch.hpp>
 #include <mobile/perception.hpp>
 #include <mobile/renderer.hpp>
 #include <mobile/sampler.hpp>
@@ -157,6 +158,97 @@ TEST(MobilePerception, MergesWhatSharesAnEdgeUnderTheLargersCaption) {
   // Of the larger segment less is missed.
   const double together = .1 * (1 - 40. / 640), apart = .9 * (1 - 40. / 400);
   EXPECT_NEAR(merged, together / (together + apart) * shown, .025 * shown);
+}
+
+// In scenes of the task fetch.
+struct BadLight {
+  std::vector<Observation> seen;
+  Observation perceived(std::size_t i, double error) const {
+    return perceive_in_bad_light(seen[i], error, stream(static_cast<int>(i)));
+  }
+};
+
+const BadLight& fetched() {
+  static const BadLight all = [] {
+    const Scenario scenario = load_scenario("fetch_fruit");
+    Renderer renderer(front_camera());
+    BadLight made;
+    for (int i = 0; i < 60; ++i)
+      made.seen.push_back(renderer.render(visible_objects(sample_fetch(scenario, {layout, "test", "many", 0}, i))));
+    return made;
+  }();
+  return all;
+}
+
+double mean_of(const std::vector<std::uint8_t>& rgb, std::size_t channel) {
+  double sum = 0;
+  for (std::size_t i = channel; i < rgb.size(); i += 3) sum += rgb[i];
+  return sum / static_cast<double>(rgb.size() / 3);
+}
+
+TEST(PerceptionInBadLight, ChangesThePictureForAll) {
+  double darkest = 1, warmest = 1, coldest = 1;
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Observation perceived = fetched().perceived(i, 0);
+    const auto factor = [&](std::size_t channel) {
+      return mean_of(perceived.rgb, channel) / mean_of(fetched().seen[i].rgb, channel);
+    };
+    darkest = std::min(darkest, factor(1));
+    warmest = std::max(warmest, factor(0) / factor(2));
+    coldest = std::min(coldest, factor(0) / factor(2));
+    EXPECT_EQ(perceived.rgb, fetched().perceived(i, .2).rgb) << "captions have no part in the picture";
+  }
+  EXPECT_LT(darkest, .55);
+  EXPECT_GT(warmest, 1.3);
+  EXPECT_LT(coldest, .75);
+}
+
+TEST(PerceptionInBadLight, ErrsInNestedWaysAndMoreAboutWhatIsHidden) {
+  constexpr double errors[] = {0, .05, .15};
+  int types[3] = {}, textures[3] = {}, count = 0;
+  for (std::size_t i = 0; i < 60; ++i) {
+    std::map<std::uint8_t, Instance> said[3];
+    for (int k = 0; k < 3; ++k)
+      for (const Instance& instance : fetched().perceived(i, errors[k]).instances) said[k][instance.id] = instance;
+    for (const Instance& truth : fetched().seen[i].instances) {
+      if (said[0].count(truth.id) == 0) continue;
+      ++count;
+      for (int k = 0; k < 3; ++k) {
+        const Instance& one = said[k].at(truth.id);
+        types[k] += one.object_type != truth.object_type;
+        textures[k] += one.texture != truth.texture;
+        if (k > 0 && said[k - 1].at(truth.id).object_type != truth.object_type) {
+          EXPECT_EQ(one.object_type, said[k - 1].at(truth.id).object_type);
+        }
+        if (one.object_type == truth.object_type || one.object_type == an_object) continue;
+        const auto& likely = fetch_confusions().at(truth.object_type);
+        EXPECT_TRUE(std::count(likely.begin(), likely.end(), one.object_type)) << one.object_type;
+      }
+    }
+  }
+  EXPECT_EQ(types[0] + textures[0], 0);
+  EXPECT_GT(types[1], .05 * count);
+  EXPECT_LT(types[1], .15 * count);
+  EXPECT_GT(textures[1], .02 * count);
+  EXPECT_LT(textures[1], .12 * count);
+  EXPECT_GT(types[2], 2 * types[1]);
+
+  // Two equal cans, one behind a box: the hidden one is mistaken more often.
+  Observation two{{40, 80}, std::vector<std::uint8_t>(3 * 3200, 100), std::vector<std::uint8_t>(3200), {}};
+  for (int row = 10; row < 40; ++row)
+    for (int column = 0; column < 80; ++column)
+      two.ids[static_cast<std::size_t>(80 * row + column)] = column < 25                   ? 1
+                                                             : column >= 30 && column < 55 ? 2
+                                                             : column >= 55                ? 3
+                                                                                           : 0;
+  two.instances = {{1, "soda can", "red", 750}, {2, "soda can", "red", 750}, {3, "juice box", "blue", 750}};
+  int alone = 0, hidden = 0;
+  for (int i = 0; i < 3000; ++i)
+    for (const Instance& one : perceive_in_bad_light(two, .1, stream(i)).instances) {
+      alone += one.id == 1 && one.object_type != "soda can";
+      hidden += one.id == 2 && one.object_type != "soda can";
+    }
+  EXPECT_GT(hidden, 1.2 * alone);
 }
 
 }  // namespace

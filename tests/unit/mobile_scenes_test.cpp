@@ -174,6 +174,26 @@ TEST(MobileTables, NameWhatTheFeatureSpaceHas) {
   EXPECT_FALSE(known(space.object_types, an_object));
 }
 
+TEST(MobileTables, OfFetchNameWhatItsFeatureSpaceHas) {
+  const FeatureSpace space = load_feature_space("household_mobile");
+  const auto known = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::count(names.begin(), names.end(), name) == 1;
+  };
+  for (const auto* textures : {&fetch_textures(), &receiver_textures()})
+    for (const auto& [type, names] : *textures) {
+      EXPECT_TRUE(known(space.object_types, type)) << type;
+      EXPECT_EQ(fetch_confusions().count(type), 1u) << type;
+      for (const std::string& name : names) {
+        EXPECT_TRUE(known(space.textures, name)) << name;
+        EXPECT_EQ(texture_confusions().count(name), 1u) << name;
+      }
+    }
+  for (const auto& [type, others] : fetch_confusions())
+    for (const std::string& other : others) EXPECT_TRUE(known(space.object_types, other) && other != type) << other;
+  for (const auto& [name, others] : texture_confusions())
+    for (const std::string& other : others) EXPECT_TRUE(known(space.textures, other) && other != name) << other;
+}
+
 TEST(MobileCamera, SeesAPointWhereItsRayGoes) {
   const Camera& camera = front_camera();
   for (const auto& [row, column] : {std::pair{0, 0}, std::pair{240, 320}, std::pair{479, 10}, std::pair{100, 639}}) {

@@ -112,7 +112,7 @@ struct Answering {
                  job.options,
                  seed,
                  log,
-                 find_environment(scenario.environment).action_space(),
+                 actions_of(scenario),
                  declared_truth(scenario.commands, job.method.asks)} {}
 
   RecordedLanguageModel recorded;

@@ -79,6 +79,7 @@ std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugi
   host.hidden.insert(host.hidden.end(), earlier.begin(), earlier.end());
   if (job.live) host.hidden.push_back(job.live->cassette);
   host.debugger = job.debugger;
+  host.task = job.cell.scenario->at("task").get<std::string>();
   return std::make_unique<HostedMethod>(host);
 }
 
@@ -247,7 +248,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);
   Services services{*answers.lm,        *answers.human, cell.method.options,
-                    cell.training_seed, training,       find_environment(cell.environment).action_space(),
+                    cell.training_seed, training,       actions_of(scenario),
                     answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);

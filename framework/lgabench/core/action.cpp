@@ -20,6 +20,12 @@ double share(const ActionNumber& number, double value) {
   return (std::clamp(value, number.low, number.high) - number.low) / (number.high - number.low);
 }
 
+std::vector<double> numbers_of(const JsonReader& list) {
+  std::vector<double> all;
+  for (const JsonReader& number : list.elements()) all.push_back(number.number());
+  return all;
+}
+
 }  // namespace
 
 Json to_json(const ActionSpace& space) {
@@ -27,7 +33,13 @@ Json to_json(const ActionSpace& space) {
   for (const ActionNumber& n : space.numbers)
     numbers.push_back({{"name", n.name}, {"unit", n.unit}, {"low", n.low}, {"high", n.high}});
   for (const PicturePlace& place : space.places) places.push_back({place.down, place.across});
-  return {{"numbers", numbers}, {"rotations", space.rotations}, {"places", places}};
+  Json json{{"numbers", numbers}, {"rotations", space.rotations}, {"places", places}};
+  if (space.stations.all.empty()) return json;
+  Json all = Json::array();
+  for (const Stations::Station& one : space.stations.all)
+    all.push_back({{"seen", {one.seen.x, one.seen.y}}, {"values", one.values}});
+  json["stations"] = {{"numbers", space.stations.numbers}, {"all", all}};
+  return json;
 }
 
 ActionSpace read_action_space(const JsonReader& reader) {
@@ -49,6 +61,16 @@ ActionSpace read_action_space(const JsonReader& reader) {
     const std::vector<std::size_t> pair = indices(place);
     if (pair.size() != 2) place.fail("two numbers");
     space.places.push_back({pair[0], pair[1]});
+  }
+  if (!reader.has("stations")) return space;
+  const JsonReader stations = reader.at("stations");
+  space.stations.numbers = indices(stations.at("numbers"));
+  for (const JsonReader& station : stations.at("all").elements()) {
+    const std::vector<double> seen = numbers_of(station.at("seen")), values = numbers_of(station.at("values"));
+    if (seen.size() != 2) station.at("seen").fail("two numbers");
+    if (values.size() != space.stations.numbers.size())
+      station.at("values").fail(fmt::format("{} numbers", space.stations.numbers.size()));
+    space.stations.all.push_back({{seen[0], seen[1]}, values});
   }
   return space;
 }

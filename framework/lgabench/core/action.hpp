@@ -24,7 +24,18 @@ struct PicturePlace {
   std::size_t down, across;  // which of the numbers grows along the rows, which along the columns
 };
 
-/// What all actions of an environment have in common. A value.
+/// Where an action can lead, if there are a few such places and no others: some of its numbers are then one of a few
+/// constants, whichever place is meant.
+struct Stations {
+  struct Station {
+    Vec2 seen;                   // where a picture shows it: x down, y across, as numbers of the first of places
+    std::vector<double> values;  // of `numbers`
+  };
+  std::vector<std::size_t> numbers;  // which of an action's
+  std::vector<Station> all;          // empty: an action leads anywhere
+};
+
+/// What all actions of a task have in common. A value.
 struct ActionSpace {
   std::vector<ActionNumber> numbers;
   /// Numbers that are a unit vector together, and are not clipped but normalised: four are a quaternion x, y, z, w, two
@@ -32,14 +43,18 @@ struct ActionSpace {
   std::vector<std::vector<std::size_t>> rotations;
   /// The first is where the action begins.
   std::vector<PicturePlace> places;
+  Stations stations = {};
 
   std::size_t size() const { return numbers.size(); }
 };
 
 /// {"numbers": [{"name", "unit", "low", "high"}, ...], "rotations": [[index, ...], ...], "places": [[down, across],
-/// ...]}
+/// ...]}; where there are stations {..., "stations": {"numbers": [index, ...], "all": [{"seen": [down, across],
+/// "values":
+/// [...]}, ...]}}
 Json to_json(const ActionSpace& space);
-/// @throws InputError for an index that there is not, or a rotation of neither two numbers nor four.
+/// @throws InputError for an index that there is not, a rotation of neither two numbers nor four, or a
+/// station with another number of values than of numbers.
 ActionSpace read_action_space(const JsonReader& reader);
 
 /// The action that is carried out: numbers clipped to their bounds, rotations normalised.

@@ -95,6 +95,16 @@ const std::vector<std::string>& layouts_of(const Scenario& scenario) {
   return find_task(find_environment(scenario.environment), scenario.task).layouts;
 }
 
+const ActionSpace& actions_of(const Scenario& scenario) {
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  return environment.action_space_of(find_task(environment, scenario.task));
+}
+
+int most_instances_of(const Scenario& scenario) {
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  return environment.most_instances(find_task(environment, scenario.task));
+}
+
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id) {
   std::vector<std::string> known;
   for (const TaskInfo& task : environment.tasks()) {

@@ -71,10 +71,12 @@ class EnvironmentType {
 
   /// What the numbers of its actions mean.
   virtual const ActionSpace& action_space() const = 0;
+  /// Likewise, as methods are told it: with the stations that the task has, if it has any.
+  virtual const ActionSpace& action_space_of(const TaskInfo& /*task*/) const { return action_space(); }
   /// Of each observation.
   virtual PictureSize picture_size() const = 0;
-  /// How many instances an observation may have, whatever the scenario.
-  virtual int most_instances() const = 0;
+  /// How many instances an observation of that task may have, whatever the scenario.
+  virtual int most_instances(const TaskInfo& task) const = 0;
   /// Where the camera shows a point of the world, in metres: x its column, y its row, in pixels, 0 at the picture's
   /// corner; also outside of the picture.
   virtual Vec2 in_picture(Vec3 point_m) const = 0;
@@ -132,6 +134,10 @@ std::vector<std::string> failure_words();
 
 /// The layouts of the scenario's task; the first is meant where none is named.
 const std::vector<std::string>& layouts_of(const Scenario& scenario);
+/// What a method is told of the actions of the scenario's task.
+const ActionSpace& actions_of(const Scenario& scenario);
+/// How many instances an observation may have.
+int most_instances_of(const Scenario& scenario);
 /// The environment's task of that id. @throws InputError that lists the known ones.
 const TaskInfo& find_task(const EnvironmentType& environment, const std::string& id);
 

@@ -38,9 +38,10 @@ HostCommand command_of(const HostJob& job, const Confinement* confinement) {
   return command;
 }
 
-protocol::Layout layout_of(const std::string& environment) {
-  const EnvironmentType& type = find_environment(environment);
-  return {type.picture_size(), type.action_space()};
+protocol::Layout layout_of(const HostJob& job) {
+  const EnvironmentType& type = find_environment(job.environment);
+  return {type.picture_size(),
+          job.task.empty() ? type.action_space() : type.action_space_of(find_task(type, job.task))};
 }
 
 Json method_json(const PluginInfo& method) {
@@ -78,7 +79,7 @@ Reach reach_of(const HostJob& job) {
 class HostSession {
  public:
   explicit HostSession(const HostJob& job)
-      : layout_(layout_of(job.environment)),
+      : layout_(layout_of(job)),
         confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
         process_(command_of(job, confinement_.get())),
         channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),

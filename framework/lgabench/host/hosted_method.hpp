@@ -29,6 +29,7 @@ struct HostJob {
   /// Words before the process's own, an absolute path first or none at all: it runs in the foreground
   /// (host_process.hpp).
   std::optional<std::vector<std::string>> debugger{};
+  std::string task{};  // of the environment, whose stations the method is told; "": it is told of none
 };
 
 /// A method whose code runs in a process, or several, that whoever made it ends.

@@ -7,6 +7,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
+#include <lgabench/learning/stations.hpp>
 
 namespace lgabench {
 namespace {
@@ -78,7 +79,12 @@ struct CentroidRule::Impl {
 
   Action act(const FieldMask& mask) {
     const auto places = look(mask, nullptr);
-    return places && motion ? motion->act(*places, nearest(to_second(*places))) : *mean;
+    const Action action = places && motion ? motion->act(*places, nearest(to_second(*places))) : *mean;
+    const Stations& stations = shape.actions.stations;
+    if (stations.all.empty()) return action;
+    const bool second = places && places->second_m;
+    return led_to(stations, second ? nearest_station(stations, *places->second_m) : station_of(stations, action),
+                  action);
   }
 
   std::size_t nearest(Vec2 direction) const {

@@ -22,6 +22,8 @@ namespace lgabench {
 /// Where most do not begin on the target (sweep), demonstrations of one direction of push (unit vectors within .15) are
 /// a group with means of its own; a scene is given the largest of the groups whose mean direction from the taken point
 /// to the centroid of the avoided pixels is nearest, up to .15.
+///
+/// Where actions have stations, the action is led to the one seen nearest to the centroid of the second set.
 class CentroidRule : public Learner {
  public:
   /// @throws InputError for rows of another shape, and for actions without a place in the picture.

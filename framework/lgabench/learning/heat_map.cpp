@@ -10,6 +10,7 @@
 #include <lgabench/learning/heat_map_network.hpp>
 #include <lgabench/learning/motion.hpp>
 #include <lgabench/learning/places.hpp>
+#include <lgabench/learning/stations.hpp>
 
 namespace lgabench {
 namespace {
@@ -45,6 +46,7 @@ struct Lesson {
   std::vector<float> wanted{};  // of each cell; empty where it teaches nothing
   Vec2 taken_m{};
   std::size_t group = 0;
+  std::vector<float> station{};  // of each cell, of the map that finds it; empty where it teaches none
 };
 
 }  // namespace
@@ -54,10 +56,13 @@ struct HeatMap::Impl {
   const Field field;
   const std::uint64_t seed;
   int planes = 0;
-  std::optional<std::size_t> mask;        // the first, of the pictures
-  std::vector<std::vector<float>> usual;  // of each picture; empty for a mask
-  std::vector<Lesson> lessons;            // of each row that begin() was given
-  std::optional<HeatMapNetwork> network;
+  std::optional<std::size_t> mask;                         // the first, of the pictures
+  int mask_plane = 0;                                      // its first of two
+  std::vector<std::vector<float>> usual;                   // of each picture; empty for a mask
+  std::vector<Lesson> lessons;                             // of each row that begin() was given
+  std::optional<HeatMapNetwork> network, station_network;  // the latter where actions have stations
+  bool tells_second = false;                               // the mask tells the second set from the target
+  std::vector<float> station_prior;
   std::optional<Action> mean;
   std::optional<Motion> motion;  // none where no target was seen
   bool takes = true;             // pose0 is the taken point
@@ -74,7 +79,7 @@ struct HeatMap::Impl {
       if (!fits)
         throw InputError(
             "inputs: expected masks of a multiple of 32 x 64 pixels and colours of 32 x 64 for policy=heat_map");
-      if (is_mask(picture) && !mask) mask = i;
+      if (is_mask(picture) && !mask) mask = i, mask_plane = planes;
       planes += is_mask(picture) ? 2 : picture.channels;
     }
     if (planes == 0) throw InputError("inputs: expected a picture for policy=heat_map");
@@ -133,18 +138,28 @@ struct HeatMap::Impl {
   FieldMask field_mask(const View& view) const { return {view.mask, shape.pictures[*mask].size, field}; }
   Vec2 middle_of_cell(int cell) const { return field.middle_of(grid, cell / grid.columns, cell % grid.columns); }
 
-  void set_prior(int target, View& view) const {
+  void set_prior(int number, View& view) const { set_prior(number, view, view.prior); }
+
+  void set_prior(int number, View& view, std::vector<float>& prior) const {
     for (int cell = 0; cell < cells; ++cell)
-      view.prior[size(cell)] = std::log(std::max(*plane(view, cell, target), least_prior));
+      prior[size(cell)] = std::log(std::max(*plane(view, cell, number), least_prior));
   }
 
-  // A Gaussian about the taken point, within the mask.
-  std::vector<float> wanted(const View& view, Vec2 taken_m) const {
+  // Of the map that finds the station: the second set, or all of a mask that does not tell it. Null without a mask.
+  const float* prior_of_station(View& view) {
+    if (!mask) return nullptr;
+    station_prior.resize(cells);
+    set_prior(mask_plane + (tells_second ? 1 : 0), view, station_prior);
+    return station_prior.data();
+  }
+
+  // A Gaussian about a point, within what the prior holds.
+  std::vector<float> wanted(const std::vector<float>& prior, Vec2 point) const {
     std::vector<float> map(cells);
     double sum = 0;
     for (int cell = 0; cell < cells; ++cell) {
-      const double away = norm(middle_of_cell(cell) - taken_m) / label_m;
-      const bool within = view.prior.empty() || view.prior[size(cell)] > std::log(least_prior);
+      const double away = norm(middle_of_cell(cell) - point) / label_m;
+      const bool within = prior.empty() || prior[size(cell)] > std::log(least_prior);
       map[size(cell)] = within ? static_cast<float>(std::exp(-away * away / 2)) : 0;
       sum += map[size(cell)];
     }
@@ -154,6 +169,8 @@ struct HeatMap::Impl {
   }
 
   void begin(const Samples& samples);
+  void begin_stations(const std::vector<Demonstrated>& shown, const std::vector<std::size_t>& rows);
+  double teach(int row, double weight);
   Vec2 taken_point(const std::vector<float>& map) const;
   Action act();
 };
@@ -180,6 +197,8 @@ void HeatMap::Impl::begin(const Samples& samples) {
     rows.push_back(size(row));
   }
   mean = mean_action(shape.actions, labels);
+  const Stations& stations = shape.actions.stations;
+  if (!stations.all.empty()) mean = led_to(stations, station_of(stations, *mean), *mean);
 
   takes = !mask || mostly_on_target(shown, 0);
   Eye eye;
@@ -200,10 +219,38 @@ void HeatMap::Impl::begin(const Samples& samples) {
     for (const std::size_t member : groups[g]) {
       Lesson& lesson = lessons[rows[member]];
       lesson.taken_m = shown[member].places.taken_m;
-      lesson.wanted = wanted(lesson.view, lesson.taken_m);
+      lesson.wanted = wanted(lesson.view.prior, lesson.taken_m);
       lesson.group = g;
     }
   network.emplace(field, planes, shape.text, groups.size(), seed, *available_kernels().front());
+  if (!stations.all.empty()) begin_stations(shown, rows);
+}
+
+void HeatMap::Impl::begin_stations(const std::vector<Demonstrated>& shown, const std::vector<std::size_t>& rows) {
+  constexpr std::uint64_t another = std::uint64_t{1} << 63;  // initial weights of its own
+  station_network.emplace(field, planes, shape.text, 1, seed ^ another, *available_kernels().front());
+  tells_second = std::any_of(shown.begin(), shown.end(), [](const auto& one) { return one.places.second_m; });
+  const Stations& stations = shape.actions.stations;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    Lesson& lesson = lessons[rows[i]];
+    prior_of_station(lesson.view);
+    lesson.station = wanted(station_prior, stations.all[station_of(stations, shown[i].label)].seen);
+  }
+}
+
+// Adds the gradients of one row, and returns its loss.
+double HeatMap::Impl::teach(int row, double weight) {
+  auto& [view, wanted, taken_m, group, station] = lessons[size(row)];
+  double loss = 0;
+  if (!wanted.empty()) {
+    network->map(view.planes, view.prior_or_null(), view.text);
+    loss += network->teach(wanted, taken_m, group, weight);
+  }
+  if (!station.empty()) {
+    station_network->map(view.planes, prior_of_station(view), view.text);
+    loss += station_network->teach(station, {}, 0, weight);
+  }
+  return loss;
 }
 
 // The mean of what is near the highest sum of 3 x 3 cells.
@@ -241,7 +288,10 @@ Action HeatMap::Impl::act() {
   }
   const std::vector<float>& groups = network->groups(places.taken_m);
   const auto likeliest = std::max_element(groups.begin(), groups.end()) - groups.begin();
-  return motion->act(places, static_cast<std::size_t>(likeliest));
+  const Action action = motion->act(places, static_cast<std::size_t>(likeliest));
+  if (!station_network) return action;
+  const Vec2 second = taken_point(station_network->map(seen.planes, prior_of_station(seen), seen.text));
+  return led_to(shape.actions.stations, nearest_station(shape.actions.stations, second), action);
 }
 
 HeatMap::HeatMap(const SampleShape& shape, std::uint64_t seed) {
@@ -268,23 +318,27 @@ const std::vector<float>& HeatMap::predict(const Samples& samples) {
 }
 
 double HeatMap::backward(const Samples&, const std::vector<int>& batch) {
-  HeatMapNetwork& network = *impl_->network;
-  network.clear_gradients();
+  impl_->network->clear_gradients();
+  if (impl_->station_network) impl_->station_network->clear_gradients();
   double loss = 0;
   const double weight = 1. / static_cast<double>(batch.size());
-  for (const int row : batch) {
-    const auto& [view, wanted, taken_m, group] = impl_->lessons[size(row)];
-    if (wanted.empty()) continue;
-    network.map(view.planes, view.prior_or_null(), view.text);
-    loss += weight * network.teach(wanted, taken_m, group, weight);
-  }
+  for (const int row : batch) loss += weight * impl_->teach(row, weight);
   return loss;
 }
 
-void HeatMap::update(double rate) { impl_->network->update(rate); }
+void HeatMap::update(double rate) {
+  impl_->network->update(rate);
+  if (impl_->station_network) impl_->station_network->update(rate);
+}
 
 std::vector<float> HeatMap::parameters() const {
-  return impl_->network ? impl_->network->parameters().values() : std::vector<float>{};
+  std::vector<float> all;
+  for (auto* network : {&impl_->network, &impl_->station_network}) {
+    if (!*network) continue;
+    const std::vector<float> values = (*network)->parameters().values();
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
 }
 void HeatMap::set_parameters(const std::vector<float>& parameters) { impl_->network->parameters().set(parameters); }
 std::vector<float> HeatMap::gradients() const { return impl_->network->parameters().gradients(); }

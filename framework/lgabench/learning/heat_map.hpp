@@ -20,6 +20,10 @@ namespace lgabench {
 /// Motion's: in one group where the demonstrations' later places vary by at most .05 m in their frames, else in groups
 /// by direction of push, the likeliest of which the network names.
 ///
+/// Where actions have stations, a second network of the same kind is trained towards the demonstrated station's place
+/// in the picture, within the second set of a mask that tells it, else of all of a mask; acting, the action is led to
+/// the station that is seen nearest to that map's peak.
+///
 /// 300 steps of 16 samples (of all where there are fewer), rounded up to whole passes, so one pass of more than 4800.
 /// Adam, learning rate .003 falling as a cosine. Lengths are the tabletop's metres; elsewhere, the same numbers in the
 /// unit that Field has.
@@ -43,7 +47,7 @@ class HeatMap : public Learner {
   void update(double learning_rate) override;
   std::vector<float> parameters() const override;
 
-  /// For tests. @pre begin(). set_parameters() @throws InputError for another number of them.
+  /// For tests, of the first network. @pre begin(). set_parameters() @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);
   std::vector<float> gradients() const;
 

@@ -158,7 +158,7 @@ Action numbers_of(const Numbers& action, const ActionSpace& space) {
 /// rgb, ids, [(id, object type, texture, pixels)], and the same table as numbers; nothing is copied.
 nb::tuple arrays(const Player& player, Observation seen) {
   const auto rows = size(seen.size.rows), columns = size(seen.size.columns);
-  const int most = player.type().most_instances();
+  const int most = most_instances_of(player.scenario());
   std::vector<std::int16_t> encoded(size(4 * most));
   encode(seen, player.scenario().space, most, encoded.data());
   Rows table;
@@ -295,7 +295,7 @@ class Pool {
  private:
   struct Batch {
     Batch(const Player& player, std::size_t n)
-        : rows(player.type().most_instances()),
+        : rows(most_instances_of(player.scenario())),
           picture(player.type().picture_size()),
           count(n),
           rgb(n * picture.pixels() * 3),
@@ -413,10 +413,8 @@ NB_MODULE(_core, m) {
                      const PictureSize size = find_environment(s.environment).picture_size();
                      return std::pair(size.rows, size.columns);
                    })
-      .def_prop_ro("most_instances", [](const Scenario& s) { return find_environment(s.environment).most_instances(); })
-      .def_prop_ro("action_space_json", [](const Scenario& s) {
-        return canonical(to_json(find_environment(s.environment).action_space()));
-      });
+      .def_prop_ro("most_instances", &most_instances_of)
+      .def_prop_ro("action_space_json", [](const Scenario& s) { return canonical(to_json(actions_of(s))); });
   m.def("scenario", &scenario_at, "id"_a.none(), "path"_a.none());
   nb::class_<One>(m, "Environment")
       .def(nb::init<std::shared_ptr<const Scenario>, const std::string&, std::string>(), "scenario"_a, "engine"_a,
