@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
+#include <lgabench/core/hash.hpp>
 #include <lgabench/harness/expand.hpp>
 #include <lgabench/harness/suite.hpp>
 #include <mobile/fetch.hpp>
@@ -30,6 +32,22 @@ Scenario scenario_of(const std::string& id) { return suite_scenario(suite(), id,
 
 Scene scene_of(const Scenario& scenario, const std::string& arm, int index) {
   return sample_fetch(scenario, {layout, arm == "train" ? "train" : "test", arm, 7}, index);
+}
+
+// As of the other scenarios (mobile_scenes_test.cpp): training scenes, and those of the suite's arm with near misses.
+TEST(FetchScenes, AreThoseRecorded) {
+  const std::map<std::string, std::string> recorded{
+      {"fetch_cleaner", "85356af001e1d0a3"},     {"fetch_cutlery", "482e498f3348a750"},
+      {"fetch_dirty_plate", "f7b6844fb45b3981"}, {"fetch_drink", "b68fdd8c8c016b03"},
+      {"fetch_fruit", "7334262509524422"},       {"fetch_ripe_fruit", "148922cd26665768"},
+      {"fetch_unripe_fruit", "28f6938fe4847424"}};
+  for (const std::string& id : suite().design.scenarios) {
+    const Scenario scenario = scenario_of(id);
+    std::string all;
+    for (const char* arm : {"train", "near"})
+      for (int i = 0; i < 15; ++i) all += hex(scene_of(scenario, arm, i).hash());
+    EXPECT_EQ(sha256(all).substr(0, 16), recorded.at(id)) << id;
+  }
 }
 
 std::vector<SceneObject> some(const Scene& scene, bool receivers) {

@@ -247,9 +247,8 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   const std::unique_ptr<Method> method = make_method(job);
   const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);
-  Services services{*answers.lm,        *answers.human, cell.method.options,
-                    cell.training_seed, training,       actions_of(scenario),
-                    answers.truth};
+  Services services{*answers.lm, *answers.human,       cell.method.options, cell.training_seed,
+                    training,    actions_of(scenario), answers.truth};
   Selected selected = select(method.get(), id, scenario, services);
   for (const Instruction& instruction : selected.instructions) expect_usable(instruction.selection, scenario);
   const std::vector<Instruction> first = selected.instructions;
