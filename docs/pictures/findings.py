@@ -25,9 +25,8 @@ FIGURES = {
     "shift": [("LGA, control", "q2: other", "LGA", 1), ("LGA, distractor", "q2: other", "LGA", 3),
               ("SEG, control", "q2: other", "GCBC-SEG", 1),
               ("SEG, distractor", "q2: other", "GCBC-SEG", 3)],
-    "unseen": [("LGA, one object", "q3: a command", "LGA, LGA-HILL, Human, `instances=first`", 2),
-               ("LGA, all objects", "q3: a command", "LGA, LGA-HILL, Human", 2),
-               ("GCBC-SEG", "q3: a command", "GCBC-SEG", 2), ("random object", "q3: a command", "*random", 2)],
+    "errors": [("missing, one other", "What an error", "missing 0.2", 1), ("missing, six near", "What an error", "missing 0.2", 5),
+               ("added, one other", "What an error", "added 0.2", 1), ("added, six near", "What an error", "added 0.2", 5)],
 }
 
 
