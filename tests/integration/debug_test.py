@@ -105,8 +105,9 @@ class PythonDebugging(Authors):
     def test_an_act_that_fails_is_said(self):
         done = self.call(*RUN, "--methods", "mine.py:Mine", "--out", "out")
         key, = self.cells("out")
+        line = (self.dir / "mine.py").read_text().split("raise ValueError")[0].count("\n") + 1
         self.assertIn("2 of 2 episodes of mine are method_error: plugin mine: ValueError: its own | failure "
-                      f"(out/cells/{key}/log.txt)", done.stdout)
+                      f"(mine.py:{line}) (out/cells/{key}/log.txt)", done.stdout)
         self.assertIn("in act\n    raise ValueError", self.log(key))
         self.assertIn("its own \\| failure", (self.dir / "out/report.md").read_text())
 

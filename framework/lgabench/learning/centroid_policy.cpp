@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/learning/motion.hpp>
@@ -79,12 +80,12 @@ struct CentroidRule::Impl {
 
   Action act(const FieldMask& mask) {
     const auto places = look(mask, nullptr);
-    const Action action = places && motion ? motion->act(*places, nearest(to_second(*places))) : *mean;
+    Action action = places && motion ? motion->act(*places, nearest(to_second(*places))) : *mean;
     const Stations& stations = shape.actions.stations;
     if (stations.all.empty()) return action;
     const bool second = places && places->second_m;
-    return led_to(stations, second ? nearest_station(stations, *places->second_m) : station_of(stations, action),
-                  action);
+    const std::size_t station = second ? nearest_station(stations, *places->second_m) : station_of(stations, action);
+    return led_to(stations, station, std::move(action));
   }
 
   std::size_t nearest(Vec2 direction) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/flush_denormals.hpp>
@@ -288,10 +289,10 @@ Action HeatMap::Impl::act() {
   }
   const std::vector<float>& groups = network->groups(places.taken_m);
   const auto likeliest = std::max_element(groups.begin(), groups.end()) - groups.begin();
-  const Action action = motion->act(places, static_cast<std::size_t>(likeliest));
+  Action action = motion->act(places, static_cast<std::size_t>(likeliest));
   if (!station_network) return action;
   const Vec2 second = taken_point(station_network->map(seen.planes, prior_of_station(seen), seen.text));
-  return led_to(shape.actions.stations, nearest_station(shape.actions.stations, second), action);
+  return led_to(shape.actions.stations, nearest_station(shape.actions.stations, second), std::move(action));
 }
 
 HeatMap::HeatMap(const SampleShape& shape, std::uint64_t seed) {
