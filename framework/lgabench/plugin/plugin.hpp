@@ -38,6 +38,7 @@
   LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
 
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
+// NOLINTBEGIN(bugprone-macro-parentheses): Interface and Class are types.
 #define LGABENCH_PLUGIN_(kind, asks, id, version, summary, Interface, Class, options_json)                     \
   static_assert(std::is_base_of<Interface, Class>::value, #Class " must derive from " #Interface);             \
   namespace {                                                                                                  \
@@ -49,3 +50,4 @@
   [[gnu::visibility("default")]] extern const ::lgabench::PluginEntry lga_plugin_v1;                           \
   const ::lgabench::PluginEntry lga_plugin_v1{&lgabench_plugin_descriptor, &lgabench_plugin_create};           \
   }
+// NOLINTEND(bugprone-macro-parentheses)
