@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <common/scene_members.hpp>
 #include <mobile/mobile.hpp>
 #include <mobile/tables.hpp>
 
@@ -36,13 +37,8 @@ Content read_content(const Scenario&, const JsonReader& file, const JsonReader* 
   }
   if (content.distractor_types.empty()) file.at("distractor_types").fail("at least one object type");
   if (!scenes) return content;
-  if (scenes->has("distractors")) {
-    const JsonReader reader = scenes->at("distractors");
-    const auto range = reader.elements();
-    if (range.size() != 2) reader.fail("[fewest, most]");
-    content.distractors.first = static_cast<int>(range[0].integer(0, most_objects - 1));
-    content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most_objects - 1));
-  }
+  if (scenes->has("distractors"))
+    content.distractors = common::read_distractors(scenes->at("distractors"), most_objects - 1);
   if (scenes->has("near_first")) {
     content.near_first = scenes->at("near_first").boolean();
     if (content.near_first && training) scenes->at("near_first").fail("no such member in \"train\"");

@@ -23,21 +23,6 @@ constexpr int receivers_shown = 3;
 // Outlines of objects stay within: on the table, and clear of the receivers.
 constexpr Rectangle room{{.605, -.58}, {1.04, .58}};
 
-// Of the space's names, those that no command of the scenario means.
-std::vector<std::string> read_names(const JsonReader& list, const std::vector<std::string>& space,
-                                    const Scenario& scenario, std::vector<std::string> FeatureSet::*meant) {
-  const auto has = [](const std::vector<std::string>& all, const std::string& name) {
-    return std::find(all.begin(), all.end(), name) != all.end();
-  };
-  for (const JsonReader& name : list.elements()) {
-    if (!has(space, name.string())) name.fail("a name of the feature space");
-    for (const ScenarioCommand& command : scenario.commands)
-      if (has(command.truth.target.*meant, name.string()))
-        name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));
-  }
-  return list.strings();
-}
-
 Features sample_one(const Scenario& scenario, const std::vector<Features>& all, const FeatureSet& meant,
                     const char* whom, RandomStream random) {
   const std::vector<Features> some = held(all, meant);
@@ -134,25 +119,10 @@ FetchContent read_fetch_content(const Scenario& scenario, const JsonReader* scen
   FetchContent content;
   if (training) content.distractors = {1, 1};
   if (!scenes) return content;
-  if (scenes->has("distractors")) {
-    const JsonReader reader = scenes->at("distractors");
-    const auto range = reader.elements();
-    if (range.size() != 2) reader.fail("[fewest, most]");
-    content.distractors.first = static_cast<int>(range[0].integer(0, most));
-    content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
-  }
+  if (scenes->has("distractors")) content.distractors = read_distractors(scenes->at("distractors"), most);
   if (scenes->has("near_miss") && scenes->at("near_miss").json() != Json(false)) {
     const JsonReader reader = scenes->at("near_miss");
-    content.near_miss.emplace();
-    if (reader.json() != Json(true)) {
-      reader.only({"object_types", "textures"});
-      if (reader.has("object_types"))
-        content.near_miss->object_types =
-            read_names(reader.at("object_types"), scenario.space.object_types, scenario, &FeatureSet::object_types);
-      if (reader.has("textures"))
-        content.near_miss->textures =
-            read_names(reader.at("textures"), scenario.space.textures, scenario, &FeatureSet::textures);
-    }
+    content.near_miss = read_near_miss(reader, scenario);
     if (training && scenario.as_method_asks)  // else an answer would decide what is near
       reader.fail("\"as_method_asks\": false beside it");
   }

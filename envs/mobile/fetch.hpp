@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <common/scene_members.hpp>
 #include <lgabench/core/environments.hpp>
 
 namespace lgabench::mobile {
@@ -12,19 +13,15 @@ namespace lgabench::mobile {
 /// The role of the receiver that the command means, which is the second set's name too. The others are distractors.
 constexpr const char* receiver = "receiver";
 
-/// Which objects a command nearly means: of these types, or of what it means but for one of these textures. Both empty:
-/// of a type that it means, or of a texture.
-struct NearMiss {
-  std::vector<std::string> object_types, textures;
-};
-
 /// What scenes of one kind hold. Targets and receivers are drawn from the command's truth, or from the Selection in
 /// training; every object has a texture that its type has in life (mobile/fetch_textures.json).
 struct FetchContent : SceneContent {
   std::pair<int, int> distractors{7, 7};  // fewest and most other objects, all numbers with equal odds
-  std::optional<NearMiss> near_miss;      // among other objects and receivers: see docs/protocol.md, section 7
-  double least_visible = .9;              // share of the target's pixels
-  std::optional<double> caption_error;    // see perceive_in_bad_light(); none: perception is perfect
+  /// Among other objects and receivers: see docs/protocol.md, section 7. The sets say what the command nearly means:
+  /// these types, or what it means but for one of these textures.
+  std::optional<common::NearMiss> near_miss;
+  double least_visible = .9;            // share of the target's pixels
+  std::optional<double> caption_error;  // see perceive_in_bad_light(); none: perception is perfect
 };
 
 /// Names of the members of "train" and of "tests", as EnvironmentType asks for them.

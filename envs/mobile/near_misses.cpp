@@ -78,7 +78,7 @@ std::vector<Features> uniform_others(const std::vector<Features>& may_be, int co
 }
 
 std::vector<Features> near_others(const std::vector<Features>& may_be, const Features& target, const FeatureSet& meant,
-                                  const NearMiss& near, int count, RandomStream& random) {
+                                  const common::NearMiss& near, int count, RandomStream& random) {
   const Some first = alike(may_be, target, random);
   const Some free = those(may_be, [&](const Features& f) { return !holds(first, f); });
   Some nearly = those(free, [&](const Features& f) {

@@ -31,7 +31,7 @@ std::vector<Features> uniform_others(const std::vector<Features>& may_be, int co
 /// command nearly means, as `near` says, with two that share a feature with that one. So what shares most with the rest
 /// is mostly no target. What is left is uniform. `meant`: the target's distribution.
 std::vector<Features> near_others(const std::vector<Features>& may_be, const Features& target, const FeatureSet& meant,
-                                  const NearMiss& near, int count, RandomStream& random);
+                                  const common::NearMiss& near, int count, RandomStream& random);
 
 /// Two other receivers: where the command leaves out textures of the target's type, one of those and any other; else
 /// two of the target's texture.

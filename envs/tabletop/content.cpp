@@ -31,36 +31,6 @@ void read_choice(const JsonReader& scenes, const std::string& second, const Feat
   }
 }
 
-// A list of the space's names, none of which any of the scenario's commands means.
-std::vector<std::string> read_missing(const JsonReader& list, const std::vector<std::string>& space,
-                                      const Scenario& scenario, std::vector<std::string> FeatureSet::*meant) {
-  std::vector<std::string> names = list.strings();
-  if (names.empty()) list.fail("at least one name");
-  for (const JsonReader& name : list.elements()) {
-    const auto has = [&name](const std::vector<std::string>& all) {
-      return std::find(all.begin(), all.end(), name.string()) != all.end();
-    };
-    if (!has(space)) name.fail("a name of the feature space");
-    for (const ScenarioCommand& command : scenario.commands)
-      if (has(command.truth.target.*meant))
-        name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));
-  }
-  return names;
-}
-
-NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario) {
-  NearMiss sets;
-  if (reader.json() == Json(true)) return sets;
-  if (!reader.json().is_object()) reader.fail("true, or an object");
-  reader.only({"object_types", "textures"});
-  if (reader.has("object_types"))
-    sets.object_types =
-        read_missing(reader.at("object_types"), scenario.space.object_types, scenario, &FeatureSet::object_types);
-  if (reader.has("textures"))
-    sets.textures = read_missing(reader.at("textures"), scenario.space.textures, scenario, &FeatureSet::textures);
-  return sets;
-}
-
 // `file`: the scenario's; `content` gets what the member says of its scenes.
 void read_members(const JsonReader& scenes, const JsonReader& file, const Scenario& scenario, bool training,
                   Content& content) {
@@ -92,12 +62,7 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
   if (reader.has("target")) content.target = read_feature_set(reader.at("target"), space);
   if (scenario.second && reader.has(scenario.second->id))
     content.second = read_feature_set(reader.at(scenario.second->id), space);
-  if (reader.has("distractors")) {
-    const auto range = reader.at("distractors").elements();
-    if (range.size() != 2) reader.at("distractors").fail("[fewest, most]");
-    content.distractors.first = static_cast<int>(range[0].integer(0, most));
-    content.distractors.second = static_cast<int>(range[1].integer(content.distractors.first, most));
-  }
+  if (reader.has("distractors")) content.distractors = read_distractors(reader.at("distractors"), most);
   if (reader.has("outside_all_commands")) content.outside_all_commands = reader.at("outside_all_commands").boolean();
   if (reader.has("hard")) content.hard = reader.at("hard").boolean();
   if (reader.has("near_miss") && reader.at("near_miss").json() != Json(false)) {
@@ -153,7 +118,7 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
   if (training && scenes && scenario.as_method_asks && (content.target || content.second))
     scenes->fail("\"as_method_asks\": false beside \"target\"" +
                  (scenario.second ? fmt::format(" or \"{}\"", scenario.second->id) : ""));
-  if (training && content.near_miss && scenario.as_method_asks)  // else an answer would decide what is near
+  if (training && scenes && content.near_miss && scenario.as_method_asks)  // else an answer would decide what is near
     scenes->at("near_miss").fail("\"as_method_asks\": false beside it");
   return content;
 }

@@ -7,16 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include <common/scene_members.hpp>
 #include <lgabench/core/scenario.hpp>
 
 namespace lgabench::tabletop {
 
 class Task;
-
-/// Of which features near misses are made first, before others that the command does not mean.
-struct NearMiss {
-  std::vector<std::string> object_types, textures;  // empty: any
-};
 
 /// What scenes of one kind hold. Targets and the second set are drawn from the command's truth where nothing else is
 /// said.
@@ -24,8 +20,9 @@ struct Content : SceneContent {
   std::optional<FeatureSet> target, second;
   std::pair<int, int> distractors{1, 2};  // fewest and most, all numbers with equal odds
   bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
-  bool hard = false;                  // a distractor shares the target's type or its texture, and still is no target
-  std::optional<NearMiss> near_miss;  // others share the target's type or texture, and each other's: see near_misses()
+  bool hard = false;  // a distractor shares the target's type or its texture, and still is no target
+  std::optional<common::NearMiss>
+      near_miss;  // others share the target's type or texture, and each other's: see near_misses()
   /// Training: of how many members of what a command means, pairs of type and texture, targets are; 0: of all. Tests:
   /// of these ("seen"), or of the others ("new"); "": of all. Which they are: see members_of().
   int members = 0;

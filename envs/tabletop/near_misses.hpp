@@ -19,7 +19,7 @@ struct NearMissRequest {
   const FeatureSet& meant;                      // by the command
   Features target;                              // which it holds
   std::vector<std::string> types, textures;     // that can be shown
-  const NearMiss& sets;                         // what is near, where that is not all that the command leaves out
+  const common::NearMiss& sets;                 // what is near, where that is not all that the command leaves out
   std::function<bool(const Features&)> may_be;  // a distractor
 };
 

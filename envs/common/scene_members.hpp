@@ -1,0 +1,22 @@
+// Members of scenes that several environments read from a scenario's file.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench::common {
+
+/// Of which features near misses are made first, before others that the command does not mean.
+struct NearMiss {
+  std::vector<std::string> object_types, textures;  // empty: any
+};
+
+/// `true`, or lists of names of the space that none of the scenario's commands means. @throws InputError
+NearMiss read_near_miss(const JsonReader& reader, const Scenario& scenario);
+
+/// [fewest, most], within 0 and `most`. @throws InputError
+std::pair<int, int> read_distractors(const JsonReader& reader, int most);
+
+}  // namespace lgabench::common
