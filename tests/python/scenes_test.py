@@ -36,6 +36,20 @@ class Scenes(unittest.TestCase):
                     self.assertEqual(result.success, result.failure == "none")
                     self.assertTrue(result.success or scenario not in EXAMPLES, "of other scenarios it misses a few scenes")
 
+    def test_stations_are_told(self):
+        space = lgabench.Scenario("fetch_fruit").action_space
+        self.assertEqual(len(space.stations), 5)
+        self.assertEqual(lgabench.Scenario("heart").action_space.stations, ())
+        led = set()
+        with lgabench.Environment("fetch_fruit", ENGINE) as env:
+            for index in range(8):
+                env.reset("test", index)
+                values = tuple(env.expert_action()[list(space.station_numbers)])
+                led |= {i for i, one in enumerate(space.stations) if numpy.allclose(one.values, values, atol=1e-5)}
+        self.assertGreater(len(led), 1, "the oracle's actions lead to stations")
+        for one in space.stations:
+            self.assertEqual(len(one.values), len(space.station_numbers))
+
     def test_calls_out_of_order(self):
         env = lgabench.Environment("heart", ENGINE)
         action = [0.0] * len(env.action_space.names)

@@ -20,14 +20,25 @@ SPLITS = ("train", "dev", "test")
 
 
 @dataclass(frozen=True)
+class Station:
+    """A place that an action can lead to: where a picture shows it, down and across, in the unit of the numbers that are
+    the action's first place; and what ActionSpace.station_numbers are then."""
+    seen: tuple[float, float]
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class ActionSpace:
     """What the numbers of an action mean. `rotations`: numbers that are a unit vector together, as indices; they are
-    normalised, all others clipped to their bounds, when an action is carried out."""
+    normalised, all others clipped to their bounds, when an action is carried out. Where an action leads to one of a few
+    `stations`, `station_numbers` are the indices of those numbers that are constants of each; else both are empty."""
     names: tuple[str, ...]
     units: tuple[str, ...]
     low: Numbers
     high: Numbers
     rotations: tuple[tuple[int, ...], ...]
+    station_numbers: tuple[int, ...] = ()
+    stations: tuple[Station, ...] = ()
 
     def to_metres(self, scaled: numpy.typing.ArrayLike) -> Numbers:
         """Numbers within [-1, 1] -> the action; one action, or a row each. A rotation of no length becomes no turn."""
@@ -62,11 +73,12 @@ class Scenario:
         self.picture_size: tuple[int, int] = self._core.picture_size
         self.most_instances: int = self._core.most_instances
         space = json.loads(self._core.action_space_json)
-        numbers = space["numbers"]
+        numbers, stations = space["numbers"], space.get("stations", {"numbers": [], "all": []})
         self.action_space = ActionSpace(tuple(one["name"] for one in numbers), tuple(one["unit"] for one in numbers),
                                         numpy.array([one["low"] for one in numbers], numpy.float64),
                                         numpy.array([one["high"] for one in numbers], numpy.float64),
-                                        tuple(map(tuple, space["rotations"])))
+                                        tuple(map(tuple, space["rotations"])), tuple(stations["numbers"]),
+                                        tuple(Station(tuple(one["seen"]), tuple(one["values"])) for one in stations["all"]))
 
     def command(self, index: int) -> Command:
         """As Method.select() is given it."""
