@@ -37,7 +37,7 @@ set(lgabench_public_headers
     core/shown.hpp core/version.hpp
     plugin/descriptor.hpp plugin/fingerprint.hpp plugin/plugin.hpp
     abstraction/goal_mask.hpp abstraction/select_features.hpp
-    learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp
+    learning/archive.hpp learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp
     learning/samples.hpp)
 
 # What `find_package(lgabench CONFIG)` finds: the libraries that plugins link, their headers, lgabench_add_plugin().

@@ -2,8 +2,10 @@
 import hashlib
 import importlib.machinery
 import importlib.util
+import mmap
 import os
 import pathlib
+import pickle
 import struct
 import sys
 import sysconfig
@@ -11,7 +13,7 @@ import time
 import traceback
 
 from lgabench_method import Needs, Refused, Services, Shown, values
-from lgabench_method.frames import Malformed
+from lgabench_method.frames import MOST, Malformed
 
 PROTOCOL = 1
 
@@ -171,6 +173,24 @@ class Host:
             raise TypeError(f"learn() returned {type(self.policy).__name__}, expected an object with act()")
         return {"type": "learned"}, b""
 
+    def save(self, header, payload, descriptor):
+        """A part of the pickled policy from a place on; without "bytes" it cannot be saved."""
+        if header["from"] == 0:
+            try:
+                self.saved = pickle.dumps(self.policy)
+            except Exception as error:  # what pickle cannot take raises whatever its author chose
+                print(f"the policy cannot be pickled: {type(error).__name__}: {error}")
+                return {"type": "saved"}, b""
+        return {"type": "saved", "bytes": len(self.saved)}, self.saved[header["from"]:header["from"] + MOST]
+
+    def restore(self, header, payload, descriptor):
+        memory = mmap.mmap(descriptor, header["bytes"], prot=mmap.PROT_READ)
+        os.close(descriptor)
+        self.policy = pickle.loads(memory[:])  # in this confined process alone: a pickle runs code
+        if not hasattr(self.policy, "act"):
+            raise TypeError(f"saved policy: {type(self.policy).__name__}, expected an object with act()")
+        return {"type": "restored"}, b""
+
     def act(self, header, payload, descriptor):
         if header["reset"] and hasattr(self.policy, "reset"):
             self.policy.reset()
@@ -236,7 +256,7 @@ def serve(channel):
         return
     while frame is not None:
         kind = frame[0]["type"]
-        if kind not in ("hello", "needs", "select", "revise", "learn", "act", "shown", "drop", "bye"):
+        if kind not in ("hello", "needs", "select", "revise", "learn", "save", "restore", "act", "shown", "drop", "bye"):
             raise Malformed(f"no frame of a worker: \"{kind}\"")
         _told(channel, "method", host.answer, frame)
         if kind == "bye":

@@ -24,6 +24,7 @@
 #include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/record/cell_status.hpp>
+#include <lgabench/record/kept_policy.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
@@ -211,13 +212,32 @@ std::string episodes_text(const std::vector<Episode>& episodes) {
   return lines;
 }
 
+// What is kept of the policy: the file's text; "" where it is not to be, or cannot be, which the log says.
+std::string policy_text(const CellJob& job, const Policy* policy) {
+  if (!job.keeps_policy || !policy) return "";
+  const Competitor& method = job.cell.method;
+  const std::string id = method.acts ? method.acts->id : method.id;
+  std::string why = "the method cannot save it";
+  try {
+    if (const auto saved = guarded(id, [policy] { return policy->saved(); }))
+      return to_text(KeptPolicy{id, method.acts ? method.acts->version : method.version, *saved});
+  } catch (const MethodGone&) {
+    throw;
+  } catch (const Error& e) {
+    why = one_line(e.what());
+  }
+  to_stdout("{} is not kept: {}\n", cell_file::policy, why);
+  return "";
+}
+
 // Writes the files and, last, status.json with their hashes: a directory without it is not a result. Only the process
 // `self` does: a plugin may have forked another one that came here as well.
 void record(const CellJob& job, pid_t self, const Files& files, const Files& of_method,
-            const std::vector<ShownScene>& shown, const std::string& error) {
+            const std::vector<ShownScene>& shown, const std::string& policy, const std::string& error) {
   if (::getpid() != self) ::_exit(1);
   for (const auto& [name, bytes] : of_method) write_file(job.directory / "files" / name, bytes);
   if (!shown.empty()) write_file(job.directory / cell_file::shown, to_text(shown));
+  if (!policy.empty()) write_file(job.directory / cell_file::policy, policy);
   CellStatus status;
   for (const auto& [name, bytes] : files) {
     write_file(job.directory / name, bytes);
@@ -298,6 +318,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   });
   auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
+  const std::string kept = policy_text(job, policy.get());
   const std::vector<Instruction> truth = true_instructions(scenario);
   const Actor with_truth = policy ? policy_actor(*policy, truth, id) : Actor();
   if (job.attributed && selects(selected)) attribute_failures(*environment, tests, actor, with_truth, episodes);
@@ -310,7 +331,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
           {cell_file::training, training.lines},
           {cell_file::episodes, episodes_text(episodes)},
           {cell_file::timing, canonical(phases.seconds()) + '\n'}},
-         of_method, showing ? showing->scenes() : std::vector<ShownScene>(), first_error(episodes));
+         of_method, showing ? showing->scenes() : std::vector<ShownScene>(), kept, first_error(episodes));
 }
 
 }  // namespace lgabench

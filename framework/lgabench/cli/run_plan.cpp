@@ -221,6 +221,7 @@ PlannedRun plan_run(RunArguments a) {
   plan.pool.timeout_s = a.timeout_s;
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
+  plan.keeps_policies = a.keep_policy;
   // A preset with a scene seed of its own is one of the board's.
   plan.attributes_others = a.preset.empty() || !suite.presets.at(a.preset).contains("scene_seed");
   return planned;
@@ -306,6 +307,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_flag("--rehearsal", a.rehearsal,
                 "With --humans: accept files from a rehearsal or from simulated people; the run, its tables and claims "
                 "are marked, and the leaderboard does not take it");
+  verb.add_flag("--keep-policy", a.keep_policy,
+                "Keep what each computed cell learned, as its file policy.bin, which lgabench.load_policy() of the "
+                "Python package acts with; a method that cannot be saved says so in its cell's log");
   verb.add_flag("--unconfined", a.unconfined,
                 "Do not confine methods: they then run as you, with access to your files (docs/trust.md); not for the "
                 "leaderboard");
@@ -342,7 +346,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--scenario-path", "DIR"},
            {"--python", "PROGRAM"},
            {"--unconfined", ""}});
-  arrange(verb, "Output", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--json", ""}});
+  arrange(verb, "Output", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--keep-policy", ""}, {"--json", ""}});
 }
 
 }  // namespace lgabench::cli

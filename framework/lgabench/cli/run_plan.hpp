@@ -22,8 +22,8 @@ struct RunArguments {
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = LiveModel().concurrency;
   std::string program;  // as --version says
-  bool unconfined = false, rehearsal = false, resume = false, fresh = false, dry_run = false, no_reference = false,
-       json = false;
+  bool unconfined = false, keep_policy = false, rehearsal = false, resume = false, fresh = false, dry_run = false,
+       no_reference = false, json = false;
 };
 
 /// The options of `run`, but for those that it alone has.

@@ -56,6 +56,7 @@ void add_render(CLI::App& app, int& exit);
 void add_pictures(CLI::App& app, int& exit);
 void add_oracle(CLI::App& app, int& exit);
 void add_replay(CLI::App& app, int& exit);
+void add_act(CLI::App& app, int& exit);
 void add_check_scenario(CLI::App& app, int& exit);
 
 /// A check for an option: a number from `low` to `high`, which NaN is not.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/language_model.hpp>
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/shown.hpp>
@@ -92,6 +93,9 @@ class Policy {
   /// What the last act() read of the scene: the pictures themselves, as they were after all that prepares them. Asked
   /// after some episodes, for a report's page; no result depends on it. Nothing where the policy does not tell.
   virtual Shown shown() const { return {}; }
+  /// What was learned, as bytes of which Method::restore() makes a policy that acts alike: asked of a run with
+  /// --keep-policy, after the scored episodes. None where it cannot be saved. 64 MiB at most are kept.
+  virtual std::optional<std::string> saved() const { return std::nullopt; }
 };
 
 /// A method of state abstraction and imitation. Made anew, in a fresh process, for every cell by its default
@@ -118,6 +122,11 @@ class Method {
   /// Learns from the demonstrations, the cell's number of them for each seen command in turn, in the order of their
   /// scenes. The policy must not refer to them afterwards. @returns never null.
   virtual std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) = 0;
+  /// In place of all of the above, in another process with the same options and seed: the policy whose saved() gave
+  /// these bytes. @returns never null. @throws InputError for bytes that it did not give.
+  virtual std::unique_ptr<Policy> restore(const std::string& /*saved*/, Services& /*services*/) {
+    throw MethodError("a policy of this method cannot be restored");
+  }
 };
 
 }  // namespace lgabench

@@ -250,7 +250,8 @@ void copy_cell(const fs::path& from, const fs::path& to) {
   const PlainDirectory files(from / "files");
   for (const char* name : cell_files)
     if (fs::exists(from / name)) copy(name);
-  if (fs::exists(from / cell_file::shown)) copy(cell_file::shown);
+  for (const char* name : {cell_file::shown, cell_file::policy})
+    if (fs::exists(from / name)) copy(name);
   for (const std::string& name : files.kept_names())
     write_file(to / "files" / name, files.read_file(name), Sync::later);
   copy(cell_file::status);

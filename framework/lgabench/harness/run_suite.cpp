@@ -307,6 +307,7 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               scratch,       build_of(cell, catalogue),
               plan.confined, worker_limits(plan.pool),
               plan.live};
+  job.keeps_policy = plan.keeps_policies;
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {
     job.method = *method;
     const PluginInfo* acts = acting_plugin(cell, catalogue);  // which alone is told the truth

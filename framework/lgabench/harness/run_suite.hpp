@@ -28,7 +28,8 @@ struct RunPlan {
   Json live_about{};                  // {"model", "provider", "prompt"}: who that is, for run.json
   Existing existing = Existing::same;
   PoolOptions pool;
-  bool confined = true;  // methods' processes, see host/confine.hpp
+  bool confined = true;         // methods' processes, see host/confine.hpp
+  bool keeps_policies = false;  // of cells that are computed
   bool attributes_others =
       true;  // failures of methods that are not the installation's own, too: they are told the truth
 };

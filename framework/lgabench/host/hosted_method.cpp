@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <new>
 
 #include <lgabench/core/environments.hpp>
@@ -192,6 +194,26 @@ class HostedPolicy : public Policy {
     const Frame frame = session_->call({{"type", "shown"}}, "shown");
     return session_->read([&] { return protocol::read_shown(frame); });
   }
+  /// In parts, as a frame holds no more. What is too large is said in the log.
+  std::optional<std::string> saved() const override {
+    std::string bytes;
+    for (;;) {
+      const Frame frame = session_->call({{"type", "save"}, {"from", bytes.size()}}, "saved");
+      const JsonReader reader(frame.header, "saved");
+      if (!reader.has("bytes")) return std::nullopt;
+      const auto size = session_->read([&] {
+        return static_cast<std::size_t>(reader.at("bytes").integer(0, std::numeric_limits<long long>::max()));
+      });
+      if (size > most_saved_bytes) {
+        to_stdout("the policy is not kept: {} bytes, expected 64 MiB at most\n", size);
+        return std::nullopt;
+      }
+      bytes += frame.payload;
+      if (bytes.size() == size) return bytes;
+      if (bytes.size() > size || frame.payload.empty())
+        throw MethodError(fmt::format("saved a policy of {} bytes, and sent {}", size, bytes.size()));
+    }
+  }
 
  private:
   std::shared_ptr<HostSession> session_;
@@ -272,6 +294,13 @@ std::unique_ptr<Policy> HostedMethod::learn(const std::vector<Demonstration>& de
     ledger.rethrow();
     throw;
   }
+  return std::make_unique<HostedPolicy>(session_);
+}
+
+std::unique_ptr<Policy> HostedMethod::restore(const std::string& saved) {
+  protocol::SharedMemory memory(saved.size());
+  std::copy(saved.begin(), saved.end(), memory.data());
+  session_->call({{"type", "restore"}, {"bytes", saved.size()}}, "restored", {}, &memory.file());
   return std::make_unique<HostedPolicy>(session_);
 }
 

@@ -32,6 +32,9 @@ struct HostJob {
   std::string task{};  // of the environment, whose stations the method is told; "": it is told of none
 };
 
+/// The most that is kept of a policy.
+constexpr std::size_t most_saved_bytes = 64 << 20;
+
 /// A method whose code runs in a process, or several, that whoever made it ends.
 class MethodInProcesses : public Method {
  public:
@@ -58,6 +61,9 @@ class HostedMethod : public MethodInProcesses {
                    Services& services) override;
   /// The policy may outlive this object; it acts in the same process.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
+  std::unique_ptr<Policy> restore(const std::string& saved, Services&) override { return restore(saved); }
+  /// Likewise: its process has services of its own, and may ask nobody meanwhile.
+  std::unique_ptr<Policy> restore(const std::string& saved);
   std::vector<std::pair<std::string, std::string>> files() const override;
   void end() override;
 

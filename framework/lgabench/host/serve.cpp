@@ -207,6 +207,21 @@ class Host {
       if (!policy_) throw MethodError("learn returned no policy");
       return {{{"type", "learned"}}};
     }
+    if (frame.type() == "save") {
+      const auto from = static_cast<std::size_t>(reader.at("from").integer(0, 1LL << 40));
+      if (from == 0) saved_ = policy_ ? call([&] { return policy_->saved(); }) : std::nullopt;
+      if (!saved_) return {{{"type", "saved"}}};
+      const std::string part = saved_->substr(std::min(from, saved_->size()), most_payload_bytes);
+      return {{{"type", "saved"}, {"bytes", saved_->size()}}, part};
+    }
+    if (frame.type() == "restore") {
+      const auto size = static_cast<std::size_t>(reader.at("bytes").integer(0, 1LL << 40));
+      const protocol::SharedMemory memory(frame.file, size);
+      const std::string saved(reinterpret_cast<const char*>(memory.data()), size);
+      policy_ = call([&] { return method().restore(saved, services); });
+      if (!policy_) throw MethodError("restore returned no policy");
+      return {{{"type", "restored"}}};
+    }
     if (frame.type() == "act") {
       if (!policy_) throw MethodError("asked to act before it learned");
       protocol::read_observation(memory_, layout_.picture, reader.at("instances"), observation_);
@@ -271,6 +286,7 @@ class Host {
   PluginInfo plugin_;
   std::unique_ptr<Method> method_;
   std::unique_ptr<Policy> policy_;
+  std::optional<std::string> saved_;  // asked for in parts
 };
 
 // Tells the worker what `call` throws; true if nothing was thrown.

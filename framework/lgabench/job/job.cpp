@@ -85,6 +85,7 @@ Json to_json(const CellJob& job) {
             {"build", job.build},
             {"confined", job.confined},
             {"attributed", job.attributed},
+            {"keeps_policy", job.keeps_policy},
             {"limits", to_json(job.limits)}};
   if (job.method) json["method"] = plugin_json(*job.method);
   if (job.acts) json["acts"] = plugin_json(*job.acts);
@@ -110,6 +111,7 @@ CellJob read_cell_job(const JsonReader& reader) {
   if (reader.has("acts")) job.acts = plugin_of(reader.at("acts"));
   if (job.cell.method.acts.has_value() != job.acts.has_value()) reader.at("cell").fail("a plugin for what acts");
   job.attributed = reader.at("attributed").boolean();
+  job.keeps_policy = reader.at("keeps_policy").boolean();
   if (reader.has("live")) job.live = live_of(reader.at("live"));
   if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
   return job;

@@ -47,6 +47,7 @@ struct CellJob {
   std::optional<PluginInfo> acts{};  // the cell's acting method, where it has one
   bool attributed = true;            // whether the method is told the truth in the end, to find causes
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
+  bool keeps_policy = false;                           // what is learned stays with the cell
 };
 Json to_json(const CellJob& job);
 /// @throws InputError; PluginError where a plugin is refused, or another one by now.

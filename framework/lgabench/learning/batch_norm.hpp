@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include <lgabench/learning/archive.hpp>
 #include <lgabench/learning/parameters.hpp>
 
 namespace lgabench {
@@ -20,6 +21,13 @@ class BatchNorm {
   /// Replaces d loss / d out of the last train() by d loss / d value, in place; `out` where train() had a ReLU, else
   /// null.
   void backward(const float* values, const float* out, int positions, float* gradient);
+  /// The running statistics.
+  void learned(Archive& archive) {
+    const std::size_t channels = running_mean_.size();
+    archive(running_mean_);
+    archive(running_variance_);
+    if (running_mean_.size() != channels || running_variance_.size() != channels) Archive::fail();
+  }
 
  private:
   int channels_;

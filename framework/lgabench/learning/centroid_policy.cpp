@@ -124,4 +124,11 @@ const std::vector<float>& CentroidRule::predict(const Samples& samples) {
   return impl_->outputs;
 }
 
+bool CentroidRule::learned(Archive& archive) {
+  name_motion(impl_->motion, impl_->mean, impl_->shape.actions, archive);
+  archive(impl_->sides);
+  if (impl_->motion && impl_->motion->groups() != impl_->sides.size()) Archive::fail();
+  return true;
+}
+
 }  // namespace lgabench

@@ -39,6 +39,7 @@ class CentroidRule : public Learner {
   double backward(const Samples&, const std::vector<int>&) override { return 0; }
   void update(double) override {}
   std::vector<float> parameters() const override { return {}; }
+  bool learned(Archive& archive) override;
 
  private:
   struct Impl;

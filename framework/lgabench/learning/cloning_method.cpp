@@ -39,23 +39,41 @@ class SeenInputs {
   void learn(std::uint64_t input) { learned_.insert(std::lower_bound(learned_.begin(), learned_.end(), input), input); }
   void meet(std::uint64_t input) { last_ = std::binary_search(learned_.begin(), learned_.end(), input); }
   std::optional<bool> last() const { return last_; }
+  void learned(Archive& archive) { archive(learned_); }
 
  private:
   std::vector<std::uint64_t> learned_;  // ascending
   std::optional<bool> last_;
 };
 
+// What a restored policy cannot know from its options.
+struct SavedInputs {
+  PictureSize native{};
+  FeatureSpace space{};
+
+  void learned(Archive& archive) {
+    archive(native);
+    archive(space.id);
+    archive(space.object_types);
+    archive(space.textures);
+  }
+};
+
 class CloningPolicy : public Policy {
  public:
   /// Of the `offered` inputs a policy of that kind takes `inputs`.
-  CloningPolicy(PolicyInputs offered, PolicyInputs inputs, PolicyKind kind, Featurizer featurizer,
-                std::unique_ptr<Learner> learner, const Samples& shown)
-      : offered_(std::move(offered)),
+  CloningPolicy(PictureSize native, PolicyInputs offered, PolicyInputs inputs, PolicyKind kind, Featurizer featurizer,
+                std::unique_ptr<Learner> learner)
+      : native_(native),
+        offered_(std::move(offered)),
         inputs_(std::move(inputs)),
         kind_(kind),
         featurizer_(std::move(featurizer)),
         learner_(std::move(learner)),
-        input_(shown.shape, 1) {
+        input_(featurizer_.shape(), 1) {}
+
+  /// Remembers which inputs it learned from.
+  void learned_from(const Samples& shown) {
     for (int row = 0; row < shown.rows; ++row) seen_.learn(hash_of(shown, row));
   }
 
@@ -68,8 +86,25 @@ class CloningPolicy : public Policy {
 
   std::optional<bool> seen_in_training() const override { return seen_.last(); }
   Shown shown() const override { return shown_input(offered_, inputs_, kind_, input_); }
+  std::optional<std::string> saved() const override {
+    if (!offered_.masks.empty()) return std::nullopt;  // what was selected is no part of what is saved
+    Archive archive;
+    SavedInputs inputs{native_, offered_.space};
+    inputs.learned(archive);
+    SeenInputs seen = seen_;
+    seen.learned(archive);
+    if (!learner_->learned(archive)) return std::nullopt;
+    return archive.bytes();
+  }
+  /// What saved() wrote behind the inputs.
+  void restore(Archive& archive) {
+    seen_.learned(archive);
+    if (!learner_->learned(archive)) throw MethodError("a policy of this network cannot be restored");
+    archive.expect_end();
+  }
 
  private:
+  PictureSize native_;
   PolicyInputs offered_, inputs_;
   PolicyKind kind_;
   Featurizer featurizer_;
@@ -82,6 +117,12 @@ PictureSize picture_size(const std::vector<Demonstration>& demonstrations) {
   for (const Demonstration& demonstration : demonstrations)
     for (const Step& step : demonstration.steps) return step.observation.size;
   throw MethodError("training: expected at least one demonstration, got none");
+}
+
+PolicyInputs offered_by(PolicyInputs inputs, const CloningOptions& options) {
+  if (options.instances == Instances::first) inputs.instances = options.instances;
+  if (options.signed_mask) inputs.signed_mask = true;
+  return inputs;
 }
 
 }  // namespace
@@ -100,16 +141,33 @@ std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const 
 
 std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& demonstrations, Services& services) {
   const CloningOptions options = read_cloning_options(services.options);
-  PolicyInputs offered = inputs(services.options);
-  if (options.instances == Instances::first) offered.instances = options.instances;
-  if (options.signed_mask) offered.signed_mask = true;
-  PolicyInputs seen = inputs_of(options.policy, offered, picture_size(demonstrations));
+  PolicyInputs offered = offered_by(inputs(services.options), options);
+  const PictureSize native = picture_size(demonstrations);
+  PolicyInputs seen = inputs_of(options.policy, offered, native);
   Featurizer featurizer(seen, services.actions);
   const Samples samples = training_rows(featurizer.samples(demonstrations), services);
   std::unique_ptr<Learner> trained = learner(samples.shape, services);
   train(*trained, samples, options.training, services.seed, services.log);
-  return std::make_unique<CloningPolicy>(std::move(offered), std::move(seen), options.policy, std::move(featurizer),
-                                         std::move(trained), samples);
+  auto policy = std::make_unique<CloningPolicy>(native, std::move(offered), std::move(seen), options.policy,
+                                                std::move(featurizer), std::move(trained));
+  policy->learned_from(samples);
+  return policy;
+}
+
+std::unique_ptr<Policy> CloningMethod::restore(const std::string& saved, Services& services) {
+  const CloningOptions options = read_cloning_options(services.options);
+  Archive archive(saved);
+  SavedInputs own;
+  own.learned(archive);
+  PolicyInputs offered = offered_by(inputs(services.options), options);
+  offered.space = own.space;
+  PolicyInputs seen = inputs_of(options.policy, offered, own.native);
+  Featurizer featurizer(seen, services.actions);
+  std::unique_ptr<Learner> untrained = learner(featurizer.shape(), services);
+  auto policy = std::make_unique<CloningPolicy>(own.native, std::move(offered), std::move(seen), options.policy,
+                                                std::move(featurizer), std::move(untrained));
+  policy->restore(archive);
+  return policy;
 }
 
 }  // namespace lgabench

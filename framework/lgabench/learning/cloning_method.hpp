@@ -78,6 +78,8 @@ class CloningMethod : public Method {
   /// training. @throws InputError for a text without a sentence embedding, where the encoder's weights are not there;
   /// for inputs() that the option `policy` cannot use.
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override;
+  /// Not of a method whose inputs() are made of what it selected, but for a feature space.
+  std::unique_ptr<Policy> restore(const std::string& saved, Services& services) override;
 
  protected:
   /// What the learner sees; the goal mask, and the picture where the method has the option `picture` and it says so,

@@ -170,6 +170,7 @@ struct HeatMap::Impl {
   }
 
   void begin(const Samples& samples);
+  void make_networks(std::size_t groups);
   void begin_stations(const std::vector<Demonstrated>& shown, const std::vector<std::size_t>& rows);
   double teach(int row, double weight);
   Vec2 taken_point(const std::vector<float>& map) const;
@@ -223,13 +224,19 @@ void HeatMap::Impl::begin(const Samples& samples) {
       lesson.wanted = wanted(lesson.view.prior, lesson.taken_m);
       lesson.group = g;
     }
-  network.emplace(field, planes, shape.text, groups.size(), seed, *available_kernels().front());
+  make_networks(groups.size());
   if (!stations.all.empty()) begin_stations(shown, rows);
 }
 
-void HeatMap::Impl::begin_stations(const std::vector<Demonstrated>& shown, const std::vector<std::size_t>& rows) {
+void HeatMap::Impl::make_networks(std::size_t groups) {
   constexpr std::uint64_t another = std::uint64_t{1} << 63;  // initial weights of its own
-  station_network.emplace(field, planes, shape.text, 1, seed ^ another, *available_kernels().front());
+  const Kernels& kernels = *available_kernels().front();
+  network.emplace(field, planes, shape.text, groups, seed, kernels);
+  if (!shape.actions.stations.all.empty())
+    station_network.emplace(field, planes, shape.text, 1, seed ^ another, kernels);
+}
+
+void HeatMap::Impl::begin_stations(const std::vector<Demonstrated>& shown, const std::vector<std::size_t>& rows) {
   tells_second = std::any_of(shown.begin(), shown.end(), [](const auto& one) { return one.places.second_m; });
   const Stations& stations = shape.actions.stations;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -341,6 +348,25 @@ std::vector<float> HeatMap::parameters() const {
   }
   return all;
 }
+
+bool HeatMap::learned(Archive& archive) {
+  Impl& i = *impl_;
+  const std::vector<std::vector<float>> made = i.usual;
+  archive(i.usual);
+  name_motion(i.motion, i.mean, i.shape.actions, archive);
+  archive(i.tells_second);
+  if (archive.reads()) {
+    for (std::size_t p = 0; p < made.size(); ++p)
+      if (i.usual.size() != made.size() ||
+          i.usual[p].size() != (is_mask(i.shape.pictures[p]) ? 0 : size(i.shape.pictures[p].numbers())))
+        Archive::fail();
+    i.make_networks(i.motion ? i.motion->groups() : 1);
+  }
+  i.network->parameters().learned(archive);
+  if (i.station_network) i.station_network->parameters().learned(archive);
+  return true;
+}
+
 void HeatMap::set_parameters(const std::vector<float>& parameters) { impl_->network->parameters().set(parameters); }
 std::vector<float> HeatMap::gradients() const { return impl_->network->parameters().gradients(); }
 

@@ -46,6 +46,7 @@ class HeatMap : public Learner {
   double backward(const Samples& samples, const std::vector<int>& batch) override;
   void update(double learning_rate) override;
   std::vector<float> parameters() const override;
+  bool learned(Archive& archive) override;
 
   /// For tests, of the first network. @pre begin(). set_parameters() @throws InputError for another number of them.
   void set_parameters(const std::vector<float>& parameters);

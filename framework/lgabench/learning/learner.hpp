@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include <lgabench/learning/archive.hpp>
 #include <lgabench/learning/samples.hpp>
 
 namespace lgabench {
@@ -42,6 +43,9 @@ class Learner {
   virtual void update(double learning_rate) = 0;
   /// All trainable numbers, in an order that does not change: what tests compare.
   virtual std::vector<float> parameters() const = 0;
+  /// Names to the archive all that predict() depends on and the constructor does not make, to be written, or to be read
+  /// into a learner made with the same arguments. False: it cannot be saved. @throws InputError for what does not fit.
+  virtual bool learned(Archive& /*archive*/) { return false; }
 };
 
 }  // namespace lgabench

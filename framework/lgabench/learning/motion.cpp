@@ -95,6 +95,34 @@ Action Motion::act(const Places& places, std::size_t group) const {
   return executable(actions_, action);
 }
 
+void Motion::learned(Archive& archive) {
+  archive(takes_);
+  archive(frames_);
+  std::uint64_t count = means_.size();
+  archive(count);
+  if (archive.reads()) means_.clear();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (archive.reads()) means_.emplace_back();
+    archive(means_[i].values);
+    archive(means_[i].second_m);
+    if (means_[i].values.size() != actions_.size()) Archive::fail();
+  }
+  if (frames_.size() != actions_.size() || means_.empty()) Archive::fail();
+}
+
+void name_motion(std::optional<Motion>& motion, std::optional<Action>& mean, const ActionSpace& actions,
+                 Archive& archive) {
+  bool there = motion.has_value();
+  archive(there);
+  if (there && archive.reads())
+    motion.emplace(actions, archive);
+  else if (there)
+    motion->learned(archive);
+  if (archive.reads()) mean.emplace();
+  archive(*mean);
+  if (mean->size() != actions.size()) Archive::fail();
+}
+
 Motion::Frames Motion::all_in(Frame frame) const {
   Frames frames(actions_.size(), Frame::none);
   for (const PicturePlace& place : actions_.places) frames[place.down] = frames[place.across] = frame;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/learning/archive.hpp>
 
 namespace lgabench {
 
@@ -45,6 +46,10 @@ class Motion {
   /// is empty, every action is of that space.
   Motion(const ActionSpace& actions, const std::vector<Demonstrated>& all, const Groups& groups, bool takes,
          bool second);
+  /// A saved one.
+  Motion(const ActionSpace& actions, Archive& archive) : actions_(actions), takes_(false) { learned(archive); }
+  void learned(Archive& archive);
+  std::size_t groups() const { return means_.size(); }
   /// @pre `group` is one of those.
   Action act(const Places& places, std::size_t group) const;
   /// Largest root of the mean squared deviation of a coordinate of the later places from its group's mean, in Field's
@@ -70,5 +75,9 @@ class Motion {
   std::vector<Means> means_;  // of each group
   double spread_m_ = 0;
 };
+
+/// The motion and the mean action beside it, either of which may lack: to be written, or made of what is read.
+void name_motion(std::optional<Motion>& motion, std::optional<Action>& mean, const ActionSpace& actions,
+                 Archive& archive);
 
 }  // namespace lgabench

@@ -135,4 +135,10 @@ double Network::backward(const Samples& samples, const std::vector<int>& batch) 
 
 void Network::update(double learning_rate) { impl_->parameters.update(impl_->kernels, learning_rate); }
 
+bool Network::learned(Archive& archive) {
+  impl_->parameters.learned(archive);
+  for (Tower& tower : impl_->towers) tower.learned(archive);
+  return true;
+}
+
 }  // namespace lgabench

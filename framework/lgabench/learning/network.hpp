@@ -41,6 +41,7 @@ class Network : public Learner {
   double backward(const Samples& samples, const std::vector<int>& batch) override;
   /// One step of Adam (betas .9 and .999, epsilon 1e-8).
   void update(double learning_rate) override;
+  bool learned(Archive& archive) override;
 
  private:
   struct Impl;

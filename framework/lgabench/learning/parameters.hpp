@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/core/random.hpp>
+#include <lgabench/learning/archive.hpp>
 #include <lgabench/learning/kernels.hpp>
 #include <lgabench/learning/numbers.hpp>
 
@@ -35,6 +36,12 @@ class Parameters {
   std::vector<float> gradients() const { return in_pytorchs_order(gradients_); }
   /// In PyTorch's order. @throws InputError for another number of them.
   void set(const std::vector<float>& values);
+  /// Likewise.
+  void learned(Archive& archive) {
+    std::vector<float> all = values();
+    archive(all);
+    if (archive.reads()) set(all);
+  }
 
   /// One step of Adam along the gradients (betas .9 and .999, epsilon 1e-8).
   void update(const Kernels& kernels, double learning_rate);

@@ -23,6 +23,7 @@ class ScaledLearner : public Learner {
   double backward(const Samples&, const std::vector<int>& batch) override { return inner_->backward(*scaled_, batch); }
   void update(double learning_rate) override { inner_->update(learning_rate); }
   std::vector<float> parameters() const override { return inner_->parameters(); }
+  bool learned(Archive& archive) override { return inner_->learned(archive); }
 
  private:
   std::unique_ptr<Learner> inner_;

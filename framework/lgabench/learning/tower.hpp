@@ -30,6 +30,11 @@ class Tower {
   float* feature_gradients() { return convolutions_.back().gradients; }
   /// Leaves the gradients of the parameters of the last forward() in training, whose pictures are still there.
   void backward(const std::vector<const float*>& pictures);
+  /// What is learned beside the parameters.
+  void learned(Archive& archive) {
+    for (Convolution& c : convolutions_)
+      if (c.norm) c.norm->learned(archive);
+  }
 
  private:
   struct Convolution {

@@ -15,9 +15,10 @@ extern const std::vector<std::string> cell_phases;
 namespace cell_file {
 inline constexpr const char *configuration = "cell.json", *selections = "selection.json", *training = "training.jsonl",
                             *episodes = "episodes.jsonl", *timing = "timing.json",
-                            *shown = "shown.json",  // may lack, like `files`: no checksum, no result depends on it
-                                *log = "log.txt",   // may hold anything: status.json has no checksum of it
-                                    *status = "status.json";  // written last
+                            *shown = "shown.json",       // may lack, like `files`: no checksum, no result depends on it
+                                *policy = "policy.bin",  // likewise, where a run keeps policies
+                                    *log = "log.txt",    // may hold anything: status.json has no checksum of it
+                                        *status = "status.json";  // written last
 }  // namespace cell_file
 /// All but the status.
 inline constexpr std::array cell_files{cell_file::configuration, cell_file::selections, cell_file::training,
@@ -51,17 +52,17 @@ inline constexpr std::array run_directories{"answers", report_file::figures, rep
 
 /// Expects a line of training.jsonl: epoch, steps, loss, and curves, whose values lie within 1e100 of 0, so that means
 /// over cells are finite. The line's writer and its readers ask here. @throws InputError
-void expect_training_line(const JsonReader& line);
+void expect_training_line(const JsonReader &line);
 
 /// 16 hexadecimal digits: the name of a cell's directory.
-bool is_cell_key(const std::string& text);
+bool is_cell_key(const std::string &text);
 
 /// run.json's "cells". @throws InputError where one of them is no key.
-std::vector<std::string> read_cell_keys(const JsonReader& run);
+std::vector<std::string> read_cell_keys(const JsonReader &run);
 
 /// Expects run directories to hold regular files and directories, and no symbolic link: neither beside run.json nor in
 /// cells/, answers/, figures/ and tables/. A cell's own entries are checked where the cell is read.
 /// @throws InputError naming the first other entry.
-void expect_plain_run(const fs::path& run);
+void expect_plain_run(const fs::path &run);
 
 }  // namespace lgabench

@@ -10,10 +10,11 @@ import importlib.util
 
 from lgabench._core import EngineError, engines, scenarios, version as __version__
 from lgabench.evaluation import Result, evaluate
-from lgabench.scenes import ActionSpace, Batch, Environment, Pool, Scenario, StepResult
+from lgabench.kept import Policy, load_policy
+from lgabench.scenes import ActionSpace, Batch, Environment, Pool, Scenario, Station, StepResult
 
-__all__ = ["ActionSpace", "Batch", "EngineError", "Environment", "Pool", "Result", "Scenario", "StepResult", "__version__",
-           "engines", "evaluate", "scenarios"]
+__all__ = ["ActionSpace", "Batch", "EngineError", "Environment", "Policy", "Pool", "Result", "Scenario", "Station", "StepResult",
+           "__version__", "engines", "evaluate", "load_policy", "scenarios"]
 
 if importlib.util.find_spec("gymnasium"):
     from lgabench import registration as _registration

@@ -1,0 +1,76 @@
+// What a learner learned, as bytes and back.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+
+/// Writes values one after another, or reads them in that order: one function of a class names its members to it and
+/// does both. Numbers are as this machine has them in memory. One thread.
+class Archive {
+ public:
+  /// Writes.
+  Archive() = default;
+  /// Reads these bytes.
+  explicit Archive(std::string bytes) : reads_(true), bytes_(std::move(bytes)) {}
+
+  bool reads() const { return reads_; }
+  /// What was written.
+  const std::string& bytes() const { return bytes_; }
+
+  /// @throws InputError where the bytes end before.
+  template <class T>
+  std::enable_if_t<std::is_trivially_copyable_v<T>> operator()(T& value) {
+    move(&value, sizeof value);
+  }
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    const std::uint64_t count = counted(values.size());
+    if (reads_) values.resize(static_cast<std::size_t>(count));
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      if (count > 0) move(values.data(), values.size() * sizeof(T));
+    } else {
+      for (T& value : values) (*this)(value);
+    }
+  }
+  void operator()(std::string& text) {
+    const std::uint64_t count = counted(text.size());
+    if (reads_) text.resize(static_cast<std::size_t>(count));
+    move(text.data(), text.size());
+  }
+  /// After the last value was read. @throws InputError for bytes that nothing was made of.
+  void expect_end() const {
+    if (reads_ && at_ != bytes_.size()) fail();
+  }
+  [[noreturn]] static void fail() { throw InputError("saved policy: not what this method saves"); }
+
+ private:
+  // A count that is read is no larger than what is left: nothing is made for bytes that are not there.
+  std::uint64_t counted(std::uint64_t count) {
+    (*this)(count);
+    if (reads_ && count > bytes_.size() - at_) fail();
+    return count;
+  }
+  void move(void* value, std::size_t size) {
+    if (!reads_) {
+      bytes_.append(static_cast<const char*>(value), size);
+      return;
+    }
+    if (size > bytes_.size() - at_) fail();
+    std::memcpy(value, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  bool reads_ = false;
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace lgabench
