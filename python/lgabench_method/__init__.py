@@ -192,7 +192,7 @@ class Services:
 
 class Policy(Protocol):
     """What was learned. It may also have reset(), called before each episode, and shown() -> Shown; and an attribute
-    seen_in_training, whether the last act() read, to the byte, an input that was learned from."""
+    seen_in_training, whether the last act() read, to the byte, an input that was learned from. `run --keep-policy` pickles it."""
 
     def act(self, observation: Observation, instruction: Instruction) -> numpy.typing.ArrayLike:
         """The one action of an episode: a number for each of layout["action"]["numbers"]."""

@@ -34,7 +34,7 @@ def _set(json):
     return FeatureSet(list(json["object_types"]), list(json["textures"]))
 
 
-def _set_json(value):
+def _set_json(value: FeatureSet) -> dict[str, list[str]]:
     return {"object_types": [str(name) for name in value.object_types], "textures": [str(name) for name in value.textures]}
 
 
@@ -49,10 +49,10 @@ def selection(json: Mapping[str, Any]) -> Selection:
                      json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
 
 
-def selection_json(value, what):
+def selection_json(value: Selection, what: str) -> dict[str, Any]:
     if not isinstance(value, Selection):
         raise TypeError(f"{what} {type(value).__name__}, expected a lgabench_method.Selection")
-    json = {"target": _set_json(value.target)}
+    json: dict[str, Any] = {"target": _set_json(value.target)}
     if value.second is not None:
         if value.second.role in ("", *SELECTION):
             raise ValueError(f"the second set has the role \"{value.second.role}\", expected the id of command.second")

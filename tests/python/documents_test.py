@@ -8,9 +8,12 @@ import subprocess
 import sys
 import unittest
 
+import numpy
+
 import lgabench
 from data_test import Case
-from scenes_test import FULL
+from lgabench.data import load_demonstrations
+from scenes_test import ENGINE, FULL
 
 SOURCE = pathlib.Path(__file__).parents[2]
 
@@ -46,6 +49,38 @@ class Page(Case):
         cells = json.loads((SOURCE / "examples/python/scenes.ipynb").read_text())["cells"]
         text = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
         self.python(f"import matplotlib; matplotlib.use('Agg')\n{text}\nassert .5 < result.success and success['oracle'] == 1")
+
+
+def installed(*packages):
+    """Whether a long test of other houses' packages can run."""
+    return FULL and all(map(importlib.util.find_spec, packages))
+
+
+class Examples(Case):
+    def setUp(self):
+        super().setUp()
+        sys.path.insert(0, str(SOURCE / "examples/python"))
+        self.call("demos", "heart", "--engine", ENGINE, "--layout", "cells", "--n", 12, "--out", "heart.hdf5")
+        self.file = self.dir / "heart.hdf5"
+
+    @unittest.skipUnless(installed("lerobot"), "not installed: lerobot, or no LGABENCH_FULL")
+    def test_lerobot_reads_what_its_writer_wrote(self):
+        import to_lerobot
+        from lerobot.datasets.lerobot_dataset import LeRobotDataset
+        to_lerobot.convert(self.file, self.dir / "written")
+        read = LeRobotDataset("lgabench/heart", root=self.dir / "written")
+        self.assertEqual(read.num_episodes, 12)
+        shown = load_demonstrations(self.file)
+        numpy.testing.assert_allclose(read[0]["action"], shown.action_space.from_metres(shown[0].steps[0].label), atol=1e-6)
+        self.assertEqual(read[0]["task"], shown[0].instruction.utterance)
+
+    @unittest.skipUnless(installed("robomimic", "torch"), "not installed: robomimic, or no LGABENCH_FULL")
+    def test_robomimic_trains(self):
+        import to_robomimic
+        scaled, trained = str(self.dir / "scaled.hdf5"), self.dir / "trained"
+        to_robomimic.scale(self.file, scaled)
+        to_robomimic.clone(scaled, str(trained), epochs=2)
+        self.assertTrue(any(path.is_file() for path in trained.rglob("*")))
 
 
 if __name__ == "__main__":

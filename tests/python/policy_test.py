@@ -106,6 +106,8 @@ class Policies(Case):
             self.assertEqual(*status)
             with self.assertRaisesRegex(RuntimeError, "policy.bin: not there; `lgabench run --keep-policy`"):
                 lgabench.load_policy(bare[name])
+        self.call("merge", "merged", "run")
+        self.assertTrue((self.dir / "merged/cells" / cell.name / "policy.bin").exists())
 
     def test_what_cannot_be_saved_is_said_in_the_log(self):
         cells = self.play("--methods", "mine.py:Mine+saved=false", "--keep-policy")
