@@ -2,7 +2,6 @@
 #pragma once
 #include <cstdint>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -30,6 +29,7 @@ class Archive {
   std::enable_if_t<std::is_trivially_copyable_v<T>> operator()(T& value) {
     move(&value, sizeof value);
   }
+  /// Their number, then each.
   template <class T>
   void operator()(std::vector<T>& values) {
     const std::uint64_t count = counted(values.size());
@@ -40,6 +40,7 @@ class Archive {
       for (T& value : values) (*this)(value);
     }
   }
+  /// Likewise.
   void operator()(std::string& text) {
     const std::uint64_t count = counted(text.size());
     if (reads_) text.resize(static_cast<std::size_t>(count));
@@ -49,6 +50,7 @@ class Archive {
   void expect_end() const {
     if (reads_ && at_ != bytes_.size()) fail();
   }
+  /// For values that were read and do not fit. @throws InputError
   [[noreturn]] static void fail() { throw InputError("saved policy: not what this method saves"); }
 
  private:
