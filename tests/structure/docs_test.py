@@ -152,9 +152,9 @@ class Pages(unittest.TestCase):
         for example in (SOURCE / "examples").glob("*/*.cpp"):
             if "LGABENCH_METHOD(" in example.read_text():
                 self.assertIn(f"`{example.stem}`", self.page)
-        in_python = (SOURCE / "docs/add-a-method-in-python.md").read_text()
+        methods, scripts = ((SOURCE / "docs" / page).read_text() for page in ("add-a-method-in-python.md", "python.md"))
         for example in (SOURCE / "examples/python").glob("*.py"):
-            self.assertIn(f"`examples/python/{example.name}`", in_python)
+            self.assertIn(f"`examples/python/{example.name}`", methods if "def select(" in example.read_text() else scripts)
 
 
 class Documents(unittest.TestCase):
