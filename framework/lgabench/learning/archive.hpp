@@ -1,7 +1,6 @@
 // What a learner learned, as bytes and back.
 #pragma once
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -60,15 +59,7 @@ class Archive {
     if (reads_ && count > bytes_.size() - at_) fail();
     return count;
   }
-  void move(void* value, std::size_t size) {
-    if (!reads_) {
-      bytes_.append(static_cast<const char*>(value), size);
-      return;
-    }
-    if (size > bytes_.size() - at_) fail();
-    std::memcpy(value, bytes_.data() + at_, size);
-    at_ += size;
-  }
+  void move(void* value, std::size_t size);
 
   bool reads_ = false;
   std::string bytes_;
