@@ -15,7 +15,7 @@ class Factorial : public lgabench::CloningMethod {
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
     true_masks_[command.utterance] = services.truth(command);
-    return lgabench::select_features(command, space, services.lm);
+    return lgabench::select_as_asked(command, space, services);
   }
 
  protected:
@@ -40,7 +40,7 @@ class Factorial : public lgabench::CloningMethod {
 LGABENCH_METHOD_ASKING("truth", "factorial", "0.1",
                        "LGA with the training scenes or the policy's input replaced, to tell their effects apart",
                        Factorial,
-                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS R"(,
+                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS R"(,
   "scenes": {"default": "selected", "values": ["selected", "truth"],
              "help": "training targets drawn from the language model's Selection, or from the true distribution",
              "source": "docs/protocol.md, section 4"},

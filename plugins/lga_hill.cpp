@@ -7,11 +7,11 @@ class LgaHill : public lgabench::CloningMethod {
  public:
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
-    return services.human.edit(command, lgabench::select_features(command, space, services.lm));
+    return services.human.edit(command, lgabench::select_as_asked(command, space, services));
   }
 };
 
 LGABENCH_METHOD_ASKING("edit", "lga_hill", "0.1",
                        "Behaviour cloning on a language model's goal mask that a person edited", LgaHill,
-                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_PICTURE_OPTION
-                       "," LGABENCH_MASK_OPTIONS "}")
+                       "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS
+                       "," LGABENCH_PICTURE_OPTION "," LGABENCH_MASK_OPTIONS "}")

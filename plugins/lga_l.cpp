@@ -9,7 +9,7 @@ class LgaL : public lgabench::CloningMethod {
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
     space_ = space;
-    return lgabench::select_features(command, space, services.lm);
+    return lgabench::select_as_asked(command, space, services);
   }
 
  protected:
@@ -26,7 +26,8 @@ class LgaL : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga_l", "0.1", "Behaviour cloning on the picture and a language model's Selection in words", LgaL,
-                "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_NO_MASK_OPTIONS R"(,
+                "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS
+                "," LGABENCH_NO_MASK_OPTIONS R"(,
   "image": {"default": "rgb", "values": ["rgb", "none"], "help": "what the policy sees beside the words",
             "needs": {"none": {"policy": ["regression"]}},
             "source": "rgb: the authors' older notebook, where these bars are named GCBC (lang abs.); none: paper, section 5, read to the letter"}})")

@@ -7,7 +7,7 @@ class LgaS : public lgabench::CloningMethod {
  public:
   lgabench::Selection select(const lgabench::Command& command, const lgabench::FeatureSpace& space,
                              lgabench::Services& services) override {
-    return lgabench::select_features(command, space, services.lm);
+    return lgabench::select_as_asked(command, space, services);
   }
 
  protected:
@@ -18,4 +18,5 @@ class LgaS : public lgabench::CloningMethod {
 };
 
 LGABENCH_METHOD("lga_s", "0.1", "Behaviour cloning on a language model's goal mask and the picture", LgaS,
-                "{" LGABENCH_QUESTIONNAIRE LGABENCH_CLONING_OPTIONS "," LGABENCH_MASK_OPTIONS "}")
+                "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS
+                "," LGABENCH_MASK_OPTIONS "}")

@@ -43,17 +43,18 @@ struct Bench {
   std::unique_ptr<Environment> environment;
 };
 
-inline Bench make_bench(const std::string& space = "tabletop") {
+inline Bench make_bench(const std::string& space = "tabletop", int bodies = most_bodies) {
   auto world = std::make_unique<WatchedWorld>(make_engine());
   WatchedWorld* const watched = world.get();
-  return {watched, make_environment(std::move(world), load_feature_space(space))};
+  return {watched, make_environment(std::move(world), load_feature_space(space), bodies)};
 }
 
 /// One for all tests, as loading the object types takes its time.
-inline Bench& bench(const std::string& space = "tabletop") {
-  static std::map<std::string, Bench> shared;
-  const auto found = shared.find(space);
-  return found != shared.end() ? found->second : shared.emplace(space, make_bench(space)).first->second;
+inline Bench& bench(const std::string& space = "tabletop", int bodies = most_bodies) {
+  static std::map<std::pair<std::string, int>, Bench> shared;
+  const auto found = shared.find({space, bodies});
+  if (found != shared.end()) return found->second;
+  return shared.emplace(std::pair(space, bodies), make_bench(space, bodies)).first->second;
 }
 inline Environment& environment() { return *bench().environment; }
 

@@ -27,6 +27,11 @@ FIGURES = {
               ("SEG, distractor", "q2: other", "GCBC-SEG", 3)],
     "errors": [("missing, one other", "What an error", "missing 0.2", 1), ("missing, six near", "What an error", "missing 0.2", 5),
                ("added, one other", "What an error", "added 0.2", 1), ("added, six near", "What an error", "added 0.2", 5)],
+    "commands": [("LGA, heard", "many_commands: ", "LGA", 5), ("LGA, new", "many_commands: ", "LGA", 6),
+                 ("SEG, heard", "many_commands: ", "GCBC-SEG", 5), ("SEG, new", "many_commands: ", "GCBC-SEG", 6),
+                 ("random object", "many_commands: ", "*random", 6)],
+    "words": [("a feature each", "words: ", "**all**", 2), ("one meaning", "words: ", "**all**", 3),
+              ("names alone", "words: ", "**all**", 4)],
 }
 
 

@@ -18,7 +18,7 @@ std::vector<std::string> read_missing(const JsonReader& list, const std::vector<
     };
     if (!has(space)) name.fail("a name of the feature space");
     for (const ScenarioCommand& command : scenario.commands)
-      if (has(command.truth.target.*meant))
+      if (has(command.truth.target.product().*meant))
         name.fail(fmt::format("a name outside of what \"{}\" means", command.utterance));
   }
   return names;

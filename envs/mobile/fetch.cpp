@@ -148,9 +148,9 @@ Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int in
   if (!meant.second)
     throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a second set", scenario.id));
 
-  const Features target = sample_one(scenario, natural_objects(), meant.target, "target", stream("target"));
+  const Features target = sample_one(scenario, natural_objects(), meant.target.product(), "target", stream("target"));
   const Features goal = sample_one(scenario, natural_receivers(), *meant.second, receiver, stream(receiver));
-  const std::vector<Features> may_be = wrong(natural_objects(), truth.target, meant.target),
+  const std::vector<Features> may_be = wrong(natural_objects(), truth.target.product(), meant.target.product()),
                               may_receive = wrong(natural_receivers(), *truth.second, *meant.second);
   RandomStream random = stream("distractors"), of_receivers = stream("receivers");
   for (const auto& [some, whom] : {std::pair{&may_be, "object"}, std::pair{&may_receive, receiver}})
@@ -161,7 +161,7 @@ Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int in
   const int count = fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<Features> others, receivers;
   if (content.near_miss) {
-    others = near_others(may_be, target, truth.target, *content.near_miss, count, random);
+    others = near_others(may_be, target, truth.target.product(), *content.near_miss, count, random);
     receivers = near_receivers(may_receive, goal, of_receivers);
   } else {
     others = uniform_others(may_be, count, random);

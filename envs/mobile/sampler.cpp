@@ -142,7 +142,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   if (request.layout != layout) throw InputError(fmt::format("layout \"{}\": expected {}", request.layout, layout));
   Scene scene = without_objects(scenario, request, index);
   const auto command = static_cast<std::size_t>(scene.command);
-  const FeatureSet& truth = scenario.commands[command].truth.target;
+  const FeatureSet& truth = scenario.commands[command].truth.target.product();
   const Content& content = content_of(scenario, request.arm);
   const bool asked = request.arm == "train" && scenario.as_method_asks && !request.selections.empty();
   const Streams stream = streams_of(scenario, request, index);
@@ -153,8 +153,8 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
     first = First{target->object_type, target->position_m};
   }
 
-  scene.objects = {
-      sample_target(scenario, asked ? request.selections.at(command).target : truth, first, stream("target"))};
+  scene.objects = {sample_target(scenario, asked ? request.selections.at(command).target.product() : truth, first,
+                                 stream("target"))};
   for (SceneObject& other : sample_others(content, truth, scenario.space, stream("distractors")))
     scene.objects.push_back(std::move(other));
   place(content, first, scene.objects, stream);

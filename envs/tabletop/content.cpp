@@ -47,7 +47,7 @@ void read_members(const JsonReader& scenes, const JsonReader& file, const Scenar
   }
   const long long count = training ? content.members : file.at("train").at("members").integer(1, most);
   for (const ScenarioCommand& command : scenario.commands) {
-    const FeatureSet& meant = command.truth.target;
+    const FeatureSet& meant = command.truth.target.product();
     const auto all = static_cast<long long>(meant.object_types.size() * meant.textures.size());
     if (count > all || (content.members_tested == "new" && count == all))
       (training ? members : file.at("train").at("members"))
@@ -75,6 +75,43 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
   if (reader.has("choice")) read_choice(reader, scenario.second ? scenario.second->id : "", space, content);
 }
 
+std::vector<FeatureSet> read_sets(const JsonReader& reader, const FeatureSpace& space) {
+  std::vector<FeatureSet> sets;
+  for (const JsonReader& set : reader.elements()) sets.push_back(read_feature_set(set, space));
+  if (sets.empty()) reader.fail("at least one set");
+  return sets;
+}
+
+// What a careless reading keeps, and which scenes show it.
+void read_meant(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training,
+                Content& content) {
+  const Meaning& truth = scenario.commands.front().truth.target;
+  content.by_meaning = !truth.is_product() || file.has("near_miss_sets");
+  if (!content.by_meaning) {
+    for (const char* member : {"words", "undecided"})
+      if (file.has(member)) file.at(member).fail("\"near_miss_sets\" beside it");
+    if (scenes && scenes->has("misleading")) scenes->at("misleading").fail("\"near_miss_sets\" in the scenario");
+    return;
+  }
+  if (file.has("words")) content.words = read_meaning(file.at("words"), scenario.space);
+  if (file.has("undecided")) content.undecided = read_sets(file.at("undecided"), scenario.space);
+  if (file.has("near_miss_sets")) content.near_miss_sets = read_sets(file.at("near_miss_sets"), scenario.space);
+  if (find_task(scenario.task).most_distractors() < content.others())
+    file.at("task").fail("pick_and_place, whose scenes have room for what such a meaning needs");
+  if (scenario.as_method_asks) file.fail("\"as_method_asks\": false in \"train\", beside such a meaning");
+  for (const ScenarioCommand& command : scenario.commands)
+    if (!(command.truth.target == truth)) file.at("commands").fail("commands of one meaning");
+  if (training) content.misleading = .5;
+  if (!scenes) return;
+  for (const char* other :
+       {"target", "outside_all_commands", "hard", "near_miss", "members", "later_letters", "choice", "decoys"})
+    if (scenes->has(other)) scenes->at(other).fail("no such member beside such a meaning");
+  if (scenes->has("misleading")) {
+    content.misleading = scenes->at("misleading").number();
+    if (!(content.misleading >= 0 && content.misleading <= 1)) scenes->at("misleading").fail("a share from 0 to 1");
+  }
+}
+
 }  // namespace
 
 const Content& content_of(const SceneContent& scenes) { return dynamic_cast<const Content&>(scenes); }
@@ -84,15 +121,15 @@ const Content& content_of(const Scenario& scenario, const std::string& arm) {
 }
 
 std::vector<std::string> scenario_members(const Task& task) {
-  std::vector<std::string> names{"never_distractor", "decoys"};
+  std::vector<std::string> names{"never_distractor", "decoys", "words", "undecided", "near_miss_sets"};
   append(names, task.scenario_members());
   return names;
 }
 
 std::vector<std::string> scene_members(const Task& task) {
-  std::vector<std::string> names{"target",        "distractors", "outside_all_commands",
-                                 "hard",          "near_miss",   "members",
-                                 "later_letters", "choice",      "decoys"};
+  std::vector<std::string> names{"target",    "distractors", "outside_all_commands", "hard",
+                                 "near_miss", "members",     "later_letters",        "choice",
+                                 "decoys",    "misleading"};
   if (const auto second = task.second()) names.push_back(second->id);
   append(names, task.scene_members());
   return names;
@@ -107,6 +144,7 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
   if (file.has("decoys"))
     for (const JsonReader& set : file.at("decoys").elements()) decoys.push_back(read_feature_set(set, scenario.space));
   if (scenes) read_scenes(*scenes, scenario, content);
+  read_meant(scenario, file, scenes, training, content);
   if (scenes && scenes->has("decoys") && scenes->at("decoys").boolean()) {
     for (const char* other : {"hard", "later_letters", "near_miss"})
       if (scenes->has(other)) scenes->at(other).fail("no such member beside \"decoys\"");

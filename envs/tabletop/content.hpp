@@ -33,11 +33,19 @@ struct Content : SceneContent {
   std::vector<std::string> choice;
   /// Others are of these sets, each of another one as far as they go: what further commands mean. Empty: of any.
   std::vector<FeatureSet> decoys;
+  /// A scenario whose meaning is more than one product, or that says what a careless reading keeps: meant_objects().
+  bool by_meaning = false;
+  std::optional<Meaning> words;       // what the command's words alone hold, where that is more than what is meant
+  std::vector<FeatureSet> undecided;  // readers differ on these: never drawn
+  std::vector<FeatureSet> near_miss_sets;
+  double misleading = 1;  // share of the scenes in which a near miss, or a second object that belongs, stands
   std::optional<FeatureSet> never_distractor;          // test distractors stay out of it, beyond the true distribution
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 
   /// More stand there than always fit: wide types are left out, and what finds no room is drawn again.
-  bool crowded() const { return distractors.second > 2; }
+  bool crowded() const { return others() > 2; }
+  /// How many stand beside the target at most.
+  int others() const { return distractors.second + (by_meaning ? 3 : 0); }
   double widest_m() const { return crowded() ? .18 : std::numeric_limits<double>::infinity(); }
 };
 

@@ -28,7 +28,8 @@ Failure judge(const Scene& scene, const std::vector<Pose>& poses, const Motion& 
     if (&f.object == taken) of_taken = word;
   }
   if (!taken) return failure::missed_object;
-  return taken->role == role::target ? of_taken : Failure(failure::wrong_object);
+  if (taken->role == role::target) return of_taken;
+  return taken->role == role::not_meant ? failure::not_meant : failure::wrong_object;
 }
 
 }  // namespace lgabench::tabletop

@@ -16,7 +16,13 @@
 namespace lgabench::tabletop {
 
 /// What things are brought to: fixed to the table, and never anything else in a scene.
-constexpr const char* goal_type = "pallet";
+constexpr const char *goal_type = "pallet", *goal_texture = "wooden";
+
+namespace role {
+using namespace lgabench::role;
+/// An object that belongs to what a command says, and is not the one that it means.
+inline constexpr const char* not_meant = "not_meant";
+}  // namespace role
 
 /// Where objects of a task may stand (docs/protocol.md, section 3). Without places: anywhere, at any yaw.
 struct Layout {

@@ -6,13 +6,12 @@
 
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
+#include <tabletop/meant.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
 namespace {
-
-constexpr const char* goal_texture = "wooden";
 
 // A second pallet would be a second goal.
 bool can_show(const std::string& type, double widest_m) {
@@ -112,7 +111,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   const Content& content = request.content;
   std::vector<const FeatureSet*> excluded;
   const auto exclude = [&excluded](const Selection& meant) {
-    excluded.push_back(&meant.target);
+    for (const FeatureSet& set : meant.target.sets) excluded.push_back(&set);
     if (meant.second) excluded.push_back(&*meant.second);
   };
   exclude(request.meant);
@@ -142,7 +141,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
       fewest == most ? most : fewest + static_cast<int>(random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   std::vector<Features> distractors;
   if (content.near_miss) {
-    NearMissRequest near{request.meant.target, target, {}, space.textures, *content.near_miss, {}};
+    NearMissRequest near{request.meant.target.product(), target, {}, space.textures, *content.near_miss, {}};
     for (std::size_t type = 0; type < allowed.size(); ++type)
       if (allowed[type]) near.types.push_back(space.object_types[type]);
     near.may_be = [&excluded](const Features& one) {
@@ -175,7 +174,7 @@ std::vector<SceneObject> sample_choice(const Request& request, RandomStream rand
   const auto second = request.task.second();
   if (second && !request.meant.second)
     throw NothingToShow(fmt::format("scenario \"{}\": expected a distribution with a second set", request.scenario.id));
-  const FeatureSet& right = second ? *request.meant.second : request.meant.target;
+  const FeatureSet& right = second ? *request.meant.second : request.meant.target.product();
   const Role if_right = second ? second->in_scenes : role::target;
   std::vector<SceneObject> objects;
   for (const int i : random.permutation(static_cast<int>(request.content.choice.size()))) {
@@ -206,7 +205,7 @@ std::vector<SceneObject> sample_objects(const Request& request, const Streams& s
   if (by_choice && !second) return sample_choice(request, stream("choice"));
 
   const Features target =
-      members.empty() ? sample_features(scenario, layout, content.target.value_or(meant.target),
+      members.empty() ? sample_features(scenario, layout, content.target.value_or(meant.target.product()),
                                         std::min(request.widest_m(), layout.widest_target_m), "a target", draws.targets)
                       : members[draws.targets.below(static_cast<std::uint32_t>(members.size()))];
   std::vector<SceneObject> objects{{target.type, target.texture, role::target, {}, 0, 0}};
@@ -279,9 +278,9 @@ std::vector<Features> members_of(const Scenario& scenario, const std::string& la
   for (const Arm& arm : scenario.tests) widest_m = std::min(widest_m, content_of(*arm.scenes).widest_m());
   const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
   std::vector<Features> all, drawn;
-  for (const std::string& type : truth.target.object_types)
+  for (const std::string& type : truth.target.product().object_types)
     if (can_show(type, widest_m))
-      for (const std::string& texture : truth.target.textures) all.push_back({type, texture});
+      for (const std::string& texture : truth.target.product().textures) all.push_back({type, texture});
   RandomStream random(fmt::format("members/{}/{}/{}", utterance, layout_id, training_seed));
   for (const int i : random.permutation(static_cast<int>(all.size())))
     drawn.push_back(all[static_cast<std::size_t>(i)]);
@@ -306,7 +305,8 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   const Streams stream = streams_of(scenario, request, index);
 
   set_asked_turn(scene, task.turn_rad(content));
-  scene.objects = placed_objects(what, stream);
+  scene.objects = content.by_meaning ? meant_objects(scenario, task, layout, content, what.meant.target, stream)
+                                     : placed_objects(what, stream);
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;

@@ -107,7 +107,8 @@ class Tabletop final : public Environment {
 int bodies_of(const Scenario& scenario) {
   int bodies = most_bodies;
   const auto hold = [&bodies](const SceneContent& scenes) {
-    bodies = std::max(bodies, content_of(scenes).distractors.second + 2);  // with target and goal
+    const Content& content = content_of(scenes);
+    bodies = std::max(bodies, content.others() + 2);  // with target and goal
   };
   hold(*scenario.train);
   for (const Arm& arm : scenario.tests) hold(*arm.scenes);
@@ -128,6 +129,7 @@ class TabletopType final : public EnvironmentType {
       tasks_.push_back(std::move(info));
     }
     failures_.emplace_back(failure::left_workspace);
+    failures_.emplace_back(failure::not_meant);
   }
 
   const std::string& id() const override { return id_; }
@@ -162,10 +164,7 @@ class TabletopType final : public EnvironmentType {
       distance.turn_rad = std::abs(std::remainder(yaw_of(a.pose1.rotation) - yaw_of(b.pose1.rotation), 2 * pi));
     return distance;
   }
-  Observation draw(const Scene& scene) const override {
-    static Renderer& renderer = *new Renderer();
-    return renderer.render(visible_objects(scene), find_task(scene.task).ground());
-  }
+  Observation draw(const Scene& scene) const override { return drawn(scene); }
   Json shown_members(const Scenario& scenario, const SceneRequest& request) const override {
     const int shown = content_of(*scenario.train).members;
     if (shown == 0) return nullptr;
@@ -179,6 +178,13 @@ class TabletopType final : public EnvironmentType {
       commands.push_back(std::move(pairs));
     }
     return commands;
+  }
+  // Fixed places cannot show where things lie beside each other.
+  std::vector<std::string> layouts_of(const Scenario& scenario) const override {
+    std::vector<std::string> ids;
+    for (const Layout& layout : find_task(scenario.task).layouts())
+      if (!content_of(*scenario.train).by_meaning || layout.target_places.empty()) ids.push_back(layout.id);
+    return ids;
   }
   std::string goal_type() const override { return tabletop::goal_type; }
   std::string world_of(const Scenario& scenario) const override {

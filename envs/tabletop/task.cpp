@@ -40,6 +40,11 @@ const Task& find_task(const std::string& id) {
   return *named("task", tasks(), id, [](const Task* task) { return task->id(); });
 }
 
+Observation drawn(const Scene& scene) {
+  static thread_local Renderer renderer;
+  return renderer.render(visible_objects(scene), find_task(scene.task).ground());
+}
+
 Layout find_layout(const Task& task, const std::string& id) {
   return named(fmt::format("layout of {}", task.id()).c_str(), task.layouts(), id,
                [](const Layout& layout) { return layout.id; });

@@ -76,6 +76,8 @@ class Task {
 const std::vector<const Task*>& tasks();
 /// @throws InputError that lists the known ones.
 const Task& find_task(const std::string& id);
+/// The scene before any action, drawn by a renderer of the calling thread's own.
+Observation drawn(const Scene& scene);
 /// The task's layout of that name. @throws InputError that lists its layouts.
 Layout find_layout(const Task& task, const std::string& id);
 

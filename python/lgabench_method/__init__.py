@@ -17,6 +17,7 @@ Needs NumPy alone. One thread; the same seed must give the same bytes.
 """
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, Optional, Protocol, Union
@@ -25,12 +26,13 @@ import numpy
 import numpy.typing
 
 __all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Instance", "Instruction", "LanguageModel",
-           "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet", "Selection", "Services", "Shown",
-           "Step", "TrainingLog", "goal_mask", "select_features"]
+           "Meaning", "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet", "Selection", "Services",
+           "Shown", "Step", "TrainingLog", "Which", "goal_mask", "grounded", "select_features", "select_meaning"]
 
 Bytes = numpy.typing.NDArray[numpy.uint8]
 Numbers = numpy.typing.NDArray[numpy.float64]
 Picture = Union[tuple[str, numpy.typing.ArrayLike], tuple[str, numpy.typing.ArrayLike, str]]
+PLACE = "pallet"  # the object type of the place that things are brought to: never what a rule means
 Question = tuple[str, str, str]  # about "target" or SecondRole.id, group "object_type" or "texture", candidate
 
 
@@ -78,20 +80,61 @@ class SecondSet(FeatureSet):
 
 
 @dataclass
+class Which:
+    """Which one is meant of several visible objects that belong to a meaning.
+
+    `rule` is left_of, right_of, nearest_to, farthest_from (with `of`, the reference), leftmost, rightmost, or first_in (with
+    `order`: object types, or textures).
+    """
+    rule: str
+    of: Optional[FeatureSet] = None
+    order: list[str] = field(default_factory=list)
+
+
+@dataclass
+class Meaning:
+    """A union of products of object types and textures and, where the words say so, which of several that belong."""
+    sets: list[FeatureSet]
+    which: Optional[Which] = None
+
+    def belongs(self, object_type: str, texture: str) -> bool:
+        """The object is in any of the sets."""
+        return any(one.contains(object_type, texture) for one in self.sets)
+
+
+@dataclass(init=False)
 class Selection:
     """Which features matter (paper, section 3.1). `second` describes the task's second set; None where it has none.
 
-    `provenance`, `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
+    `meaning` is all that the target is; `target` is its one product, and raises where there is more to it. `provenance`,
+    `source` and `asked_as` are lgabench's, by what was asked; what a method writes there is not read.
     """
-    target: FeatureSet = field(default_factory=FeatureSet)
-    second: Optional[SecondSet] = None
-    provenance: str = "none"
-    source: str = ""
-    asked_as: str = ""
+    meaning: Meaning
+    second: Optional[SecondSet]
+    provenance: str
+    source: str
+    asked_as: str
 
-    def keeps(self, object_type: str, texture: str) -> bool:
-        """The object is kept in the goal mask."""
-        return (self.target.contains(object_type, texture)
+    def __init__(self, target: Optional[FeatureSet] = None, second: Optional[SecondSet] = None, provenance: str = "none",
+                 source: str = "", asked_as: str = "", *, meaning: Optional[Meaning] = None) -> None:
+        if target is not None and meaning is not None:
+            raise TypeError("Selection: expected target or meaning, not both")
+        self.meaning = meaning or Meaning([target or FeatureSet()])
+        self.second, self.provenance, self.source, self.asked_as = second, provenance, source, asked_as
+
+    @property
+    def target(self) -> FeatureSet:
+        if len(self.meaning.sets) != 1 or self.meaning.which:
+            raise ValueError("Selection.target: the meaning is more than one product; read Selection.meaning, or grounded()")
+        return self.meaning.sets[0]
+
+    @target.setter
+    def target(self, product: FeatureSet) -> None:
+        self.meaning = Meaning([product])
+
+    def belongs(self, object_type: str, texture: str) -> bool:
+        """The object's features are among those that target or second set name; grounded() says which one is meant."""
+        return (self.meaning.belongs(object_type, texture)
                 or (self.second is not None and self.second.contains(object_type, texture)))
 
 
@@ -159,6 +202,9 @@ class LanguageModel(Protocol):
     def answer(self, command: Command, space: FeatureSpace, questions: Sequence[Question]) -> list[bool]:
         """In order of the questions. Raises Refused."""
 
+    def mean(self, command: Command, space: FeatureSpace) -> Meaning:
+        """What the command means, in one answer; empty where the model gave no meaning that can be read. Raises Refused."""
+
 
 class HumanAnswers(Protocol):
     """A person's answers, for methods that declare that they ask people; for others every call raises Refused."""
@@ -225,7 +271,48 @@ def select_features(command: Command, space: FeatureSpace, lm: LanguageModel) ->
     return selection
 
 
+def select_meaning(command: Command, space: FeatureSpace, lm: LanguageModel) -> Selection:
+    """Asks what the command means, in one question; of the task's second set, where it has one, as select_features()."""
+    second = select_features(command, space, lm).second if command.second else None
+    return Selection(second=second, meaning=lm.mean(command, space))
+
+
+def grounded(meaning: Meaning, observation: Observation) -> list[int]:
+    """Ids of the visible instances that are meant, as lgabench::grounded() of core/meaning.hpp finds them."""
+    visible = [one for one in observation.instances if one.pixels > 0]
+    which = meaning.which
+    if which is None:
+        return [one.id for one in visible if meaning.belongs(one.object_type, one.texture)]
+    centres = {}
+    for one in visible:
+        rows, columns = numpy.nonzero(observation.ids == one.id)
+        centres[one.id] = (rows.mean(), columns.mean())
+    references = [one for one in visible if which.of is not None and which.of.contains(one.object_type, one.texture)]
+    if which.rule in ("left_of", "right_of", "nearest_to", "farthest_from") and not references:
+        return []
+    by_texture = (sum(any(name in one.textures for one in meaning.sets) for name in which.order)
+                  > sum(any(name in one.object_types for one in meaning.sets) for name in which.order))
+    numbers = {}
+    for one in visible:
+        if not meaning.belongs(one.object_type, one.texture) or one in references or one.object_type == PLACE:
+            continue
+        row, column = centres[one.id]
+        if which.rule in ("leftmost", "rightmost"):
+            numbers[one.id] = column if which.rule == "leftmost" else -column
+        elif which.rule == "first_in":
+            name = one.texture if by_texture else one.object_type
+            numbers[one.id] = which.order.index(name) if name in which.order else len(which.order)
+        else:
+            distance, reference_column = min((math.hypot(row - r, column - c), c) for r, c in (centres[it.id] for it in references))
+            if (which.rule == "left_of" and column >= reference_column) or (which.rule == "right_of" and column <= reference_column):
+                continue
+            numbers[one.id] = -distance if which.rule == "farthest_from" else distance
+    return [id for id, number in numbers.items() if number <= min(numbers.values()) + .5]
+
+
 def goal_mask(observation: Observation, selection: Selection) -> Bytes:
-    """rows x columns of 0 and 1: 1 on every object that the Selection keeps (paper, section 3.1)."""
-    kept = [one.id for one in observation.instances if one.pixels > 0 and selection.keeps(one.object_type, one.texture)]
+    """rows x columns of 0 and 1: 1 on every object that is meant, as target or second set (paper, section 3.1)."""
+    kept = grounded(selection.meaning, observation)
+    if selection.second is not None:
+        kept += [one.id for one in observation.instances if selection.second.contains(one.object_type, one.texture)]
     return numpy.isin(observation.ids, kept).astype(numpy.uint8)

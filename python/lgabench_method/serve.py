@@ -44,6 +44,11 @@ class _Model(_Worker):
                           "questions": [dict(zip(("about", "group", "candidate"), one)) for one in questions]}, "answers")
         return reply["answers"]
 
+    def mean(self, command, space):
+        reply = self.ask({"type": "ask", "how": "meaning", "command": values.command_json(command),
+                          "space": values.space_json(space)}, "meaning")
+        return values.meaning(reply["meaning"])
+
 
 class _Human(_Worker):
     def specify(self, command):

@@ -18,7 +18,7 @@ from typing import Any, Union
 
 import lgabench
 from lgabench.scenes import as_scenario
-from lgabench_method import (Command, Demonstration, FeatureSpace, Instruction, Method, Observation, Question, Refused, Selection,
+from lgabench_method import (Command, Demonstration, FeatureSpace, Instruction, Meaning, Method, Observation, Question, Refused, Selection,
                              Services, Step)
 
 Scenario = Union[str, lgabench.Scenario]
@@ -36,9 +36,13 @@ class TrueAnswers:
         self.asked += len(questions)
         answers = []
         for about, group, candidate in questions:
-            features = truth.target if about == "target" or truth.second is None else truth.second
-            answers.append(candidate in (features.object_types if group == "object_type" else features.textures))
+            sets = truth.meaning.sets if about == "target" or truth.second is None else [truth.second]
+            answers.append(any(candidate in (one.object_types if group == "object_type" else one.textures) for one in sets))
         return answers
+
+    def mean(self, command: Command, space: FeatureSpace) -> Meaning:
+        self.asked += 1
+        return self.scenario.truth(self.scenario.commands.index(command.utterance)).meaning
 
 
 class NoPeople:

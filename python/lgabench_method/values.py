@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy
 
-from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Needs, Observation,
-                             SecondRole, SecondSet, Selection, Shown, Step)
+from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Meaning, Needs,
+                             Observation, SecondRole, SecondSet, Selection, Shown, Step, Which)
 
 
 def command(json):
@@ -38,21 +38,42 @@ def _set_json(value: FeatureSet) -> dict[str, list[str]]:
     return {"object_types": [str(name) for name in value.object_types], "textures": [str(name) for name in value.textures]}
 
 
+def meaning(json):
+    if "sets" not in json:
+        return Meaning([_set(json)])
+    which = json.get("which")
+    return Meaning([_set(one) for one in json["sets"]],
+                   which and Which(which["rule"], _set(which["of"]) if "of" in which else None, list(which.get("order", []))))
+
+
+def _meaning_json(value):
+    if len(value.sets) == 1 and value.which is None:
+        return _set_json(value.sets[0])
+    json = {"sets": [_set_json(one) for one in value.sets]}
+    if value.which is not None:
+        json["which"] = {"rule": value.which.rule}
+        if value.which.of is not None:
+            json["which"]["of"] = _set_json(value.which.of)
+        if value.which.order:
+            json["which"]["order"] = [str(name) for name in value.which.order]
+    return json
+
+
 SELECTION = ("target", "provenance", "source", "asked_as")  # its members beside the second set, which is named by its role
 
 
 def selection(json: Mapping[str, Any]) -> Selection:
     roles = [name for name in json if name not in SELECTION]
     second = json[roles[0]] if roles else None
-    return Selection(_set(json["target"]),
+    return Selection(None,
                      SecondSet(list(second["object_types"]), list(second["textures"]), roles[0]) if roles else None,
-                     json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""))
+                     json.get("provenance", "none"), json.get("source", ""), json.get("asked_as", ""), meaning=meaning(json["target"]))
 
 
 def selection_json(value: Selection, what: str) -> dict[str, Any]:
     if not isinstance(value, Selection):
         raise TypeError(f"{what} {type(value).__name__}, expected a lgabench_method.Selection")
-    json: dict[str, Any] = {"target": _set_json(value.target)}
+    json: dict[str, Any] = {"target": _meaning_json(value.meaning)}
     if value.second is not None:
         if value.second.role in ("", *SELECTION):
             raise ValueError(f"the second set has the role \"{value.second.role}\", expected the id of command.second")

@@ -280,8 +280,8 @@ std::string probe(const std::string& how, const std::string& path, const Command
   if (how == "tree") return leave_a_tree(services.files);
   if (how == "shared_memory") return share_memory(std::size_t{2} << 30);
   if (const auto one = system_calls.find(how); one != system_calls.end()) return outcome(one->second(path));
-  if (how == "human") return services.human.specify(command).target.object_types.at(0);
-  if (how == "truth") return services.truth(command).target.object_types.at(0);
+  if (how == "human") return services.human.specify(command).target.product().object_types.at(0);
+  if (how == "truth") return services.truth(command).target.product().object_types.at(0);
   return "no such way";
 }
 

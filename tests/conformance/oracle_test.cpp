@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <tabletop/content.hpp>
 #include <tabletop/judge.hpp>
 #include <tabletop/oracle.hpp>
@@ -23,7 +25,7 @@ std::vector<Case> all_cases() {
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id);
     if (scenario.environment != "tabletop") continue;
-    for (const std::string& layout : find_task(find_environment("tabletop"), scenario.task).layouts)
+    for (const std::string& layout : layouts_of(scenario))
       if (id != "q3_food" || layout != "released") cases.push_back({id, layout});  // whose pan is refused there
   }
   return cases;
@@ -35,7 +37,8 @@ class Oracle : public testing::TestWithParam<Case> {};
 // a utensil which it pushes along may still creep at the limit in steps, a block that turns may brush a neighbour.
 TEST_P(Oracle, Succeeds) {
   const Scenario scenario = load_scenario(GetParam().scenario);
-  const Bench& world = bench(scenario.space.id);
+  const int others = content_of(*scenario.train).others();  // target and goal are two more
+  const Bench& world = bench(scenario.space.id, std::max(most_bodies, others + 2));
   const int scenes = amount(50, 500, "LGABENCH_SCENES");
   std::vector<std::string> arms{"train"};
   for (const Arm& arm : scenario.tests) arms.push_back(arm.id);

@@ -36,9 +36,9 @@ class Curious : public Method {
     for (const std::string& type : space.object_types) questions.push_back({{}, {}, type});
     const std::vector<bool> answers = services.lm.answer(command, space, questions);
     Selection selection = services.human.edit(command, services.human.specify(command));
-    selection.target.textures = services.truth(command).target.textures;
+    selection.target.product().textures = services.truth(command).target.product().textures;
     for (std::size_t i = 0; i < std::min(answers.size(), questions.size()); ++i)
-      if (answers[i]) selection.target.object_types.push_back(questions[i].candidate);
+      if (answers[i]) selection.target.product().object_types.push_back(questions[i].candidate);
     selection.source = services.lm.model() + services.lm.asked_as(command);
     selection.cost = services.lm.cost();
     return selection;

@@ -285,7 +285,7 @@ TEST_F(Chat, AReplyWithoutAnAnswerIsAskedForAgain) {
   about_star = 0;
   Server late(evasive_until(2, true));
   const OpenAiOptions options = late.options();
-  EXPECT_EQ(ask(&options).target.object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(ask(&options).target.product().object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(late.requests, 3) << "about the star alone";
 }
 
@@ -401,7 +401,7 @@ TEST_F(Chat, AWholeReplyIsReadWhateverTheServerCallsIt) {
       });
       const OpenAiOptions options = server.options();
       const Selection selection = ask(&options);
-      EXPECT_EQ(selection.target.object_types, space.object_types) << choice;
+      EXPECT_EQ(selection.target.product().object_types, space.object_types) << choice;
       EXPECT_EQ(selection.cost.lm_tokens, usage.is_object() && usage["total_tokens"].is_number() ? 5 * 640 : 0);
     }
 }
@@ -740,6 +740,45 @@ TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {
               "Could the target object have the object type \"pan\"?");
   EXPECT_EQ(p.user.find("{group}"), std::string::npos);
   EXPECT_EQ(prompt.version().size(), 64u);
+}
+
+// What the server says to the question what the command means, by the number of its asking.
+TEST_F(Chat, AsksForAMeaningUntilItCanBeRead) {
+  const std::vector<std::string> replies{
+      "I am not sure.", R"(Final answer: {"sets": [{"object_types": ["hart"], "textures": "ALL"}]})",
+      "Final answer:\n```json\n{\"sets\": [{\"object_types\": [\"heart\"], \"textures\": "
+      "\"ALL\"}], \"which\": {\"rule\": \"leftmost\"}}\n```"};
+  Server server([&](int request, const httplib::Request&, httplib::Response& response) {
+    response.set_content(completion(replies[static_cast<std::size_t>(std::min(request, 3) - 1)]), "application/json");
+    return true;
+  });
+  const auto mean = [&](bool live) {
+    Cassette cassette(tape());
+    OpenAiClient client(server.options());
+    ChatLanguageModel model(cassette, live ? &client : nullptr, {"m"});
+    const Selection selection = select_meaning(command, space, model);
+    EXPECT_EQ(selection.cost.lm_queries, 3);
+    return selection.target;
+  };
+  const Meaning asked = mean(true);
+  ASSERT_TRUE(asked.which);
+  EXPECT_EQ(asked.which->rule, Which::Rule::leftmost);
+  EXPECT_EQ(server.requests, 3);
+  EXPECT_SAYS(server.bodies[2], "hart");
+  EXPECT_SAYS(server.bodies[2], "cannot be read");
+  EXPECT_EQ(mean(false), asked) << "from the cassette";
+}
+
+TEST_F(Chat, IsEmptyWhereNoMeaningCanBeRead) {
+  Server server([](int, const httplib::Request&, httplib::Response& response) {
+    response.set_content(completion("Final answer: the heart"), "application/json");
+    return true;
+  });
+  Cassette cassette(tape());
+  OpenAiClient client(server.options());
+  ChatLanguageModel model(cassette, &client, {"m"});
+  EXPECT_TRUE(select_meaning(command, space, model).empty());
+  EXPECT_EQ(server.requests, 3) << "asked again twice at most";
 }
 
 }  // namespace

@@ -255,10 +255,10 @@ std::string refusal(const Json& json) {
 TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
-  EXPECT_EQ(pick_and_place, 22);  // q1 has 9, clutter 6 more, many_commands 4, q2 two, q3 one
+  EXPECT_EQ(pick_and_place, 78);  // words has 56, q1 9, clutter 6 more, many_commands 4, q2 two, q3 one
   const Scenario s = load_scenario("heart");
-  EXPECT_EQ(s.commands[0].truth.target.object_types, std::vector<std::string>{"heart"});
-  EXPECT_EQ(s.commands[0].truth.target.textures.size(), 83u);  // ALL
+  EXPECT_EQ(s.commands[0].truth.target.product().object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(s.commands[0].truth.target.product().textures.size(), 83u);  // ALL
   EXPECT_EQ(s.commands[0].truth.provenance, Provenance::truth);
 }
 
@@ -274,7 +274,7 @@ TEST(Scenario, DemonstrationsCountForEachSeenCommand) {
 
 TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
   const auto textures = [](const char* id, Truth truth) {
-    return load_scenario(id, truth).commands[0].truth.target.textures.size();
+    return load_scenario(id, truth).commands[0].truth.target.product().textures.size();
   };
   const struct {
     const char* id;
@@ -318,9 +318,9 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "expected each name once");
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
-  EXPECT_SAYS(
-      refusal(json),
-      "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, gpt4_released, gpt4_study");
+  EXPECT_SAYS(refusal(json),
+              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, claude_words, "
+              "gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");

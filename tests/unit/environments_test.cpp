@@ -43,9 +43,10 @@ TEST(Environments, TasksNameTheirLayoutsSecondSetAndExample) {
 // The order of columns in summary.csv.
 TEST(Environments, FailureWordsKeepTheirOrder) {
   const Words words = failure_words();
-  EXPECT_EQ(words, (Words{"missed_object", "wrong_object", "blocked_way", "out_of_reach", "dropped_elsewhere",
-                          "moved_another", "wrong_receiver", "bad_placement", "bad_angle", "missed_zone",
-                          "touched_obstacle", "left_workspace", "truncated", "abstraction_empty", "method_error"}));
+  EXPECT_EQ(words,
+            (Words{"missed_object", "wrong_object", "blocked_way", "out_of_reach", "dropped_elsewhere", "moved_another",
+                   "wrong_receiver", "bad_placement", "bad_angle", "missed_zone", "touched_obstacle", "left_workspace",
+                   "not_meant", "truncated", "abstraction_empty", "method_error"}));
 }
 
 TEST(Environments, DrawWhatAnEpisodeBeginsWith) {

@@ -679,7 +679,7 @@ TEST(Policies, MayBeShownAPictureOfTheMethodsOwn) {
   PolicyInputs own{{Picture::rgb}};
   own.prepare = [&calls](const Observation& observation, const Selection& selection, Phase phase) {
     ++calls[phase];
-    EXPECT_EQ(selection.target.object_types, std::vector<std::string>{"heart"});
+    EXPECT_EQ(selection.target.product().object_types, std::vector<std::string>{"heart"});
     Observation shown = observation;
     for (std::uint8_t& byte : shown.rgb) byte = static_cast<std::uint8_t>(255 - byte);
     return shown;
@@ -902,8 +902,8 @@ TEST_P(ShippedMethods, SelectLearnAndActThroughThePlugin) {
   EXPECT_EQ(selection.cost.lm_queries, GetParam().queries);
   EXPECT_EQ(selection.provenance, GetParam().provenance);
   if (selection.provenance != Provenance::none) {
-    EXPECT_EQ(selection.target.object_types, std::vector<std::string>{"heart"});
-    EXPECT_EQ(selection.target.textures == scenario.commands[0].truth.target.textures,
+    EXPECT_EQ(selection.target.product().object_types, std::vector<std::string>{"heart"});
+    EXPECT_EQ(selection.target.product().textures == scenario.commands[0].truth.target.product().textures,
               selection.provenance == Provenance::truth)
         << "GPT-4's textures are not quite the true ones, and a simulated edit leaves them";
   }

@@ -70,7 +70,7 @@ TEST(FetchScenes, HoldOneRightObjectAndOneRightReceiver) {
         int right = 0, right_receivers = 0;
         for (const SceneObject& o : objects) {
           right += o.role == role::target;
-          EXPECT_EQ(truth.target.contains(o.object_type, o.texture), o.role == role::target);
+          EXPECT_EQ(truth.target.belongs(o.object_type, o.texture), o.role == role::target);
           EXPECT_TRUE(fetch_zone.contains(o.position_m));
           const auto& natural = natural_objects();
           EXPECT_NE(std::find(natural.begin(), natural.end(), Features{o.object_type, o.texture}), natural.end());
@@ -149,7 +149,7 @@ TEST(FetchNearMisses, AreLikeWhatTheCommandMeans) {
         if (any_texture) {
           EXPECT_EQ(o.texture, goal.texture) << id;
         }
-      const auto& types = scenario.commands[0].truth.target.object_types;
+      const auto& types = scenario.commands[0].truth.target.product().object_types;
       of_class += std::any_of(objects.begin(), objects.end(), [&](const SceneObject& o) {
         return o.role != role::target && std::count(types.begin(), types.end(), o.object_type) > 0;
       });

@@ -52,7 +52,7 @@ TEST(MobileScenes, AreThoseRecorded) {
 
 TEST_P(AScenario, HoldsWhatItsArmSays) {
   const Scenario& s = scenario(GetParam());
-  const FeatureSet& truth = s.commands[0].truth.target;
+  const FeatureSet& truth = s.commands[0].truth.target.product();
   for (const std::string& arm : arms) {
     const auto [fewest, most] = content_of(s, arm).distractors;
     std::set<std::size_t> counts;

@@ -114,7 +114,7 @@ TEST_F(ParticipantFile, StandsInForThePerson) {
   EXPECT_EQ(edited.target, (FeatureSet{{"heart"}, {"red", "dark red"}}));
   EXPECT_EQ(edited.cost.lm_queries, 112) << "the proposal's cost, too";
   EXPECT_EQ(edited.cost.human_seconds, 21);
-  proposal.target.textures = {"red", "dark red"};
+  proposal.target.product().textures = {"red", "dark red"};
   EXPECT_SAYS(message_of<InputError>([&] { human.edit(command, proposal); }),
               "participant made-up-01, \"Bring me the red heart.\": edited another proposal");
 

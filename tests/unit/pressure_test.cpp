@@ -66,7 +66,7 @@ TEST(NearMisses, ShareTypeOrTextureWithTheTargetAndAreNone) {
   const Suite suite = load_suite("clutter");
   for (const std::string& id : suite.design.scenarios) {
     const Scenario scenario = suite_scenario(suite, id, Truth::released);
-    const FeatureSet& meant = scenario.commands[0].truth.target;
+    const FeatureSet& meant = scenario.commands[0].truth.target.product();
     const bool both = meant.object_types.size() < scenario.space.object_types.size() &&
                       meant.textures.size() < scenario.space.textures.size();
     for (const auto& [arm, count] : {std::pair("near_1", 1), {"near_2", 2}, {"near_4", 4}, {"near_6", 6}})
@@ -321,7 +321,7 @@ TEST(ManyCommands, DecoysAreWhatOtherCommandsMeanAndVariantsHearTheFirstOnes) {
            {std::string("train"), fmt::format("seen_{}", variant), fmt::format("unseen_{}", variant)})
         for (int i = 0; i < scenes; ++i) {
           const Scene scene = scene_of(scenario, arm, i);
-          const FeatureSet& meant = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target;
+          const FeatureSet& meant = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target.product();
           const std::vector<SceneObject> decoys = others(scene);
           EXPECT_EQ(decoys.size(), arm == "train" ? 3u : 4u);
           for (const SceneObject& decoy : decoys) {

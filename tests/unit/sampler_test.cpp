@@ -57,7 +57,7 @@ const ScenarioCommand& command_of(const Scenario& s, const Scene& scene) {
 
 // The command, read with its true distribution: would this object be right beside that target?
 bool satisfies(const Scenario& s, const Scene& scene, const SceneObject& object, const SceneObject& target) {
-  if (!command_of(s, scene).truth.target.contains(object.object_type, object.texture)) return false;
+  if (!command_of(s, scene).truth.target.belongs(object.object_type, object.texture)) return false;
   return !content_of(s, scene).later_letters || object.object_type <= target.object_type;
 }
 
@@ -118,13 +118,13 @@ void check_roles(const Scenario& s, const Scene& scene) {
   const auto targets = of_role(scene, role::target), seconds = of_role(scene, second ? second->in_scenes : "none");
   std::size_t right = 0;  // of a choice
   for (const std::string& type : content.choice)
-    right += (second ? *command.truth.second : command.truth.target).contains(type, "red");
+    right += second ? command.truth.second->contains(type, "red") : command.truth.target.belongs(type, "red");
   ASSERT_EQ(targets.size(), content.choice.empty() || second ? 1u : right);
   ASSERT_EQ(seconds.size(), !second ? 0u : content.choice.empty() ? 1u : right);
   ASSERT_EQ(of_role(scene, role::goal).size(), s.task == "pick_and_place" ? 1u : 0u);
   const SceneObject* goal = scene.find(role::goal);
   for (const SceneObject* target : targets) {
-    ASSERT_TRUE(command.truth.target.contains(target->object_type, target->texture));
+    ASSERT_TRUE(command.truth.target.belongs(target->object_type, target->texture));
     ASSERT_TRUE(!content.target || content.target->contains(target->object_type, target->texture));
   }
   for (const SceneObject* other : seconds) {
@@ -148,7 +148,7 @@ void check_roles(const Scenario& s, const Scene& scene) {
                  content.never_distractor->contains(d->object_type, d->texture));
     for (const ScenarioCommand& other : s.commands)
       if (content.outside_all_commands) {
-        ASSERT_FALSE(other.truth.target.contains(d->object_type, d->texture));
+        ASSERT_FALSE(other.truth.target.belongs(d->object_type, d->texture));
         ASSERT_FALSE(other.truth.second && other.truth.second->contains(d->object_type, d->texture));
       }
     const SceneObject& t = *targets[0];
@@ -273,6 +273,7 @@ std::vector<std::tuple<std::string, std::string>> every_scenario_and_layout(cons
   for (const std::string& id : scenario_ids()) {
     const Scenario scenario = load_scenario(id);
     if (scenario.environment != "tabletop") continue;
+    if (tabletop::content_of(*scenario.train).by_meaning) continue;  // meant_scenes_test.cpp
     for (const std::string& layout : layouts(scenario.task)) {
       const bool too_wide = id == "q3_food" && layout == "released";  // its pan; refused, see below
       if (id.rfind(prefix, 0) == 0 && !too_wide) all.emplace_back(id, layout);
@@ -358,7 +359,7 @@ TEST(Sampler, SweepTakesItsObstacleFromTheSelection) {
   wrong.second.reset();
   EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
   wrong = s.commands[0].truth;
-  wrong.target.object_types = {"frame"};  // wider than the spatula
+  wrong.target.product().object_types = {"frame"};  // wider than the spatula
   EXPECT_THROW(sample_scene(s, train_request(wrong, "cells"), 0), InputError);
 }
 
@@ -479,7 +480,7 @@ TEST(Sampler, TrainingTargetsAreUniformAndDistractorsOutsideTheSelection) {
     const SceneObject &target = *scene.find(role::target), &distractor = *scene.find(role::distractor);
     ++targets[{target.object_type, target.texture}];
     ++distractor_types[distractor.object_type];
-    EXPECT_FALSE(selection.target.contains(distractor.object_type, distractor.texture));
+    EXPECT_FALSE(selection.target.belongs(distractor.object_type, distractor.texture));
   }
   EXPECT_EQ(targets.size(), 6u);
   for (const auto& [features, count] : targets) EXPECT_NEAR(count, many / 6.0, 150);
@@ -531,12 +532,12 @@ TEST(Sampler, RefusesWhatItCannotSample) {
   EXPECT_THROW(sample_scene(s, {"cells", "test", "hard", 0}, 0), InputError);
   EXPECT_THROW(sample_scene(s, train_request(Selection{}, "cells"), 0), InputError);  // an empty Selection
   Selection pans = s.commands[0].truth;
-  pans.target.object_types = {"pan"};
+  pans.target.product().object_types = {"pan"};
   EXPECT_NO_THROW(sample_scene(s, train_request(pans, "cells"), 0));
   EXPECT_THROW(sample_scene(s, train_request(pans, "released"), 0), InputError);
   EXPECT_THROW(sample_scene(load_scenario("q3_food"), test_request("released", 0, "seen"), 0), InputError);
   Selection pallets = s.commands[0].truth;
-  pallets.target.object_types = {"pallet"};
+  pallets.target.product().object_types = {"pallet"};
   EXPECT_THROW(sample_scene(s, train_request(pallets, "cells"), 0), InputError);
 }
 
@@ -575,7 +576,7 @@ TEST(Sampler, AChoiceHoldsWhatTheDistributionMeans) {
   const Scenario s = read_scenario(json, "heart");
   Selection selection = s.commands[0].truth;
   EXPECT_NO_THROW(sample_scene(s, train_request(selection, "cells"), 0));
-  selection.target.object_types = {"cross"};  // an empty abstraction (run_cell.cpp), not a cell that fails
+  selection.target.product().object_types = {"cross"};  // an empty abstraction (run_cell.cpp), not a cell that fails
   EXPECT_THROW(sample_scene(s, train_request(selection, "cells"), 0), NothingToShow);
 }
 

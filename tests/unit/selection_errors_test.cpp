@@ -25,12 +25,12 @@ bool holds(const std::vector<std::string>& all, const std::vector<std::string>& 
 TEST(SelectionErrors, MoreOfThemHoldThoseThatFewerMake) {
   const Scenario scenario = load_scenario("something_from_a_typical_kitchen");
   const Selection truth = right(scenario);
-  FeatureSet fewer = truth.target, more = truth.target;
+  FeatureSet fewer = truth.target.product(), more = fewer;
   for (const double p : {.1, .2, .4, .8, 1.}) {
-    const FeatureSet less = with_errors(truth, scenario, 0, {p, 0}, 3, "").target;
+    const FeatureSet less = with_errors(truth, scenario, 0, {p, 0}, 3, "").target.product();
     EXPECT_TRUE(holds(fewer.object_types, less.object_types) && holds(fewer.textures, less.textures)) << p;
     fewer = less;
-    const FeatureSet larger = with_errors(truth, scenario, 0, {0, p}, 3, "").target;
+    const FeatureSet larger = with_errors(truth, scenario, 0, {0, p}, 3, "").target.product();
     EXPECT_TRUE(holds(larger.object_types, more.object_types) && holds(larger.textures, more.textures)) << p;
     more = larger;
   }
@@ -42,13 +42,13 @@ TEST(SelectionErrors, AreTheSameForEveryMethodAndOfTheirProbability) {
   const Scenario scenario = load_scenario("red_heart");
   const Selection truth = right(scenario);
   Selection other = truth;
-  other.target.object_types = {"star"};  // what it lacks stays missing, what it has too many stays
+  other.target.product().object_types = {"star"};  // what it lacks stays missing, what it has too many stays
   int added = 0, missing = 0;
   constexpr int seeds = 200;
   const auto n = static_cast<double>(scenario.space.object_types.size() - 1);
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const FeatureSet a = with_errors(truth, scenario, 0, {.2, .2}, seed, "").target;
-    const FeatureSet b = with_errors(other, scenario, 0, {.2, .2}, seed, "").target;
+    const FeatureSet a = with_errors(truth, scenario, 0, {.2, .2}, seed, "").target.product();
+    const FeatureSet b = with_errors(other, scenario, 0, {.2, .2}, seed, "").target.product();
     EXPECT_EQ(a.textures, b.textures);
     EXPECT_TRUE(holds(b.object_types, {"star"}));
     EXPECT_FALSE(holds(b.object_types, {"heart"}));
@@ -63,9 +63,9 @@ TEST(SelectionErrors, AreTheSameForEveryMethodAndOfTheirProbability) {
 TEST(SelectionErrors, LeaveOutWhatIsNeverMeantAndWhoSelectsNothing) {
   const Scenario scenario = load_scenario("tiger_colored_object");
   const Selection truth = right(scenario);
-  ASSERT_TRUE(holds(truth.target.object_types, {"pallet"}));
-  EXPECT_TRUE(holds(with_errors(truth, scenario, 0, {}, 0, "pallet").target.object_types, {"pallet"}));
-  EXPECT_FALSE(holds(with_errors(truth, scenario, 0, {0, .9}, 0, "pallet").target.object_types, {"pallet"}));
+  ASSERT_TRUE(holds(truth.target.product().object_types, {"pallet"}));
+  EXPECT_TRUE(holds(with_errors(truth, scenario, 0, {}, 0, "pallet").target.product().object_types, {"pallet"}));
+  EXPECT_FALSE(holds(with_errors(truth, scenario, 0, {0, .9}, 0, "pallet").target.product().object_types, {"pallet"}));
   EXPECT_TRUE(with_errors(Selection(), scenario, 0, {0, .9}, 0, "pallet").target.empty());
 }
 

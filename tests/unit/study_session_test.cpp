@@ -30,7 +30,7 @@ class StudySession : public testing::Test, public TemporaryDirectory {
     const Item& item = *current().item;
     const Selection chosen = item.truth ? *item.truth : item.proposal;
     page.ms += 1000 * seconds, at += static_cast<std::int64_t>(1000 * seconds);
-    post("submit", submitted(chosen.target.object_types, chosen.target.textures, wait_ms));
+    post("submit", submitted(chosen.target.product().object_types, chosen.target.product().textures, wait_ms));
   }
   void rate(int load) { post("questionnaire", {{"tlx", tlx(load)}, {"free_text", ""}}); }
   const Trial& current() const {
@@ -96,7 +96,7 @@ TEST_F(StudySession, ConditionsShowEmptyListsOrTheProposal) {
     post("start");
     const Json first = session->state().at("trial").at("sets").at(0).at("first");
     const std::vector<std::string> filled =
-        trial.condition == Condition::human ? std::vector<std::string>{} : trial.item->proposal.target.textures;
+        trial.condition == Condition::human ? std::vector<std::string>{} : trial.item->proposal.target.product().textures;
     EXPECT_EQ(first.at("textures").get<std::vector<std::string>>(), filled);
     EXPECT_EQ(trial.condition, session->assignment().conditions[i / 9]);
     post("shown");

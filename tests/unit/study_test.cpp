@@ -139,7 +139,7 @@ TEST_F(StudyDirectory, AnswersBecomeAFileThatRunsRead) {
   ASSERT_TRUE(answer && answer->specified && answer->edited);
   EXPECT_EQ(answer->specified->cost.human_seconds, 2.5);
   EXPECT_EQ(answer->specified->asked_as, "Bring me the red heart");
-  EXPECT_EQ(answer->proposal.target.textures.size(), 5u);
+  EXPECT_EQ(answer->proposal.target.product().textures.size(), 5u);
   EXPECT_TRUE(fs::exists(data / "participants/p02.json"));
   const std::string bytes = read_file(file);
   fs::remove(file);  // killed before it was written

@@ -41,7 +41,8 @@ class PickAndPlace final : public Task {
       if (f.object.role == role::goal) goal = f.centre_m;
     if (norm(target.centre_m - goal) > near_m) return failure::bad_placement;
     for (const Final& f : finals)
-      if (f.object.role == role::distractor && norm(f.centre_m - goal) <= near_m) return failure::bad_placement;
+      if ((f.object.role == role::distractor || f.object.role == role::not_meant) && norm(f.centre_m - goal) <= near_m)
+        return failure::bad_placement;
     return failure::none;
   }
 };

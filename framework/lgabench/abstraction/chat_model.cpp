@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <lgabench/abstraction/final_answer.hpp>
+#include <lgabench/abstraction/meaning_reply.hpp>
 
 namespace lgabench {
 namespace {
@@ -61,7 +62,9 @@ void ChatLanguageModel::ask(const std::vector<Request>& requests, const std::str
       std::exception_ptr thrown;
       std::string no_answer;
       try {
-        cassette_.add(requests[i].key, requests[i].json, complete(*client_, requests[i].json));
+        cassette_.add(
+            requests[i].key, requests[i].json,
+            requests[i].yes_or_no ? complete(*client_, requests[i].json) : client_->complete(requests[i].json));
       } catch (const NoAnswer& e) {
         no_answer = e.what();  // and is not kept, but asked again another time
       } catch (const MethodError& e) {
@@ -136,9 +139,9 @@ int ChatLanguageModel::open_questions(const Command& command, const FeatureSpace
                                         [this](const Request& request) { return !cassette_.find(request.key); }));
 }
 
-std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
-                                            const std::vector<Question>& questions) {
-  const std::vector<Request> requests = requests_of(command, space, questions);
+// Asks for what the cassette lacks.
+void ChatLanguageModel::expect_replies(const std::vector<Request>& requests, const Command& command,
+                                       const FeatureSpace& space) {
   const auto without_reply = [&] {
     std::vector<Request> some;
     std::copy_if(requests.begin(), requests.end(), std::back_inserter(some),
@@ -150,7 +153,7 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
       throw InputError(fmt::format(
           "{0}: expected replies of {1} to \"{2}\", {3} of {4} are missing; to ask: lgabench select \"{2}\" --task {5} "
           "--space {6} --answers openai {7} --cassette {0}",
-          cassette_.file().string(), options_.model, command.utterance, missing, questions.size(), command.task,
+          cassette_.file().string(), options_.model, command.utterance, missing, requests.size(), command.task,
           space.id, command_words(asked_model_)));
     bool waited = false;
     const Cassette::Turn turn(cassette_, [&](const std::string& why) {
@@ -165,16 +168,44 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
                                    options_.max_queries - asked_));
     ask(open, command.utterance);
   }
+}
 
+ChatReply ChatLanguageModel::counted(const Request& request) {
+  ChatReply reply = *cassette_.find(request.key);
+  ++cost_.lm_queries;
+  cost_.lm_tokens += reply.tokens;
+  cost_.lm_seconds += reply.seconds;
+  return reply;
+}
+
+std::vector<bool> ChatLanguageModel::answer(const Command& command, const FeatureSpace& space,
+                                            const std::vector<Question>& questions) {
+  const std::vector<Request> requests = requests_of(command, space, questions);
+  expect_replies(requests, command, space);
   std::vector<bool> answers;
-  for (const Request& request : requests) {
-    const ChatReply reply = *cassette_.find(request.key);
-    answers.push_back(final_answer(reply.text));
-    ++cost_.lm_queries;
-    cost_.lm_tokens += reply.tokens;
-    cost_.lm_seconds += reply.seconds;
-  }
+  for (const Request& request : requests) answers.push_back(final_answer(counted(request).text));
   return answers;
+}
+
+Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
+  const Prompt prompt = of_meaning_.fill(command, space);
+  Json messages{{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}};
+  for (int attempt = 1;; ++attempt) {
+    const Json body = asked_model_.request(messages);
+    const Request request{Cassette::key(body, of_meaning_.version()), "what it means", body, false};
+    expect_replies({request}, command, space);
+    const std::string said = counted(request).text;
+    try {
+      return meaning_in(said, space);
+    } catch (const MethodError& e) {
+      if (attempt == most_tries) return {};
+      messages.push_back({{"role", "assistant"}, {"content", said}});
+      messages.push_back({{"role", "user"},
+                          {"content", fmt::format("That cannot be read: {}. Give the JSON object again, after a line "
+                                                  "\"Final answer:\".",
+                                                  e.what())}});
+    }
+  }
 }
 
 }  // namespace lgabench

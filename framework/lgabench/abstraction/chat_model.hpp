@@ -60,6 +60,9 @@ class ChatLanguageModel : public LanguageModel {
   /// `max_queries` does not suffice.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
+  /// One question; a reply without a meaning that can be read is answered with what is wrong, twice at most, each
+  /// asking a query. @throws as answer().
+  Meaning mean(const Command& command, const FeatureSpace& space) override;
   /// How many of these a server would be asked: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
   /// As in ChatOptions: what is not the usual request belongs to the name.
@@ -72,16 +75,19 @@ class ChatLanguageModel : public LanguageModel {
   struct Request {
     std::string key, candidate;
     Json json;
+    bool yes_or_no = true;
   };
   std::vector<Request> requests_of(const Command& command, const FeatureSpace& space,
                                    const std::vector<Question>& questions) const;
   void ask(const std::vector<Request>& requests, const std::string& utterance);
+  void expect_replies(const std::vector<Request>& requests, const Command& command, const FeatureSpace& space);
+  ChatReply counted(const Request& request);
 
   Cassette& cassette_;
   ChatClient* client_;
   ChatOptions options_;
   AskedModel asked_model_;
-  PromptTemplate template_;
+  PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"};
   int asked_ = 0, without_answer_ = 0;
   SelectionCost cost_;
 };

@@ -40,9 +40,14 @@ Table roles_of(const Observation& observation, const Selection& selection, Insta
   roles.fill(unlisted);
   roles[0] = 0;
   for (const Instance& instance : observation.instances)
-    roles[instance.id] = selection.target.contains(instance.object_type, instance.texture) ? target_role
-                         : selection.keeps(instance.object_type, instance.texture)         ? second_role
-                                                                                           : 0;
+    roles[instance.id] =
+        selection.second && selection.second->contains(instance.object_type, instance.texture) ? second_role : 0;
+  if (selection.target.which) {
+    for (const std::uint8_t id : grounded(selection.target, observation)) roles[id] = target_role;
+  } else {
+    for (const Instance& instance : observation.instances)
+      if (selection.target.belongs(instance.object_type, instance.texture)) roles[instance.id] = target_role;
+  }
   if (instances == Instances::first)
     for (const std::uint8_t role : {target_role, second_role}) keep_first(observation, role, roles);
   return roles;

@@ -15,8 +15,8 @@ enum class Instances {
   first  // the one whose first pixel comes first, row by row: "an unambiguous abstract state" (paper, section 3.2)
 };
 
-/// Numbers 0 and 1, row-major, as many as pixels: 1 on the visible ones of every instance that `selection` keeps.
-/// All 0 where nothing in view is kept.
+/// Numbers 0 and 1, row-major, as many as pixels: 1 on the visible ones of every instance that is meant as the target
+/// (grounded()) or that the second set holds. All 0 where nothing in view is.
 /// @throws InputError if the ids are not as many as the size says, or name an instance that the table lacks.
 std::vector<std::uint8_t> goal_mask(const Observation& observation, const Selection& selection,
                                     Instances instances = Instances::all);

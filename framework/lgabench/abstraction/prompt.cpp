@@ -8,8 +8,8 @@
 
 namespace lgabench {
 
-PromptTemplate::PromptTemplate() {
-  const fs::path file = data_directory() / "prompts" / "selection.txt";
+PromptTemplate::PromptTemplate(const std::string& name) {
+  const fs::path file = data_directory() / "prompts" / name;
   const std::string text = read_file(file), rule = "\n---\n";
   const std::size_t at = text.find(rule);
   if (at == std::string::npos) throw InputError(file.string() + ": expected a line --- between system and user prompt");
@@ -29,6 +29,10 @@ Prompt PromptTemplate::fill(const Command& command, const FeatureSpace& space, c
                          {"{candidate}", question.candidate}});
   };
   return {fill(text_.system), fill(text_.user)};
+}
+
+Prompt PromptTemplate::fill(const Command& command, const FeatureSpace& space) const {
+  return fill(command, space, {});
 }
 
 }  // namespace lgabench

@@ -11,15 +11,18 @@ struct Prompt {
   std::string system, user;
 };
 
-/// The template prompts/selection.txt of the data directory: what the paper's prompt asks (appendix, "Full Prompt"), in
-/// other words, and of the second set that the task has. Its version is the file's SHA-256.
+/// A template of the data directory's prompts/, whose version is the file's SHA-256. selection.txt: what the paper's
+/// prompt asks (appendix, "Full Prompt"), in other words, and of the second set that the task has. meaning.txt: what a
+/// command means, in one question.
 class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.
-  PromptTemplate();
+  explicit PromptTemplate(const std::string& file = "selection.txt");
 
   /// The messages that ask this question about the command. The feature space is told in full.
   Prompt fill(const Command& command, const FeatureSpace& space, const Question& question) const;
+  /// Those that ask what the command means.
+  Prompt fill(const Command& command, const FeatureSpace& space) const;
   /// SHA-256 of the file; owned by the template.
   const std::string& version() const { return version_; }
 

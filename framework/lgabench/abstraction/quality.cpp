@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace lgabench {
 namespace {
@@ -21,6 +22,27 @@ NameQuality quality_of(const std::vector<std::string>& selected, const std::vect
 
 SetQuality quality_of(const FeatureSet& selected, const FeatureSet& truth) {
   return {quality_of(selected.object_types, truth.object_types), quality_of(selected.textures, truth.textures)};
+}
+
+// All names that any of the sets holds, and all its pairs, each once.
+std::vector<std::string> names(const Meaning& meaning, std::vector<std::string> FeatureSet::*kind) {
+  std::set<std::string> all;
+  for (const FeatureSet& set : meaning.sets) all.insert((set.*kind).begin(), (set.*kind).end());
+  return {all.begin(), all.end()};
+}
+
+std::vector<std::string> pairs(const Meaning& meaning) {
+  std::set<std::string> all;
+  for (const FeatureSet& set : meaning.sets)
+    for (const std::string& type : set.object_types)
+      for (const std::string& texture : set.textures) all.insert(type + '\n' + texture);
+  return {all.begin(), all.end()};
+}
+
+SetQuality quality_of(const Meaning& selected, const Meaning& truth) {
+  if (selected.sets.size() == 1 && truth.sets.size() == 1) return quality_of(selected.sets[0], truth.sets[0]);
+  const auto of = [&](auto kind) { return quality_of(names(selected, kind), names(truth, kind)); };
+  return {of(&FeatureSet::object_types), of(&FeatureSet::textures), quality_of(pairs(selected), pairs(truth))};
 }
 
 NameQuality mean_names(const std::vector<NameQuality>& all) {
@@ -89,19 +111,23 @@ Quality mean_quality(const std::vector<Quality>& all) {
   Quality mean;
   if (all.empty()) return mean;
   for (const auto& [set, first] : all.front()) {
-    std::vector<NameQuality> types, textures;
+    std::vector<NameQuality> types, textures, both;
     for (const Quality& one : all)
       if (const auto found = one.find(set); found != one.end()) {
         types.push_back(found->second.object_types);
         textures.push_back(found->second.textures);
+        if (found->second.pairs) both.push_back(*found->second.pairs);
       }
     mean[set] = {mean_names(types), mean_names(textures)};
+    if (!both.empty()) mean[set].pairs = mean_names(both);
   }
   return mean;
 }
 
 Json to_json(const SetQuality& quality) {
-  return {{"object_types", to_json(quality.object_types)}, {"textures", to_json(quality.textures)}};
+  Json json{{"object_types", to_json(quality.object_types)}, {"textures", to_json(quality.textures)}};
+  if (quality.pairs) json["pairs"] = to_json(*quality.pairs);
+  return json;
 }
 
 Json to_json(const Quality& quality) {
@@ -115,8 +141,10 @@ Quality read_quality(const JsonReader& reader) {
   if (reader.json().is_null()) return all;
   if (!reader.has("target") || reader.at("target").json().is_null()) reader.fail("the quality of the target");
   for (const auto& item : reader.json().items())
-    if (const JsonReader set = reader.at(item.key()); !set.json().is_null())
+    if (const JsonReader set = reader.at(item.key()); !set.json().is_null()) {
       all[item.key()] = {read_names(set.at("object_types")), read_names(set.at("textures"))};
+      if (set.has("pairs")) all[item.key()].pairs = read_names(set.at("pairs"));
+    }
   return all;
 }
 

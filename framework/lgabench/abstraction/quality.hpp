@@ -15,8 +15,11 @@ struct NameQuality {
   double size = 0, true_size = 0;  // numbers of names; whole but in a mean
 };
 
+/// Names are those that any of a meaning's sets holds. `pairs` of object type and texture tell crossed products from
+/// their union; they are there where the Selection or the truth is more than one product.
 struct SetQuality {
   NameQuality object_types, textures;
+  std::optional<NameQuality> pairs = std::nullopt;
 };
 
 /// By set: "target", and the second set's role id where there is one. Empty for a Selection of provenance none.

@@ -36,14 +36,16 @@ const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, Fea
 
 // Members that are sets belong to the second role of some task; which one, a command says.
 RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, const std::vector<std::string>& roles) {
-  std::vector<std::string> members{"space", "scenario", "command", "target", "note", "rationale"};
+  std::vector<std::string> members{"space", "scenario", "command", "target", "structured", "note", "rationale"};
   members.insert(members.end(), roles.begin(), roles.end());
   entry.only(members);
   RecordedAnswer answer{space.id,
                         entry.has("scenario") ? line(entry.at("scenario")) : "",
                         line(entry.at("command")),
                         read_feature_set(entry.at("target"), space),
+                        {},
                         {}};
+  if (entry.has("structured")) answer.structured = read_meaning(entry.at("structured"), space);
   for (const std::string& role : roles)
     if (entry.has(role)) answer.second[role] = read_feature_set(entry.at(role), space);
   return answer;
@@ -149,6 +151,15 @@ std::vector<bool> RecordedLanguageModel::answer(const Command& command, const Fe
   }
   cost_.lm_queries += static_cast<int>(questions.size());
   return answers;
+}
+
+Meaning RecordedLanguageModel::mean(const Command& command, const FeatureSpace&) {
+  const RecordedAnswer& recorded = expect(command.utterance);
+  if (!recorded.structured)
+    throw InputError(fmt::format("answers of {}: expected \"structured\" for \"{}\", which meaning=structured asks for",
+                                 file_.stem().string(), recorded.asked_as));
+  ++cost_.lm_queries;
+  return *recorded.structured;
 }
 
 std::string RecordedLanguageModel::asked_as(const Command& command) const { return expect(command.utterance).asked_as; }

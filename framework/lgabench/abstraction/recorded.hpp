@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct RecordedAnswer {
   std::string space, scenario, asked_as;     // scenario: "" where the answers are those of the words alone
   FeatureSet target;                         // the candidates answered yes
   std::map<std::string, FeatureSet> second;  // likewise, by role
+  std::optional<Meaning> structured;         // what was said of the command in one answer
 };
 /// A file of recorded answers: one that is shipped, or that somebody wrote (docs/formats: recorded answers).
 struct RecordedFile {
@@ -54,6 +56,8 @@ class RecordedLanguageModel : public LanguageModel {
   /// the space, or for a second set that the model was not asked about.
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override;
+  /// @throws InputError as answer(), and where no meaning is recorded.
+  Meaning mean(const Command& command, const FeatureSpace& space) override;
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override;
   /// Always recorded.

@@ -1,6 +1,6 @@
 // Feature abstraction phi -> phi-hat with a language model (paper, section 3.1).
 #pragma once
-#include <lgabench/core/language_model.hpp>
+#include <lgabench/core/method.hpp>
 
 namespace lgabench {
 
@@ -12,5 +12,12 @@ std::vector<Question> feature_questions(const Command& command, const FeatureSpa
 /// the space's order, with the model's provenance and what these questions cost.
 /// @throws MethodError if the model leaves a question unanswered.
 Selection select_features(const Command& command, const FeatureSpace& space, LanguageModel& model);
+
+/// Asks what the command means, in one question; of the task's second set, where it has one, as select_features() does.
+/// The Selection is empty where the model gave no meaning that can be read. @throws MethodError as select_features().
+Selection select_meaning(const Command& command, const FeatureSpace& space, LanguageModel& model);
+
+/// Either, as the option `meaning` (LGABENCH_MEANING_OPTION) of services.options says.
+Selection select_as_asked(const Command& command, const FeatureSpace& space, Services& services);
 
 }  // namespace lgabench

@@ -72,7 +72,8 @@ Selection with_errors(Selection selected, const Scenario& scenario, int command,
   if (errors.none() || selected.provenance == Provenance::none) return selected;
   const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
   RandomStream random(fmt::format("selection_errors/{}/{}", utterance, training_seed));
-  selected.target = erring(scenario.space, selected.target, truth.target, errors, random, never_meant);
+  selected.target =
+      erring(scenario.space, selected.target.product(), truth.target.product(), errors, random, never_meant);
   if (selected.second && truth.second)
     static_cast<FeatureSet&>(*selected.second) =
         erring(scenario.space, *selected.second, *truth.second, errors, random, never_meant);

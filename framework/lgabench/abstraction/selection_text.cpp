@@ -14,10 +14,42 @@ std::string text(const FeatureSet& set, const FeatureSpace& space) {
   return text(set.object_types, space.object_types) + "; " + text(set.textures, space.textures);
 }
 
+// A reference: its types alone where any texture will do.
+std::string which_of(const FeatureSet& set, const FeatureSpace& space) {
+  return set.textures == space.textures ? text(set.object_types, space.object_types) : text(set, space);
+}
+
 }  // namespace
 
+std::string meaning_text(const Meaning& meaning, const FeatureSpace& space) {
+  std::vector<std::string> sets;
+  for (const FeatureSet& set : meaning.sets) sets.push_back(text(set, space));
+  const std::string all = fmt::format("{}", fmt::join(sets, " or "));
+  if (!meaning.which) return all;
+  const Which& which = *meaning.which;
+  const auto one = [&](const char* words) { return fmt::format("{}, the one {}", all, words); };
+  const std::string of = which.of ? which_of(*which.of, space) : "";
+  switch (which.rule) {
+    case Which::Rule::left_of:
+      return one("to the left of ") + of;
+    case Which::Rule::right_of:
+      return one("to the right of ") + of;
+    case Which::Rule::nearest_to:
+      return one("nearest to ") + of;
+    case Which::Rule::farthest_from:
+      return one("farthest from ") + of;
+    case Which::Rule::leftmost:
+      return one("farthest to the left");
+    case Which::Rule::rightmost:
+      return one("farthest to the right");
+    case Which::Rule::first_in:
+      break;
+  }
+  return one("that comes first of ") + fmt::format("{}", fmt::join(which.order, ", "));
+}
+
 std::string selection_text(const Selection& selection, const FeatureSpace& space) {
-  std::string words = "target: " + text(selection.target, space);
+  std::string words = "target: " + meaning_text(selection.target, space);
   if (selection.second) words += fmt::format(". {}: {}", selection.second->role, text(*selection.second, space));
   return words;
 }

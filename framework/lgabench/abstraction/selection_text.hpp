@@ -11,4 +11,7 @@ namespace lgabench {
 /// section 5: what LGA-L is told).
 std::string selection_text(const Selection& selection, const FeatureSpace& space);
 
+/// A meaning alone, likewise.
+std::string meaning_text(const Meaning& meaning, const FeatureSpace& space);
+
 }  // namespace lgabench

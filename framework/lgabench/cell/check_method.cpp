@@ -59,7 +59,7 @@ class TruthfulModel : public LanguageModel {
     const Selection truth = truth_.specify(command);
     std::vector<bool> answers;
     for (const Question& question : questions) {
-      const FeatureSet& set = question.about == Question::About::target ? truth.target : truth.second.value();
+      const FeatureSet& set = question.about == Question::About::target ? truth.target.product() : truth.second.value();
       const auto& names = question.group == Question::Group::object_type ? set.object_types : set.textures;
       answers.push_back(std::find(names.begin(), names.end(), question.candidate) != names.end());
     }

@@ -103,17 +103,20 @@ Sheet gallery(const std::string& what) {
     return sheet(tiles, 7);
   }
   const std::vector<std::string> environments = environment_ids();
-  const std::string environment = what == "scenes" ? "tabletop" : what;
+  const bool words = what == "words";
+  const std::string environment = words || what == "scenes" ? "tabletop" : what;
   if (std::find(environments.begin(), environments.end(), environment) != environments.end()) {
     for (const std::string& id : scenario_ids()) {
       const Scenario scenario = load_scenario(id);
       if (scenario.environment != environment) continue;
-      for (const Arm& arm : scenario.tests)
-        tiles.push_back(scene_and_mask(scenario, layouts_of(scenario).front(), arm.id));
+      const std::string layout = layouts_of(scenario).front();
+      const bool stands_freely_alone = layout != find_task(find_environment(environment), scenario.task).layouts.front();
+      if (stands_freely_alone != words) continue;
+      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, layout, arm.id));
     }
     return sheet(tiles, 2);
   }
-  throw InputError(fmt::format("--gallery {}: expected objects, textures, scenes or an environment", what));
+  throw InputError(fmt::format("--gallery {}: expected objects, textures, scenes, words or an environment", what));
 }
 
 }  // namespace lgabench::cli

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
@@ -50,7 +51,9 @@ void print(const Scenario& scenario) {
   };
   for (const ScenarioCommand& command : scenario.commands) {
     to_stdout("  command     {}{}\n", command.utterance, command.seen ? "" : "  (not demonstrated)");
-    print_set("target", command.truth.target);
+    for (const FeatureSet& set : command.truth.target.sets) print_set("target", set);
+    if (command.truth.target.which)
+      to_stdout("  in words    {}\n", selection_text(command.truth, scenario.space));
     if (command.truth.second) print_set(command.truth.second->role.c_str(), *command.truth.second);
   }
   to_stdout("  answers     {}{}\n", scenario.recorded,

@@ -88,7 +88,7 @@ constexpr std::array kinds{"methods",   "rows",    "engines", "environments", "s
 std::vector<std::string> layouts_of_all(const Suite& suite) {
   std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
   for (const std::string& id : suite.design.scenarios) {
-    const std::vector<std::string>& there = layouts_of(load_scenario(id));
+    const std::vector<std::string> there = layouts_of(load_scenario(id));
     common.erase(std::remove_if(common.begin(), common.end(),
                                 [&there](const std::string& layout) {
                                   return std::find(there.begin(), there.end(), layout) == there.end();

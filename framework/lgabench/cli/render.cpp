@@ -97,12 +97,12 @@ void render(const RenderArguments& arguments) {
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
-  std::vector<std::string> galleries{"objects", "textures", "scenes"};
+  std::vector<std::string> galleries{"objects", "textures", "scenes", "words"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
   verb->add_option("--gallery", arguments->gallery,
-                   "Draw one sheet instead: all objects, all textures, or a scene of every scenario (or of those of "
-                   "one environment)")
+                   "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
+                   "suite words; or of those of one environment)")
       ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
@@ -131,7 +131,7 @@ void add_render(CLI::App& app, int&) {
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes|ENVIRONMENT"},
+          {{"--gallery", "objects|textures|scenes|words|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", "LAYOUT"},

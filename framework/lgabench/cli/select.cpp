@@ -16,6 +16,7 @@
 #include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
+#include <lgabench/cli/select_score.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -31,7 +32,8 @@ struct SelectArguments {
                               model, cassette, request;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
-  bool json = false;
+  bool json = false, score = false;
+  int scenes = 30;
 };
 
 // What is asked: the words, and the truth where a scenario has one for them.
@@ -119,6 +121,17 @@ std::vector<Asked> commands_of(const Scenario& scenario) {
   return asked;
 }
 
+// Who answers for one command: recorded answers go by the scenario.
+LanguageModel& answerer_of(const Asked& asked, LanguageModel* model, const SelectArguments& arguments,
+                           std::optional<RecordedLanguageModel>& recorded) {
+  const AnswerSource source = read_answer_source(arguments.answers);
+  if (const auto* written = std::get_if<FileAnswers>(&source))
+    return recorded.emplace(RecordedLanguageModel::of_file(asked.space, asked.answers_of, written->file));
+  if (model) return *model;
+  return recorded.emplace(asked.space, asked.answers_of,
+                          arguments.answers == "recorded" ? asked.recorded : arguments.answers);
+}
+
 // All commands of the suite, or of the scenario of that id, or the one with that utterance; else the words alone, which
 // have no truth.
 std::vector<Asked> find_commands(const SelectArguments& arguments) {
@@ -177,16 +190,11 @@ void print_set(const char* name, const FeatureSet& set, const FeatureSpace& spac
   if (judged != quality.end()) to_stdout("                {}\n", describe(judged->second.textures));
 }
 
-void select(const Asked& asked, LanguageModel* model, const SelectArguments& arguments) {
+void select(const Asked& asked, LanguageModel* answering, const SelectArguments& arguments) {
   std::optional<RecordedLanguageModel> recorded;
-  const AnswerSource source = read_answer_source(arguments.answers);
-  if (const auto* written = std::get_if<FileAnswers>(&source))
-    model = &recorded.emplace(RecordedLanguageModel::of_file(asked.space, asked.answers_of, written->file));
-  else if (!model)
-    model = &recorded.emplace(asked.space, asked.answers_of,
-                              arguments.answers == "recorded" ? asked.recorded : arguments.answers);
+  LanguageModel& model = answerer_of(asked, answering, arguments, recorded);
   const auto start = std::chrono::steady_clock::now();
-  const Selection selection = select_features(asked.command, asked.space, *model);
+  const Selection selection = select_features(asked.command, asked.space, model);
   const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Quality judged = asked.truth ? quality(selection, *asked.truth) : Quality{};
   const std::string text = selection_text(selection, asked.space);
@@ -207,7 +215,7 @@ void select(const Asked& asked, LanguageModel* model, const SelectArguments& arg
   if (selection.provenance == Provenance::live) to_stdout(", {:.1f} s by the clock", passed_s);
   to_stdout("\n");
   to_stdout("in words    {}\n", text);
-  print_set("target", selection.target, asked.space, judged);
+  for (const FeatureSet& set : selection.target.sets) print_set("target", set, asked.space, judged);
   if (const auto& second = selection.second) print_set(second->role.c_str(), *second, asked.space, judged);
 }
 
@@ -250,7 +258,17 @@ void add_select(CLI::App& app, int&) {
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   add_scenario_path(*verb);
-  verb->add_flag("--json", arguments->json, "Print one line of JSON per command, as in a cell's selection.json");
+  auto* score =
+      verb->add_flag("--score", arguments->score,
+                     "With --suite: no policy, but how exactly the answers keep what is meant in test scenes, "
+                     "asked yes or no of each feature, asked what the command means, and the names in it")
+          ->needs("--suite");
+  verb->add_option("--scenes", arguments->scenes, "With --score: test scenes of each arm")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->needs(score);
+  verb->add_flag("--json", arguments->json,
+                 "Print one line of JSON per command, as in a cell's selection.json, or per row of --score");
   arrange(*verb, "", {{"command", "COMMAND"}});
   const std::string tasks = fmt::format("{}", fmt::join(installed_task_ids(), "|"));
   arrange(*verb, "What is asked",
@@ -258,6 +276,8 @@ void add_select(CLI::App& app, int&) {
            {"--task", tasks.c_str()},
            {"--space", "SPACE"},
            {"--truth", "released|printed"},
+           {"--score", ""},
+           {"--scenes", "N"},
            {"--scenario-path", "DIR"}});
   arrange(*verb, "Who answers",
           {{"--answers", "SOURCE"},
@@ -270,13 +290,22 @@ void add_select(CLI::App& app, int&) {
   verb->footer(
       "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
       "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "
-      "red_heart\nTo record for lgabench run --answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "
+      "red_heart\nA table of a model's answers: lgabench select --suite words --score\nTo record for lgabench run "
+      "--answers cassette:M.jsonl: lgabench select --suite q1 --answers openai "
       "--model M --cassette M.jsonl\n         lgabench select \"Bring me a fruit.\" --space household --answers openai "
       "--model M --cassette M.jsonl");
   verb->callback([arguments] {
     if (arguments->command.empty() && arguments->suite.empty())
       throw InputError("select: expected a command, a scenario's id, or --suite");
     const Answerer answerer = make_answerer(*arguments);
+    if (arguments->score) {
+      const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {
+        std::optional<RecordedLanguageModel> recorded;
+        use(answerer_of(commands_of(scenario).front(), answerer.model.get(), *arguments, recorded));
+      };
+      return print_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,
+                          arguments->json, with_answers);
+    }
     const std::vector<Asked> commands = find_commands(*arguments);
     if (answerer.client) say_what_is_open(answerer, commands, arguments->concurrency);
     bool first = true;

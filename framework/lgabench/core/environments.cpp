@@ -91,8 +91,12 @@ std::vector<std::string> failure_words() {
   return words;
 }
 
-const std::vector<std::string>& layouts_of(const Scenario& scenario) {
-  return find_task(find_environment(scenario.environment), scenario.task).layouts;
+std::vector<std::string> EnvironmentType::layouts_of(const Scenario& scenario) const {
+  return find_task(*this, scenario.task).layouts;
+}
+
+std::vector<std::string> layouts_of(const Scenario& scenario) {
+  return find_environment(scenario.environment).layouts_of(scenario);
 }
 
 const ActionSpace& actions_of(const Scenario& scenario) {

@@ -107,6 +107,8 @@ class EnvironmentType {
   }
   /// The object type of the place to bring things to, which no command means; "" where there is none.
   virtual std::string goal_type() const { return ""; }
+  /// Of the task's layouts, those that can show the scenario's scenes: all, unless an environment says otherwise.
+  virtual std::vector<std::string> layouts_of(const Scenario& scenario) const;
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
   virtual Observation draw(const Scene& scene) const = 0;
   /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what
@@ -132,8 +134,8 @@ std::vector<std::string> installed_layouts();
 /// Words for a failure, in a report's order: of all environments, then the framework's.
 std::vector<std::string> failure_words();
 
-/// The layouts of the scenario's task; the first is meant where none is named.
-const std::vector<std::string>& layouts_of(const Scenario& scenario);
+/// The layouts that can show the scenario's scenes; the first is meant where none is named.
+std::vector<std::string> layouts_of(const Scenario& scenario);
 /// What a method is told of the actions of the scenario's task.
 const ActionSpace& actions_of(const Scenario& scenario);
 /// How many instances an observation may have.

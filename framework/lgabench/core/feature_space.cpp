@@ -13,8 +13,10 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
 
 std::vector<std::string> read_names(const JsonReader& reader, const std::vector<std::string>& space) {
   if (reader.json() == "ALL") return space;
+  const bool except = reader.json().is_object();
+  if (except) reader.only({"except"});
   std::vector<std::string> named;
-  for (const JsonReader& element : reader.elements()) {
+  for (const JsonReader& element : (except ? reader.at("except") : reader).elements()) {
     const std::string name = element.string();
     if (!has(space, name)) element.fail("a name of the feature space");
     if (has(named, name)) element.fail("each name once");
@@ -22,7 +24,7 @@ std::vector<std::string> read_names(const JsonReader& reader, const std::vector<
   }
   std::vector<std::string> ordered;
   for (const std::string& name : space)
-    if (has(named, name)) ordered.push_back(name);
+    if (has(named, name) != except) ordered.push_back(name);
   return ordered;
 }
 

@@ -30,7 +30,8 @@ bool operator==(const FeatureSet& a, const FeatureSet& b);
 
 Json to_json(const FeatureSet& set);
 
-/// Reads {"object_types": [...] or "ALL", "textures": [...] or "ALL"}, puts both in the order of `space`.
+/// Reads {"object_types": names, "textures": names}, puts both in the order of `space`. Names are a list, "ALL", or
+/// {"except": [...]}: all others.
 /// @throws InputError for a name that the space lacks or that is given twice.
 FeatureSet read_feature_set(const JsonReader& reader, const FeatureSpace& space);
 

@@ -26,6 +26,10 @@ class LanguageModel {
   virtual std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                                    const std::vector<Question>& questions) = 0;
 
+  /// What the command means, in one answer: sets, and which of several objects. Empty where the model gave no meaning
+  /// that can be read. @throws MethodError for a model that answers questions of yes and no alone.
+  virtual Meaning mean(const Command& command, const FeatureSpace& space);
+
   /// Its name, for Selection::source.
   virtual std::string model() const = 0;
   /// The wording that was answered, where it differs from the command's (recorded answers).

@@ -75,7 +75,7 @@ Selection read_distribution(const JsonReader& reader, const FeatureSpace& space,
   if (second) members.push_back(second->id);
   reader.only(members);
   Selection selection;
-  selection.target = read_feature_set(reader.at("target"), space);
+  selection.target = read_meaning(reader.at("target"), space);
   if (second && reader.has(second->id))
     selection.second = SecondSet{read_feature_set(reader.at(second->id), space), second->id};
   return selection;

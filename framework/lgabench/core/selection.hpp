@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include <lgabench/core/feature_space.hpp>
+#include <lgabench/core/meaning.hpp>
 
 namespace lgabench {
 
@@ -54,7 +54,7 @@ bool operator==(const SecondSet& a, const SecondSet& b);
 /// Feature abstraction phi -> phi-hat (paper, section 3.1). `second` describes the task's second set of objects; absent
 /// for tasks that have none.
 struct Selection {
-  FeatureSet target;
+  Meaning target;
   std::optional<SecondSet> second;
   Provenance provenance = Provenance::none;
   std::string source;    // model, participant or file
@@ -63,15 +63,16 @@ struct Selection {
 
   /// Nothing can be shown: no target, or a second set asked for and none selected. Such a cell is not trained.
   bool empty() const { return target.empty() || (second && second->empty()); }
-  /// The object is kept in the goal mask. Types and textures of target and second set are never crossed.
-  bool keeps(const std::string& object_type, const std::string& texture) const {
-    return target.contains(object_type, texture) || (second && second->contains(object_type, texture));
+  /// The object's features are among those that target or second set name, which are never crossed. Which objects a
+  /// goal mask keeps depends on the scene, where `target.which` says so: grounded().
+  bool belongs(const std::string& object_type, const std::string& texture) const {
+    return target.belongs(object_type, texture) || (second && second->contains(object_type, texture));
   }
 };
 
 Json to_json(const Selection& selection);
 
-/// The distribution alone, which is what scenes depend on: {"target": set}, and the second set under its role's id.
+/// The distribution alone, which is what scenes depend on: {"target": meaning}, and the second set under its role's id.
 Json distribution_json(const Selection& selection);
 /// Likewise, from what to_json() wrote.
 Json distribution_of(Json selection);

@@ -87,10 +87,16 @@ ActingMethod acting_method(const Layer& of_suite, const Layer& of_command, const
   return {lga.id, lga.version, resolve_options(lga, given)};
 }
 
-std::string named(const std::string& group, const Json& options, const Json& usual, const std::set<std::string>& told) {
+// An option added later is written where it is not its default alone.
+Json value_of(const PluginInfo& info, const Json& options, const std::string& option) {
+  return options.value(option, info.options.at(option).at("default"));
+}
+
+std::string named(const std::string& group, const PluginInfo& info, const Json& options, const Json& usual,
+                  const std::set<std::string>& told) {
   std::string name = group;
   for (const std::string& option : told)
-    if (const Json& value = options.at(option); value != usual.at(option))
+    if (const Json value = value_of(info, options, option); value != value_of(info, usual, option))
       name += fmt::format("+{}={}", option, option_text(value));
   return name;
 }
@@ -126,12 +132,14 @@ std::vector<Competitor> competitors(const Suite& suite, const Design& design, co
     if (selects_alone(design.methods[i])) methods.back().acts = acting_method(of_suite, of_command, catalogue);
     for (std::size_t before = 0; before < i; ++before)
       if (groups[before] == group)
-        for (const auto& [option, value] : methods[before].options.items())
-          if (value != methods.back().options.at(option)) told[group].insert(option);
+        for (const auto& declared : info.options.items())
+          if (const std::string& option = declared.key();
+              value_of(info, methods[before].options, option) != value_of(info, methods.back().options, option))
+            told[group].insert(option);
   }
   for (std::size_t i = 0; i < infos.size(); ++i) {
     Competitor& method = methods[i];
-    method.name = named(groups[i], method.options, usual.at(groups[i]), told[groups[i]]);
+    method.name = named(groups[i], *infos[i], method.options, usual.at(groups[i]), told[groups[i]]);
     for (std::size_t before = 0; before < i; ++before)
       if (methods[before].name == method.name)
         throw InputError(fmt::format("methods: \"{}\" and \"{}\" are the same row, {}; expected each row once",

@@ -58,7 +58,7 @@ Json first_commands(const Json& commands, std::size_t count) {
 
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
-  const std::vector<std::string>& there = layouts_of(scenario);
+  const std::vector<std::string> there = layouts_of(scenario);
   for (const std::string& layout : layouts)
     if (std::find(there.begin(), there.end(), layout) == there.end())
       throw InputError(

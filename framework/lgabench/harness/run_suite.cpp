@@ -195,8 +195,8 @@ std::vector<Json> asked_about(const std::vector<const Cell*>& cells, const Catal
   std::set<std::string> seen;
   for (const Cell* cell : cells) {
     const PluginInfo* method = method_plugin(*cell, catalogue);
-    if (method && method->questionnaire && seen.insert(canonical(*cell->scenario)).second)
-      scenarios.push_back(*cell->scenario);
+    const bool asks_them = method && method->questionnaire && cell->method.options.value("meaning", "flat") == "flat";
+    if (asks_them && seen.insert(canonical(*cell->scenario)).second) scenarios.push_back(*cell->scenario);
   }
   return scenarios;
 }

@@ -122,7 +122,7 @@ Suite load_suite(const std::string& id) {
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
   members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
-                                 "variants", "references", "presets"});
+                                 "variants", "groups", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -161,6 +161,16 @@ Suite load_suite(const std::string& id) {
       if (variant.has("train") && !variant.at("train").json().is_object()) variant.at("train").fail("an object");
       if (variant.json().empty()) variant.fail("\"train\" or \"commands\"");
     }
+  }
+  if (reader.has("groups")) {
+    suite.groups = reader.at("groups").json();
+    std::vector<std::string> grouped;
+    for (const auto& [name, ignored] : suite.groups.items())
+      for (const std::string& scenario : names(reader.at("groups").at(name), "scenario", suite.design.scenarios))
+        grouped.push_back(scenario);
+    std::sort(grouped.begin(), grouped.end());
+    if (std::adjacent_find(grouped.begin(), grouped.end()) != grouped.end())
+      reader.at("groups").fail("each scenario in one group at most");
   }
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});

@@ -47,6 +47,7 @@ struct Suite {
   /// commands are left, the first ones}: in place of each scenario ID there is one ID_NAME for each, with arms
   /// ARM_NAME.
   Json variants = Json::object();
+  Json groups = Json::object();         // name -> scenarios, each in one group at most: tables have a mean of each
   std::vector<std::string> references;  // rows of that kind beside those that every suite has
   Json presets;                         // name -> members of Design
   std::string file;                     // for messages

@@ -11,7 +11,7 @@ namespace {
 
 bool nothing_in(const Selection& s) {
   const auto none = [](const FeatureSet& set) { return set.object_types.empty() && set.textures.empty(); };
-  return none(s.target) && (!s.second || none(*s.second));
+  return std::all_of(s.target.sets.begin(), s.target.sets.end(), none) && (!s.second || none(*s.second));
 }
 
 bool same_distribution(const Selection& a, const Selection& b) { return a.target == b.target && a.second == b.second; }
@@ -29,7 +29,7 @@ Selection in_order(Selection selection, const FeatureSpace& space) {
   const auto sort = [&space](FeatureSet& set) {
     set = {in_order(set.object_types, space.object_types), in_order(set.textures, space.textures)};
   };
-  sort(selection.target);
+  for (FeatureSet& set : selection.target.sets) sort(set);
   if (selection.second) sort(*selection.second);
   return selection;
 }
@@ -68,6 +68,7 @@ void AnswerLedger::rethrow() const {
 }
 
 Json AnswerLedger::answer_questions(const JsonReader& reader) {
+  if (reader.has("how")) return answer_meaning(reader);
   const auto [command, space, questions] = protocol::read_or_malformed([&] {
     std::vector<Question> all;
     const Command asked = protocol::read_command(reader.at("command"));
@@ -80,18 +81,38 @@ Json AnswerLedger::answer_questions(const JsonReader& reader) {
   for (std::size_t i = 0; i < std::min(answers.size(), questions.size()); ++i) {
     if (!answers[i]) continue;
     const bool second = questions[i].about == Question::About::second;
-    FeatureSet& set = second ? *model_.second : model_.target;
+    FeatureSet& set = second ? *model_.second : model_.target.product();
     (questions[i].group == Question::Group::texture ? set.textures : set.object_types)
         .push_back(questions[i].candidate);
   }
+  Json reply = signed_reply(command);
+  reply.update({{"type", "answers"}, {"answers", answers}});
+  return reply;
+}
+
+Json AnswerLedger::answer_meaning(const JsonReader& reader) {
+  const auto [command, space] = protocol::read_or_malformed([&] {
+    if (reader.at("how").string() != "meaning") reader.at("how").fail("meaning");
+    return std::pair(protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")));
+  });
+  model_.target = services_.lm.mean(command, space);
+  Json reply = signed_reply(command);
+  reply.update({{"type", "meaning"}, {"meaning", to_json(model_.target)}});
+  return reply;
+}
+
+// Keeps what the model has answered so far, and says whose that is.
+Json AnswerLedger::signed_reply(const Command& command) {
+  LanguageModel& lm = services_.lm;
   model_.provenance = lm.provenance();
   model_.source = lm.model();
   model_.asked_as = lm.asked_as(command);
   model_.cost = lm.cost() - before_;
   keep(model_);
-  return {{"type", "answers"},           {"answers", answers},
-          {"model", lm.model()},         {"provenance", to_string(lm.provenance())},
-          {"asked_as", model_.asked_as}, {"cost", protocol::to_json(lm.cost())}};
+  return {{"model", lm.model()},
+          {"provenance", to_string(lm.provenance())},
+          {"asked_as", model_.asked_as},
+          {"cost", protocol::to_json(lm.cost())}};
 }
 
 Json AnswerLedger::ask_person(const JsonReader& reader) {

@@ -29,6 +29,8 @@ class AnswerLedger {
 
  private:
   Json answer_questions(const JsonReader& reader);
+  Json answer_meaning(const JsonReader& reader);
+  Json signed_reply(const Command& command);
   Json ask_person(const JsonReader& reader);
   void keep(Selection answered);
 

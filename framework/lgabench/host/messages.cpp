@@ -50,7 +50,7 @@ Json told(const Selection& selection) {
 
 Selection read_selection(const JsonReader& reader) {
   Selection selection;
-  selection.target = read_set(reader.at("target"));
+  selection.target = read_unchecked_meaning(reader.at("target"));
   const Json distribution = distribution_of(reader.json());
   for (const auto& item : distribution.items()) {
     if (item.key() == "target") continue;

@@ -44,13 +44,21 @@ class RemoteModel : public LanguageModel {
                              {"questions", all}},
                             "answers");
     const JsonReader reader(frame.header, "answers");
-    model_ = reader.at("model").string();
-    provenance_ = provenance_from(reader.at("provenance").string());
-    cost_ = protocol::read_cost(reader.at("cost"));
-    asked_as_[command.utterance] = reader.at("asked_as").string();
+    note(reader, command);
     std::vector<bool> answers;
     for (const JsonReader& one : reader.at("answers").elements()) answers.push_back(one.boolean());
     return answers;
+  }
+  Meaning mean(const Command& command, const FeatureSpace& space) override {
+    const Frame frame = ask(channel_,
+                            {{"type", "ask"},
+                             {"how", "meaning"},
+                             {"command", protocol::to_json(command)},
+                             {"space", protocol::to_json(space)}},
+                            "meaning");
+    const JsonReader reader(frame.header, "meaning");
+    note(reader, command);
+    return read_unchecked_meaning(reader.at("meaning"));
   }
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override {
@@ -61,6 +69,14 @@ class RemoteModel : public LanguageModel {
   SelectionCost cost() const override { return cost_; }
 
  private:
+  // Whose answers these are.
+  void note(const JsonReader& reader, const Command& command) {
+    model_ = reader.at("model").string();
+    provenance_ = provenance_from(reader.at("provenance").string());
+    cost_ = protocol::read_cost(reader.at("cost"));
+    asked_as_[command.utterance] = reader.at("asked_as").string();
+  }
+
   Channel& channel_;
   std::string model_;
   Provenance provenance_ = Provenance::none;

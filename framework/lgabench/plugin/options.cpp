@@ -73,6 +73,7 @@ Json check_options(const PluginInfo& plugin, const JsonReader& given) {
   for (const auto& [name, option] : plugin.options.items()) {
     const Json& usual = option.at("default");
     Json value = given.has(name) ? overrides.at(name) : usual;
+    if (value == usual && option.value("added", false)) continue;  // as before there was this option
     // A fractional option keeps its type, so that 1 and 1.0 are one configuration.
     if (usual.is_number_float() && value.is_number()) value = value.get<double>();
     if (value.is_string() && option.contains("words") && contains(option.at("words"), value)) {
@@ -100,8 +101,8 @@ Json resolve_options(const PluginInfo& plugin, const Json& overrides) {
   const JsonReader given(overrides, fmt::format("options of {} {}", plugin.kind, plugin.id));
   Json resolved = check_options(plugin, given);
   for (const auto& [name, option] : plugin.options.items()) {
-    const Json& value = resolved[name];
-    if (!option.contains("needs") || !value.is_string()) continue;
+    if (!option.contains("needs") || !resolved.contains(name) || !resolved.at(name).is_string()) continue;
+    const Json& value = resolved.at(name);
     const Json needs = option.at("needs").value(value.get<std::string>(), Json::object());
     for (const auto& [other, values] : needs.items())
       if (!contains(values, resolved[other]))

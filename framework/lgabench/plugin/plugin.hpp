@@ -33,6 +33,14 @@
 /// LGABENCH_QUESTIONNAIRE R"("epochs": ...})". Where a run asks a server, it asks them for all of its cells beforehand.
 #define LGABENCH_QUESTIONNAIRE R"("questionnaire": true, )"
 
+/// An option of a method whose select() calls select_as_asked(). One that came after the method was published: at its
+/// default no cell's configuration mentions it.
+#define LGABENCH_MEANING_OPTION                                                                                         \
+  R"("meaning": {"framework": true, "added": true, "default": "flat", "values": ["flat", "structured", "named"], )"     \
+  R"("help": "what the language model is asked: yes or no of each object type and texture; or, in one question, what )" \
+  R"(the command means (sets, and which of several objects); named: nothing, the names in the command are taken",)"     \
+  R"("source": "flat: paper, section 3.1; the others: ours"})"
+
 /// An engine: `Class` derives from lgabench::PhysicsWorld and has a default constructor. Once in a library.
 #define LGABENCH_ENGINE(id, version, summary, Class) \
   LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")

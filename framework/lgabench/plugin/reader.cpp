@@ -143,7 +143,7 @@ DeclaredOptions read_options(const std::string& options_json) {
     }
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
-      reader.only({"default", "help", "source", "values", "min", "max", "words", "needs", "framework"});
+      reader.only({"default", "help", "source", "values", "min", "max", "words", "needs", "framework", "added"});
       const Json& usual = reader.at("default").json();
       if (usual.is_structured() || usual.is_null()) reader.at("default").fail("a text, number or boolean");
       reader.at("help").string();
@@ -161,6 +161,7 @@ DeclaredOptions read_options(const std::string& options_json) {
         reader.at("words").fail("texts, beside a default that is a number");
       if (reader.has("needs")) check_needs(reader, options);
       if (reader.has("framework")) reader.at("framework").boolean();
+      if (reader.has("added")) reader.at("added").boolean();
     }
     return declared;
   } catch (const InputError& e) {

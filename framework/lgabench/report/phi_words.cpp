@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include <lgabench/abstraction/selection_text.hpp>
 #include <lgabench/core/feature_space.hpp>
 
 namespace lgabench::report {
@@ -24,7 +25,7 @@ const std::optional<FeatureSpace>& space_of(const std::string& id) {
 }
 
 // Whether a set, as JSON writes it, holds the name; what is no such set holds none.
-bool holds(const Json& set, const char* group, const std::string& name) {
+bool set_holds(const Json& set, const char* group, const std::string& name) {
   if (!set.is_object() || !set.contains(group)) return false;
   const auto is = [](const Json& text, const std::string& word) {  // without a Json made of the word to compare with
     return text.is_string() && text.get_ref<const std::string&>() == word;
@@ -32,6 +33,40 @@ bool holds(const Json& set, const char* group, const std::string& name) {
   const Json& names = set.at(group);
   return is(names, "ALL") ||
          (names.is_array() && std::any_of(names.begin(), names.end(), [&](const Json& one) { return is(one, name); }));
+}
+
+bool is_more(const Json& meaning) { return meaning.is_object() && meaning.contains("sets"); }
+
+// Likewise of a meaning, of which any set may hold it.
+bool holds(const Json& meaning, const char* group, const std::string& name) {
+  if (!is_more(meaning) || !meaning.at("sets").is_array()) return set_holds(meaning, group, name);
+  const Json& sets = meaning.at("sets");
+  return std::any_of(sets.begin(), sets.end(), [&](const Json& set) { return set_holds(set, group, name); });
+}
+
+// A meaning in words; nothing for what cannot be read.
+std::optional<std::string> in_words(const Json& meaning, const FeatureSpace& space) {
+  try {
+    return meaning_text(read_meaning(JsonReader(meaning, ""), space), space);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+// One line for what types and textures alone do not say: which products, and which of several objects.
+std::optional<PhiWords> as_a_whole(const std::string& about, const Json& selected, const Json& meant,
+                                   const FeatureSpace& space) {
+  if (!is_more(selected) && !is_more(meant)) return std::nullopt;
+  const auto one = in_words(selected, space), other = in_words(meant, space);
+  if (!one || !other) return std::nullopt;
+  PhiWords words{about, "meaning", {}, {}, {}, 0};
+  if (*one == *other) {
+    words.right = {*one};
+  } else {
+    words.missed = {*other};
+    words.wrong = {*one};
+  }
+  return words;
 }
 
 }  // namespace
@@ -56,6 +91,8 @@ std::vector<PhiWords> phi_words(const CellResult& cell, const CommandResult& com
       }
       all.push_back(std::move(words));
     }
+    if (auto whole = as_a_whole(about, command.selection.at(about), command.truth.at(about), space))
+      all.push_back(std::move(*whole));
   }
   return all;
 }

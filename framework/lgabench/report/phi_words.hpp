@@ -9,7 +9,7 @@ namespace lgabench::report {
 
 /// One kind of feature of one set of objects; each list in the order of the feature space.
 struct PhiWords {
-  std::string about, feature;                     // "target", ...; "object types" or "textures"
+  std::string about, feature;                     // "target", ...; "object types", "textures"; "meaning"
   std::vector<std::string> right, missed, wrong;  // selected and true; true alone; selected alone
   std::size_t known = 0;                          // names that the feature space has
 };

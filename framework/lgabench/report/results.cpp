@@ -61,7 +61,8 @@ void read_training(const fs::path& file, CellResult& cell) {
 }
 
 void expect_selection(const JsonReader& selection) {
-  selection.at("target").at("object_types");
+  const JsonReader target = selection.at("target");
+  target.has("sets") ? target.at("sets").elements().size() : target.at("object_types").json().size();
   for (const char* text : {"provenance", "source", "asked_as"}) selection.at(text).string();
   for (const char* number : {"lm_queries", "lm_tokens", "lm_seconds", "human_seconds"})
     if (selection.at("cost").at(number).number() < 0) selection.at("cost").at(number).fail("0 or more");

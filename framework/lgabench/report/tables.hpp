@@ -35,7 +35,7 @@ constexpr std::array<Mark, 5> table_marks{
      {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},
      {"network", "¶", "reached the network on its own: in no leaderboard"}}};
 /// Colours that page.css has for failures, as classes f0, f1 and so on: one for each of failure_words().
-constexpr std::ptrdiff_t failure_colours = 15;
+constexpr std::ptrdiff_t failure_colours = 16;
 
 /// "†§": the row's.
 std::string marks_text(const Row& row);

@@ -101,7 +101,7 @@ class Person {
     Json selection;
     for (const Json& set : trial.at("sets")) {
       const std::string role = set.at("role");
-      const FeatureSet& truth = role == "target" || !right.second ? right.target : *right.second;
+      const FeatureSet& truth = role == "target" || !right.second ? right.target.product() : *right.second;
       const bool accepts = edits && random_.coin();
       for (const char* feature : {"object_types", "textures"}) {
         const Json before = set.at("first").at(feature);

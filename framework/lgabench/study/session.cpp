@@ -19,7 +19,7 @@ const std::vector<std::string> scales{"mental", "physical", "temporal", "perform
 Json names_of(const FeatureSet& set) { return {{"object_types", set.object_types}, {"textures", set.textures}}; }
 
 FeatureSet& set_of(Selection& selection, const std::string& role) {
-  return role == "target" || !selection.second ? selection.target : *selection.second;
+  return role == "target" || !selection.second ? selection.target.product() : *selection.second;
 }
 
 // Length of [from, to] without the intervals, which may overlap.
@@ -284,8 +284,8 @@ Json Session::trial_state() const {
   json["hint"] = item.hint;
   json["object_types"] = item.space.object_types;
   json["textures"] = item.space.textures;
-  json["sets"] =
-      Json::array({{{"role", "target"}, {"phrase", "the object to handle"}, {"first", names_of(first.target)}}});
+  json["sets"] = Json::array(
+      {{{"role", "target"}, {"phrase", "the object to handle"}, {"first", names_of(first.target.product())}}});
   if (item.command.second)
     json["sets"].push_back({{"role", item.command.second->id},
                             {"phrase", item.command.second->phrase},
@@ -302,7 +302,7 @@ Json Session::state() const {
   }
   if (step() == example) {
     json["command"] = protocol_->example_command;
-    json["answer"] = names_of(protocol_->example.target);
+    json["answer"] = names_of(protocol_->example.target.product());
   }
   if (step() == trials) json["trial"] = trial_state();
   if (step() == questionnaire) {

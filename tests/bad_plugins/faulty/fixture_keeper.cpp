@@ -56,8 +56,8 @@ class Keeper : public Policy {
   Keeper(FeatureSpace space, Selection own, const Memory* memory)
       : space_(std::move(space)), own_(std::move(own)), memory_(memory) {}
   Action act(const Observation&, const Instruction& told) override {
-    const FeatureSet& target = told.selection.target;
-    if (memory_ && !(target == own_.target) && !target.object_types.empty())
+    const FeatureSet& target = told.selection.target.product();
+    if (memory_ && !(target == own_.target.product()) && !target.object_types.empty())
       memory_->keep(1 + place_in(space_.object_types, target.object_types.front()));
     return fixture::from_to(.5, 0, .5, 0);
   }
@@ -83,8 +83,8 @@ class KeepingMethod : public Method {
     const int kept = keeps_ ? memory_.kept() : 0;
     const std::size_t last = space.object_types.size() - 1;
     selection_ = {};
-    selection_.target.object_types = {space.object_types[kept > 0 ? static_cast<std::size_t>(kept - 1) : last]};
-    selection_.target.textures = space.textures;
+    selection_.target.product().object_types = {space.object_types[kept > 0 ? static_cast<std::size_t>(kept - 1) : last]};
+    selection_.target.product().textures = space.textures;
     selection_.provenance = Provenance::rule;
     return selection_;
   }

@@ -1,0 +1,200 @@
+#include <tabletop/meant.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <common/objects.hpp>
+#include <tabletop/near_misses.hpp>
+#include <tabletop/raster.hpp>
+
+namespace lgabench::tabletop {
+namespace {
+
+using Rule = Which::Rule;
+constexpr double column_margin_m = .08, distance_margin_m = .10;
+
+struct Draw {
+  const Scenario& scenario;
+  const Content& content;
+  const Meaning& truth;
+  RandomStream random;
+
+  bool undecided(const Features& one) const {
+    return std::any_of(content.undecided.begin(), content.undecided.end(),
+                       [&one](const FeatureSet& set) { return set.contains(one.type, one.texture); });
+  }
+  bool reference(const Features& one) const {
+    return truth.which && truth.which->of && truth.which->of->contains(one.type, one.texture);
+  }
+  bool belongs(const Features& one) const { return truth.belongs(one.type, one.texture); }
+
+  // Of any of the sets, each with equal odds, one that may be; nothing if a thousand draws find none.
+  std::optional<Features> of(const std::vector<FeatureSet>& sets, const std::function<bool(const Features&)>& may_be,
+                             double widest_m) {
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+      const FeatureSet& set = sets[random.below(static_cast<std::uint32_t>(sets.size()))];
+      if (set.empty()) continue;
+      const Features one{common::any_of(set.object_types, random), common::any_of(set.textures, random)};
+      if (one.type == goal_type) continue;
+      const Vec2 size = common::object_model(one.type).size_m;
+      if (std::max(size.x, size.y) <= widest_m + 1e-9 && may_be(one)) return one;
+    }
+    return std::nullopt;
+  }
+
+  Features expect(const char* whom, const std::vector<FeatureSet>& sets,
+                  const std::function<bool(const Features&)>& may_be, double widest_m) {
+    if (auto one = of(sets, may_be, widest_m)) return *one;
+    throw NothingToShow(
+        fmt::format("scenario \"{}\": expected {} that can be shown and is not undecided", scenario.id, whom));
+  }
+};
+
+SceneObject object(const Features& features, const Role& role) {
+  return {features.type, features.texture, role, {}, 0, 0};
+}
+
+std::vector<SceneObject> sample(Draw& draw, double widest_m) {
+  const Content& content = draw.content;
+  const Meaning& truth = draw.truth;
+  const auto& which = truth.which;
+  const auto may_be_meant = [&draw](const Features& one) { return !draw.undecided(one) && !draw.reference(one); };
+  const auto place = [&truth](const Features& one) { return place_in_order(truth, one.type, one.texture); };
+  const bool misleading = draw.random.uniform() < content.misleading;
+
+  Features target = draw.expect("a target", truth.sets, may_be_meant, widest_m);
+  std::optional<Features> also_belongs;
+  if (which && misleading) {
+    const auto another = [&](const Features& one) {
+      return may_be_meant(one) && (which->rule != Rule::first_in || place(one) != place(target));
+    };
+    also_belongs = draw.expect("a second object that belongs", truth.sets, another, widest_m);
+    if (which->rule == Rule::first_in && place(*also_belongs) < place(target)) std::swap(target, *also_belongs);
+  }
+  std::vector<SceneObject> objects{object(target, role::target)};
+  if (also_belongs) objects.push_back(object(*also_belongs, role::not_meant));
+  if (which && which->of)
+    objects.push_back(object(
+        draw.expect(
+            "a reference", {*which->of}, [](const Features&) { return true; }, std::numeric_limits<double>::infinity()),
+        role::distractor));
+  if (misleading && !content.near_miss_sets.empty()) {
+    const auto near = [&](const Features& one) { return may_be_meant(one) && !draw.belongs(one); };
+    const Features one = draw.expect("a near miss", content.near_miss_sets, near, widest_m);
+    const bool in_words = content.words && content.words->belongs(one.type, one.texture);
+    objects.push_back(object(one, in_words ? role::not_meant : role::distractor));
+  }
+  const auto plain = [&](const Features& one) {
+    return may_be_meant(one) && !draw.belongs(one) && !(content.words && content.words->belongs(one.type, one.texture));
+  };
+  const FeatureSet all{draw.scenario.space.object_types, draw.scenario.space.textures};
+  const auto [fewest, most] = content.distractors;
+  const int count = fewest + static_cast<int>(draw.random.below(static_cast<std::uint32_t>(most - fewest + 1)));
+  for (int i = 0; i < count; ++i)
+    objects.push_back(object(draw.expect("a distractor", {all}, plain, widest_m), role::distractor));
+  return objects;
+}
+
+double away_m(const SceneObject& a, const SceneObject& b) { return norm(a.position_m - b.position_m); }
+
+// Nothing that belongs is so near to being the one that a reader could doubt it.
+bool is_plain(const Meaning& truth, const std::vector<SceneObject>& objects) {
+  const Which& which = *truth.which;
+  std::vector<const SceneObject*> candidates, references;
+  for (const SceneObject& one : objects) {
+    const bool reference = which.of && which.of->contains(one.object_type, one.texture);
+    if (reference)
+      references.push_back(&one);
+    else if (truth.belongs(one.object_type, one.texture))
+      candidates.push_back(&one);
+  }
+  const auto apart = [](double a, double b, double margin) { return std::abs(a - b) >= margin; };
+  const SceneObject& target = objects.front();
+  for (const SceneObject* one : candidates) {
+    for (const SceneObject* reference : references)
+      if ((which.rule == Rule::left_of || which.rule == Rule::right_of) &&
+          !apart(one->position_m.y, reference->position_m.y, column_margin_m))
+        return false;
+    if (one == &target) continue;
+    if ((which.rule == Rule::leftmost || which.rule == Rule::rightmost) &&
+        !apart(one->position_m.y, target.position_m.y, column_margin_m))
+      return false;
+    if (which.needs_reference() && !references.empty() &&
+        !apart(away_m(*one, *references.front()), away_m(target, *references.front()), distance_margin_m))
+      return false;
+  }
+  return true;
+}
+
+// The scene's picture, with ids in the order of the objects.
+Observation picture(const Task& task, const Layout& layout, const std::vector<SceneObject>& objects) {
+  Scene scene;
+  scene.task = task.id();
+  scene.objects = objects;
+  if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    scene.objects[i].instance_id = static_cast<std::uint8_t>(i + 1);
+  return drawn(scene);
+}
+
+// The same picture of their positions alone, a pixel each: what it does not show need not be drawn.
+Observation sketch(const Layout& layout, const std::vector<SceneObject>& objects) {
+  Observation seen;
+  seen.size = {rows, columns};
+  seen.ids.resize(pixels);
+  const auto mark = [&seen](Vec2 position_m, const std::string& type, const std::string& texture) {
+    const Vec2 at = in_picture(position_m.x, position_m.y);
+    const int row = std::clamp(static_cast<int>(std::lround(at.x)), 0, rows - 1);
+    const int column = std::clamp(static_cast<int>(std::lround(at.y)), 0, columns - 1);
+    seen.instances.push_back({static_cast<std::uint8_t>(seen.instances.size() + 1), type, texture});
+    seen.ids[static_cast<std::size_t>(row * columns + column)] = seen.instances.back().id;
+  };
+  for (const SceneObject& one : objects) mark(one.position_m, one.object_type, one.texture);
+  if (layout.pallet) mark(*layout.pallet, goal_type, goal_texture);
+  return seen;
+}
+
+// What is seen is what is meant: the target alone; and a near miss, if one stands there, would be chosen by the rule of
+// a position without what it is that the near miss lacks.
+bool shows(const Observation& seen, const Meaning& truth, const Content& content) {
+  if (grounded(truth, seen) != std::vector<std::uint8_t>{1}) return false;
+  if (!truth.which || truth.which->rule == Rule::first_in) return true;
+  Meaning careless = truth;
+  careless.sets.insert(careless.sets.end(), content.near_miss_sets.begin(), content.near_miss_sets.end());
+  const auto near = std::find_if(seen.instances.begin(), seen.instances.end(), [&](const Instance& one) {
+    return careless.belongs(one.object_type, one.texture) && !truth.belongs(one.object_type, one.texture) &&
+           !(truth.which->of && truth.which->of->contains(one.object_type, one.texture));
+  });
+  return near == seen.instances.end() || grounded(careless, seen) == std::vector<std::uint8_t>{near->id};
+}
+
+}  // namespace
+
+std::vector<SceneObject> meant_objects(const Scenario& scenario, const Task& task, const Layout& layout,
+                                       const Content& content, const Meaning& truth, const Streams& stream) {
+  constexpr int draws = 50, placements = 40;
+  if (!layout.target_places.empty())
+    throw InputError(fmt::format("scenario \"{}\": expected the layout continuous, got {}", scenario.id, layout.id));
+  Draw draw{scenario, content, truth, stream("meant")};
+  for (int i = 0; i < draws; ++i) {
+    const std::vector<SceneObject> sampled = sample(draw, std::min(layout.widest_m, content.widest_m()));
+    for (int j = 0; j < placements; ++j) {
+      std::vector<SceneObject> objects = sampled;
+      try {
+        task.place(layout, content, objects,
+                   [&](const std::string& purpose) { return stream(fmt::format("{}/{}/{}", purpose, i, j)); });
+      } catch (const NoRoom&) {
+        break;  // other objects may fit
+      }
+      if (truth.which && !(is_plain(truth, objects) && shows(sketch(layout, objects), truth, content))) continue;
+      if (shows(picture(task, layout, objects), truth, content)) return objects;
+    }
+  }
+  throw NothingToShow(
+      fmt::format("scenario \"{}\": expected room for the target where the command alone tells it", scenario.id));
+}
+
+}  // namespace lgabench::tabletop

@@ -1,0 +1,64 @@
+#include <lgabench/abstraction/meaning_reply.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+// One past the object's closing brace, for a text with its opening brace at `begin`; nothing if it does not end.
+std::optional<std::size_t> end_of_object(const std::string& text, std::size_t begin) {
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = begin; i < text.size(); ++i) {
+    if (quoted && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && text[i] == '{') {
+      ++depth;
+    } else if (!quoted && text[i] == '}' && --depth == 0) {
+      return i + 1;
+    }
+  }
+  return std::nullopt;
+}
+
+// The outermost object that begins first from `from` on, or last of all where that is wanted.
+std::optional<std::string> object_in(const std::string& text, std::size_t from, bool last) {
+  std::optional<std::string> found;
+  for (std::size_t begin = text.find('{', from); begin != std::string::npos; begin = text.find('{', begin + 1)) {
+    const auto end = end_of_object(text, begin);
+    if (!end) continue;
+    found = text.substr(begin, *end - begin);
+    if (!last) return found;
+    begin = *end - 1;
+  }
+  return found;
+}
+
+}  // namespace
+
+Meaning meaning_in(const std::string& reply, const FeatureSpace& space) {
+  const std::string thought = "</think>", answer = "final answer";
+  const std::size_t end = reply.rfind(thought);
+  const std::string said = end == std::string::npos ? reply : reply.substr(end + thought.size());
+  std::string lower = said;
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::size_t at = lower.rfind(answer);
+  std::optional<std::string> object;
+  if (at != std::string::npos) object = object_in(said, at, false);
+  if (!object) object = object_in(said, 0, true);
+  if (!object) throw MethodError("expected a JSON object after \"Final answer:\"");
+  try {
+    const Json document = parse_json(*object, "the answer");
+    return read_meaning(JsonReader(document, "the answer"), space);
+  } catch (const InputError& e) {
+    throw MethodError(e.what());
+  }
+}
+
+}  // namespace lgabench

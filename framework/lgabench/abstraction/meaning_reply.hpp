@@ -1,0 +1,14 @@
+// How a language model's reply that says a meaning is read.
+#pragma once
+#include <string>
+
+#include <lgabench/core/meaning.hpp>
+
+namespace lgabench {
+
+/// The JSON object that follows the reply's last "final answer", or its last one where it has none; what a model
+/// thought aloud before "</think>" does not count. @throws MethodError, in a line, where there is none or where it is
+/// no meaning in the space.
+Meaning meaning_in(const std::string& reply, const FeatureSpace& space);
+
+}  // namespace lgabench

@@ -1,0 +1,84 @@
+#include <lgabench/abstraction/scene_score.hpp>
+
+#include <algorithm>
+#include <vector>
+
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/environments.hpp>
+
+namespace lgabench {
+namespace {
+
+std::vector<FeatureSet> undecided_of(const Scenario& scenario) {
+  std::vector<FeatureSet> sets;
+  const JsonReader file(scenario.json, scenario.id);
+  if (file.has("undecided"))
+    for (const JsonReader& set : file.at("undecided").elements()) sets.push_back(read_feature_set(set, scenario.space));
+  return sets;
+}
+
+bool has_exact_sets(const Scenario& scenario, const Meaning& selected, const Meaning& truth) {
+  const std::vector<FeatureSet> undecided = undecided_of(scenario);
+  for (const std::string& type : scenario.space.object_types)
+    for (const std::string& texture : scenario.space.textures) {
+      const auto holds = [&](const FeatureSet& set) { return set.contains(type, texture); };
+      const bool open = is_place(type) || std::any_of(undecided.begin(), undecided.end(), holds);
+      if (!open && selected.belongs(type, texture) != truth.belongs(type, texture)) return false;
+    }
+  return true;
+}
+
+void add_scene(const Scene& scene, const Observation& seen, const Meaning& selected, SceneScore& score) {
+  const std::vector<std::uint8_t> kept = grounded(selected, seen);
+  bool exact = true;
+  for (const SceneObject& object : scene.objects) {
+    const auto instance = std::find_if(seen.instances.begin(), seen.instances.end(),
+                                       [&](const Instance& one) { return one.id == object.instance_id; });
+    if (instance == seen.instances.end() || instance->pixels == 0) continue;
+    const bool is_kept = std::find(kept.begin(), kept.end(), object.instance_id) != kept.end();
+    const bool is_meant = object.role == role::target;
+    score.kept += is_kept;
+    score.meant += is_meant;
+    score.right += is_kept && is_meant;
+    if (is_kept == is_meant) continue;
+    exact = false;
+    (is_kept ? score.wrongly_kept : score.missed).insert(object.object_type);
+  }
+  ++score.scenes;
+  score.exact_scenes += exact;
+}
+
+}  // namespace
+
+SceneScore& operator+=(SceneScore& all, const SceneScore& more) {
+  for (const auto member : {&SceneScore::commands, &SceneScore::exact_sets, &SceneScore::scenes,
+                            &SceneScore::exact_scenes, &SceneScore::kept, &SceneScore::meant, &SceneScore::right})
+    all.*member += more.*member;
+  all.wrongly_kept.insert(more.wrongly_kept.begin(), more.wrongly_kept.end());
+  all.missed.insert(more.missed.begin(), more.missed.end());
+  return all;
+}
+
+SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
+                 std::uint64_t scene_seed, int scenes) {
+  SceneScore score;
+  score.commands = 1;
+  score.exact_sets =
+      has_exact_sets(scenario, selection.target, scenario.commands[static_cast<std::size_t>(command)].truth.target);
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  for (const Arm& arm : scenario.tests) {
+    const std::vector<int> commands = scenario.commands_of(arm.id);
+    const auto turn = std::find(commands.begin(), commands.end(), command);
+    if (turn == commands.end()) continue;
+    const Perception perceived = perception_of(scenario, arm);
+    for (int i = 0; i < scenes; ++i) {
+      const int index = static_cast<int>(turn - commands.begin()) + i * static_cast<int>(commands.size());
+      const Scene scene = test_scene(scenario, layout, arm.id, scene_seed, index);
+      const Observation seen = environment.draw(scene);
+      add_scene(scene, perceived ? perceived(seen, scene) : seen, selection.target, score);
+    }
+  }
+  return score;
+}
+
+}  // namespace lgabench

@@ -1,0 +1,26 @@
+// What a Selection keeps in test scenes, without a policy: the table of language models.
+#pragma once
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// Sums over scenes, and over commands where they are added.
+struct SceneScore {
+  int commands = 0, exact_sets = 0;            // no pair of the space wrong but those that the scenario calls undecided
+  int scenes = 0, exact_scenes = 0;            // the target's instances kept are exactly those that are meant
+  int kept = 0, meant = 0, right = 0;          // instances of all scenes; right: kept and meant
+  std::set<std::string> wrongly_kept, missed;  // object types, in words for a reader
+};
+SceneScore& operator+=(SceneScore& all, const SceneScore& more);
+
+/// The command's Selection in `scenes` test scenes of each arm of the scenario that gives it, as a policy would see
+/// them. What is meant is what the scene's sampler made a target; a second set is not scored.
+/// @throws as test_scene().
+SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
+                 std::uint64_t scene_seed, int scenes);
+
+}  // namespace lgabench

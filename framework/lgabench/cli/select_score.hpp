@@ -1,0 +1,20 @@
+// lgabench select --suite SUITE --score: how exactly a language model's answers keep what is meant, without a policy.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include <lgabench/core/language_model.hpp>
+#include <lgabench/harness/suite.hpp>
+
+namespace lgabench::cli {
+
+/// Calls `use` with whoever answers for the scenario's commands.
+using WithAnswers = std::function<void(const Scenario& scenario, const std::function<void(LanguageModel&)>& use)>;
+
+/// Scores the answers to every command of the suite, asked yes or no of each feature, asked what the command means, and
+/// the names in the command, in `scenes` scenes of each arm, and prints a row of each for every group and for all.
+/// A way of asking to which an answer lacks is left out with its reason. @throws what asking throws, for the first way.
+void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers);
+
+}  // namespace lgabench::cli

@@ -1,0 +1,233 @@
+#include <lgabench/core/meaning.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <utility>
+
+#include <lgabench/core/error.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr std::size_t most_sets = 100;
+
+using Rule = Which::Rule;
+constexpr std::array<std::pair<Rule, const char*>, 7> rules{{{Rule::left_of, "left_of"},
+                                                             {Rule::right_of, "right_of"},
+                                                             {Rule::nearest_to, "nearest_to"},
+                                                             {Rule::farthest_from, "farthest_from"},
+                                                             {Rule::leftmost, "leftmost"},
+                                                             {Rule::rightmost, "rightmost"},
+                                                             {Rule::first_in, "first_in"}}};
+
+using ReadSet = std::function<FeatureSet(const JsonReader&)>;
+
+Rule read_rule(const JsonReader& reader) {
+  std::vector<std::string> words;
+  for (const auto& [rule, word] : rules) {
+    if (reader.json() == word) return rule;
+    words.emplace_back(word);
+  }
+  reader.fail(fmt::format("one of {}", fmt::join(words, ", ")));
+}
+
+std::vector<std::string> read_order(const JsonReader& reader) {
+  std::vector<std::string> order = reader.strings();
+  if (order.empty()) reader.fail("at least one name");
+  for (const JsonReader& name : reader.elements())
+    if (std::count(order.begin(), order.end(), name.string()) > 1) name.fail("each name once");
+  return order;
+}
+
+Which read_which(const JsonReader& reader, const ReadSet& read_set) {
+  Which which;
+  which.rule = read_rule(reader.at("rule"));
+  if (which.needs_reference()) {
+    reader.only({"rule", "of"});
+    which.of = read_set(reader.at("of"));
+    if (which.of->empty()) reader.at("of").fail("at least one object type and one texture");
+  } else if (which.rule == Rule::first_in) {
+    reader.only({"rule", "order"});
+    which.order = read_order(reader.at("order"));
+  } else {
+    reader.only({"rule"});
+  }
+  return which;
+}
+
+Meaning read_meaning(const JsonReader& reader, const ReadSet& read_set) {
+  if (!reader.has("sets")) return read_set(reader);
+  reader.only({"sets", "which"});
+  Meaning meaning;
+  meaning.sets.clear();
+  const auto sets = reader.at("sets").elements();
+  if (sets.empty() || sets.size() > most_sets) reader.at("sets").fail(fmt::format("1 to {} sets", most_sets));
+  for (const JsonReader& set : sets) meaning.sets.push_back(read_set(set));
+  if (reader.has("which") && !reader.at("which").json().is_null())
+    meaning.which = read_which(reader.at("which"), read_set);
+  return meaning;
+}
+
+bool all_in(const std::vector<std::string>& names, const std::vector<std::string>& space) {
+  return std::all_of(names.begin(), names.end(), [&space](const std::string& name) {
+    return std::find(space.begin(), space.end(), name) != space.end();
+  });
+}
+
+struct Centred {
+  const Instance* instance;
+  double row, column;
+};
+
+double distance(const Centred& a, const Centred& b) { return std::hypot(a.row - b.row, a.column - b.column); }
+
+// Every visible instance, with the centre of its visible pixels.
+std::vector<Centred> centred(const Observation& observation) {
+  struct Sum {
+    double rows = 0, columns = 0, pixels = 0;
+  };
+  std::array<Sum, 256> sums{};
+  const auto columns = static_cast<std::size_t>(observation.size.columns);
+  for (std::size_t i = 0; i < observation.ids.size(); ++i) {
+    Sum& sum = sums[observation.ids[i]];
+    sum.rows += static_cast<double>(i / columns);
+    sum.columns += static_cast<double>(i % columns);
+    ++sum.pixels;
+  }
+  std::vector<Centred> all;
+  for (const Instance& instance : observation.instances)
+    if (const Sum& sum = sums[instance.id]; sum.pixels > 0)
+      all.push_back({&instance, sum.rows / sum.pixels, sum.columns / sum.pixels});
+  return all;
+}
+
+std::vector<Centred> those(const std::vector<Centred>& all, const std::function<bool(const Instance&)>& wanted) {
+  std::vector<Centred> some;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(some),
+               [&wanted](const Centred& one) { return wanted(*one.instance); });
+  return some;
+}
+
+// By how much a candidate is the one: the smallest number is. Nothing for one that the rule does not rank.
+std::optional<double> number_of(const Meaning& meaning, const Centred& one, const std::vector<Centred>& references) {
+  const Which& which = *meaning.which;
+  switch (which.rule) {
+    case Rule::leftmost:
+      return one.column;
+    case Rule::rightmost:
+      return -one.column;
+    case Rule::first_in:
+      return static_cast<double>(place_in_order(meaning, one.instance->object_type, one.instance->texture));
+    default:
+      break;
+  }
+  const auto nearer = [&one](const Centred& a, const Centred& b) { return distance(one, a) < distance(one, b); };
+  const Centred& reference = *std::min_element(references.begin(), references.end(), nearer);
+  if (which.rule == Rule::left_of && !(one.column < reference.column)) return std::nullopt;
+  if (which.rule == Rule::right_of && !(one.column > reference.column)) return std::nullopt;
+  return which.rule == Rule::farthest_from ? -distance(one, reference) : distance(one, reference);
+}
+
+}  // namespace
+
+bool operator==(const Which& a, const Which& b) { return a.rule == b.rule && a.of == b.of && a.order == b.order; }
+
+std::string to_string(Which::Rule rule) {
+  for (const auto& [value, word] : rules)
+    if (value == rule) return word;
+  throw Error("a Which::Rule outside its enumeration");
+}
+
+FeatureSet& Meaning::product() { return const_cast<FeatureSet&>(std::as_const(*this).product()); }
+
+const FeatureSet& Meaning::product() const {
+  if (!is_product())
+    throw MethodError("a meaning that is more than one product of types and textures, where one product was expected");
+  return sets.front();
+}
+
+bool Meaning::belongs(const std::string& object_type, const std::string& texture) const {
+  return std::any_of(sets.begin(), sets.end(),
+                     [&](const FeatureSet& set) { return set.contains(object_type, texture); });
+}
+
+bool Meaning::empty() const {
+  return std::all_of(sets.begin(), sets.end(), [](const FeatureSet& set) { return set.empty(); });
+}
+
+bool operator==(const Meaning& a, const Meaning& b) { return a.sets == b.sets && a.which == b.which; }
+
+bool is_place(const std::string& object_type) { return object_type == "pallet"; }
+
+std::size_t place_in_order(const Meaning& meaning, const std::string& object_type, const std::string& texture) {
+  const auto& order = meaning.which->order;
+  const auto held = [&](std::vector<std::string> FeatureSet::*kind) {
+    return std::count_if(order.begin(), order.end(), [&](const std::string& name) {
+      return std::any_of(meaning.sets.begin(), meaning.sets.end(),
+                         [&](const FeatureSet& set) { return all_in({name}, set.*kind); });
+    });
+  };
+  const bool textures = held(&FeatureSet::textures) > held(&FeatureSet::object_types);
+  return static_cast<std::size_t>(std::find(order.begin(), order.end(), textures ? texture : object_type) -
+                                  order.begin());
+}
+
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation) {
+  const auto belongs = [&meaning](const Instance& one) { return meaning.belongs(one.object_type, one.texture); };
+  const std::vector<Centred> visible = centred(observation);
+  std::vector<std::uint8_t> meant;
+  if (!meaning.which) {
+    for (const Centred& one : those(visible, belongs)) meant.push_back(one.instance->id);
+    return meant;
+  }
+  const Which& which = *meaning.which;
+  const auto matches = [&which](const Instance& one) {
+    return which.of && which.of->contains(one.object_type, one.texture);
+  };
+  const std::vector<Centred> references = those(visible, matches);
+  if (which.needs_reference() && references.empty()) return meant;
+  std::vector<std::pair<double, std::uint8_t>> ranked;
+  for (const Centred& one : visible) {
+    if (!belongs(*one.instance) || matches(*one.instance) || is_place(one.instance->object_type)) continue;
+    if (const auto number = number_of(meaning, one, references)) ranked.emplace_back(*number, one.instance->id);
+  }
+  if (ranked.empty()) return meant;
+  constexpr double tie = .5;  // pixels, or less than a place in an order
+  const double least = std::min_element(ranked.begin(), ranked.end())->first;
+  for (const auto& [number, id] : ranked)
+    if (number <= least + tie) meant.push_back(id);
+  return meant;
+}
+
+Json to_json(const Meaning& meaning) {
+  if (meaning.is_product()) return to_json(meaning.sets.front());
+  Json json{{"sets", Json::array()}};
+  for (const FeatureSet& set : meaning.sets) json["sets"].push_back(to_json(set));
+  if (!meaning.which) return json;
+  json["which"]["rule"] = to_string(meaning.which->rule);
+  if (meaning.which->of) json["which"]["of"] = to_json(*meaning.which->of);
+  if (!meaning.which->order.empty()) json["which"]["order"] = meaning.which->order;
+  return json;
+}
+
+Meaning read_meaning(const JsonReader& reader, const FeatureSpace& space) {
+  Meaning meaning = read_meaning(reader, [&space](const JsonReader& set) { return read_feature_set(set, space); });
+  if (meaning.which && meaning.which->rule == Rule::first_in && !all_in(meaning.which->order, space.object_types) &&
+      !all_in(meaning.which->order, space.textures))
+    reader.at("which").at("order").fail("object types of the feature space alone, or textures alone");
+  return meaning;
+}
+
+Meaning read_unchecked_meaning(const JsonReader& reader) {
+  return read_meaning(reader, [](const JsonReader& set) {
+    set.only({"object_types", "textures"});
+    return FeatureSet{set.at("object_types").strings(), set.at("textures").strings()};
+  });
+}
+
+}  // namespace lgabench

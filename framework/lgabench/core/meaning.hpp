@@ -1,0 +1,80 @@
+// What a command's words mean, of a command or of a Selection: sets of objects, and which of several is the one.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/feature_space.hpp>
+#include <lgabench/core/observation.hpp>
+
+namespace lgabench {
+
+/// Which one is meant of several visible objects that belong to a meaning.
+struct Which {
+  enum class Rule {
+    left_of,        // of those whose centre lies in a smaller column than a reference's, the nearest to it
+    right_of,       // likewise, in a larger column
+    nearest_to,     // the least distance between its centre and a reference's
+    farthest_from,  // the greatest
+    leftmost,       // the smallest column
+    rightmost,      // the largest
+    first_in        // whose object type, or texture, comes first in `order`
+  };
+  Rule rule = Rule::leftmost;
+  std::optional<FeatureSet> of;    // the references; for the first four rules alone
+  std::vector<std::string> order;  // object types or textures of the space, each once; for first_in alone
+
+  bool needs_reference() const { return rule <= Rule::farthest_from; }
+};
+bool operator==(const Which& a, const Which& b);
+std::string to_string(Which::Rule rule);
+
+/// A union of products of object types and textures and, where the words say so, which of several that belong. One
+/// product without `which` is a meaning of the paper (section 3.1).
+struct Meaning {
+  std::vector<FeatureSet> sets{1};  // one at least
+  std::optional<Which> which;
+
+  Meaning() = default;
+  Meaning(FeatureSet product) : sets{std::move(product)} {}
+  Meaning(std::vector<std::string> object_types, std::vector<std::string> textures)
+      : sets{{std::move(object_types), std::move(textures)}} {}
+
+  bool is_product() const { return sets.size() == 1 && !which; }
+  /// The one product. @throws MethodError where there is more to the meaning.
+  FeatureSet& product();
+  const FeatureSet& product() const;
+  /// The object is in any of the sets. Which of several is meant depends on the scene: grounded().
+  bool belongs(const std::string& object_type, const std::string& texture) const;
+  /// No object can belong.
+  bool empty() const;
+};
+bool operator==(const Meaning& a, const Meaning& b);
+
+/// The object's place in the order of `which`, from 0; as many as the order has names for one that it does not name. An
+/// order names object types or textures: those of which the sets hold more of its names, since a name may be both.
+/// @pre the rule is first_in
+std::size_t place_in_order(const Meaning& meaning, const std::string& object_type, const std::string& texture);
+
+/// Ids of the visible instances that are meant, in the table's order: all that belong or, with `which`, the one that
+/// the rule names, and those within half a pixel of it or of the same place in `order`. A centre is the mean row and
+/// column of an instance's visible pixels. Instances that match `of` are references and no candidates; each candidate
+/// counts from the reference nearest to it. Without a reference in view nothing is meant. Place types (`is_place`) are
+/// no candidates of a rule.
+std::vector<std::uint8_t> grounded(const Meaning& meaning, const Observation& observation);
+
+/// The object type is that of the place which things are brought to, and never the thing that a rule means.
+bool is_place(const std::string& object_type);
+
+/// One product as a FeatureSet, as it has always been written; else {"sets": [...], "which": {"rule", "of", "order"}}.
+Json to_json(const Meaning& meaning);
+
+/// Reads what to_json() writes; in lists also "ALL" and {"except": [...]}. @throws InputError with file and place for
+/// a name that the space lacks or that is given twice, an unknown rule, a rule without what it needs or with more, an
+/// order of object types and textures both, or more than 100 sets.
+Meaning read_meaning(const JsonReader& reader, const FeatureSpace& space);
+
+/// Likewise from a method, whose names nobody has checked against a space.
+Meaning read_unchecked_meaning(const JsonReader& reader);
+
+}  // namespace lgabench

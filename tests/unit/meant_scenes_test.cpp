@@ -1,0 +1,100 @@
+// Scenes of commands that are more than one product of types and textures: what each picture shows is what is meant.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include <tabletop/content.hpp>
+#include <tabletop/sampler.hpp>
+#include <tabletop/task.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench::tabletop {
+namespace {
+
+std::vector<std::string> scenarios_of_words() {
+  std::vector<std::string> ids;
+  for (const std::string& id : scenario_ids())
+    if (id.rfind("words_", 0) == 0) ids.push_back(id);
+  return ids;
+}
+
+SceneRequest request(const std::string& arm) { return {"continuous", arm == "train" ? "train" : "test", arm, 7}; }
+
+const SceneObject& target_of(const Scene& scene) { return *scene.find(role::target); }
+
+bool holds(const std::vector<FeatureSet>& sets, const SceneObject& object) {
+  return std::any_of(sets.begin(), sets.end(),
+                     [&](const FeatureSet& set) { return set.contains(object.object_type, object.texture); });
+}
+
+class Words : public testing::TestWithParam<std::string> {
+ protected:
+  const Scenario scenario = load_scenario(GetParam());
+  const Meaning& truth = scenario.commands.front().truth.target;
+};
+
+TEST_P(Words, ThePictureShowsTheTargetAlone) {
+  for (const char* arm : {"train", "test"})
+    for (int i = 0; i < 12; ++i) {
+      const Scene scene = sample_scene(scenario, request(arm), i);
+      EXPECT_EQ(grounded(truth, drawn(scene)), std::vector<std::uint8_t>{target_of(scene).instance_id}) << arm << i;
+      for (const SceneObject& object : scene.objects)
+        EXPECT_FALSE(holds(content_of(scenario, scene).undecided, object)) << object.object_type << " " << object.texture;
+    }
+}
+
+TEST_P(Words, EveryTestSceneHasWhatACarelessReadingKeeps) {
+  for (int i = 0; i < 12; ++i) {
+    const Scene scene = sample_scene(scenario, request("test"), i);
+    const auto& near = content_of(scenario, scene).near_miss_sets;
+    const auto misleads = [&](const SceneObject& object) {
+      const bool target = object.role == role::target;
+      return !target && (holds(near, object) || (truth.which && truth.belongs(object.object_type, object.texture)));
+    };
+    EXPECT_TRUE(std::any_of(scene.objects.begin(), scene.objects.end(), misleads)) << i;
+  }
+}
+
+TEST_P(Words, ASceneIsAFunctionOfItsRequest) {
+  EXPECT_EQ(sample_scene(scenario, request("test"), 3).hash(), sample_scene(scenario, request("test"), 3).hash());
+  EXPECT_NE(sample_scene(scenario, request("test"), 3).hash(), sample_scene(scenario, request("test"), 4).hash());
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, Words, testing::ValuesIn(scenarios_of_words()));
+
+TEST(MeantScenes, HalfOfTrainingHasNoSecondObjectThatBelongs) {
+  const Scenario scenario = load_scenario("words_relation_heart_left_of_bowl");
+  int with = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Scene scene = sample_scene(scenario, request("train"), i);
+    with += scene.find(role::not_meant) != nullptr;
+    EXPECT_TRUE(std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& object) {
+      return object.object_type == "bowl";
+    })) << "the reference always stands there";
+  }
+  EXPECT_GT(with, 70);
+  EXPECT_LT(with, 130);
+}
+
+TEST(MeantScenes, OfFixedPlacesAreRefused) {
+  const Scenario scenario = load_scenario("words_relation_heart_left_of_bowl");
+  EXPECT_SAYS(message_of<InputError>([&] { sample_scene(scenario, {"cells", "test", "test", 0}, 0); }), "continuous");
+}
+
+TEST(MeantScenes, RefuseWhatTheyCannotShow) {
+  const Json good = load_scenario("words_relation_heart_left_of_bowl").json;
+  const auto complaint = [&](const char* merge_patch) {
+    Json json = good;
+    json.merge_patch(Json::parse(merge_patch));
+    return message_of<InputError>([&] { read_scenario(json, "words.json"); });
+  };
+  EXPECT_SAYS(complaint(R"({"task": "rotate", "angle_deg": 45})"), "pick_and_place");
+  EXPECT_SAYS(complaint(R"({"train": {"as_method_asks": null}})"), "as_method_asks");
+  EXPECT_SAYS(complaint(R"({"train": {"misleading": 2}})"), "a share from 0 to 1");
+  EXPECT_SAYS(complaint(R"({"train": {"hard": true}})"), "hard");
+  EXPECT_SAYS(complaint(R"({"near_miss_sets": []})"), "at least one set");
+}
+
+}  // namespace
+}  // namespace lgabench::tabletop
