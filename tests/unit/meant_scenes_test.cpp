@@ -40,7 +40,8 @@ TEST_P(Words, ThePictureShowsTheTargetAlone) {
       const Scene scene = sample_scene(scenario, request(arm), i);
       EXPECT_EQ(grounded(truth, drawn(scene)), std::vector<std::uint8_t>{target_of(scene).instance_id}) << arm << i;
       for (const SceneObject& object : scene.objects)
-        EXPECT_FALSE(holds(content_of(scenario, scene).undecided, object)) << object.object_type << " " << object.texture;
+        EXPECT_FALSE(holds(content_of(scenario, scene).undecided, object))
+            << object.object_type << " " << object.texture;
     }
 }
 

@@ -95,8 +95,9 @@ TEST_F(StudySession, ConditionsShowEmptyListsOrTheProposal) {
     const Trial trial = current();
     post("start");
     const Json first = session->state().at("trial").at("sets").at(0).at("first");
-    const std::vector<std::string> filled =
-        trial.condition == Condition::human ? std::vector<std::string>{} : trial.item->proposal.target.product().textures;
+    const std::vector<std::string> filled = trial.condition == Condition::human
+                                                ? std::vector<std::string>{}
+                                                : trial.item->proposal.target.product().textures;
     EXPECT_EQ(first.at("textures").get<std::vector<std::string>>(), filled);
     EXPECT_EQ(trial.condition, session->assignment().conditions[i / 9]);
     post("shown");

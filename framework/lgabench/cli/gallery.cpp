@@ -110,7 +110,8 @@ Sheet gallery(const std::string& what) {
       const Scenario scenario = load_scenario(id);
       if (scenario.environment != environment) continue;
       const std::string layout = layouts_of(scenario).front();
-      const bool stands_freely_alone = layout != find_task(find_environment(environment), scenario.task).layouts.front();
+      const bool stands_freely_alone =
+          layout != find_task(find_environment(environment), scenario.task).layouts.front();
       if (stands_freely_alone != words) continue;
       for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, layout, arm.id));
     }

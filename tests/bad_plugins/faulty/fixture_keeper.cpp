@@ -83,7 +83,8 @@ class KeepingMethod : public Method {
     const int kept = keeps_ ? memory_.kept() : 0;
     const std::size_t last = space.object_types.size() - 1;
     selection_ = {};
-    selection_.target.product().object_types = {space.object_types[kept > 0 ? static_cast<std::size_t>(kept - 1) : last]};
+    selection_.target.product().object_types = {
+        space.object_types[kept > 0 ? static_cast<std::size_t>(kept - 1) : last]};
     selection_.target.product().textures = space.textures;
     selection_.provenance = Provenance::rule;
     return selection_;
