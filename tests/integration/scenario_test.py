@@ -50,6 +50,44 @@ class OwnScenario(Case):
         self.assertRegex(checked, r"ok +near_6, continuous")
         self.assertNotIn(", cells", checked, "the layouts of the suite alone")
 
+    def test_a_command_of_each_family_of_words(self):
+        household = ("--space", "household")
+        families = {
+            "lookup": ("a red heart", "--types", "heart", "--textures", "red", "--careless", "heart/blue,green"),
+            "category": ("a citrus fruit", *household, "--types", "orange,lemon", "--careless", "apple"),
+            "colour": ("a heart in the colour of lava", "--types", "heart", "--textures", "red", "--careless", "heart/blue"),
+            "negation": ("any block but an L-shaped one", "--types", "ALL but L-shaped block", "--careless", "L-shaped block"),
+            "union": ("a red heart or a blue star", "--types", "heart", "--textures", "red", "--also", "star/blue",
+                      "--careless", "heart/blue", "--careless", "star/red"),
+            "relation": ("the heart left of the bowl", "--types", "heart", "--which", "left_of", "--of", "bowl"),
+            "superlative": ("the letter that comes first in 'grate'", "--types", "letter A,letter E,letter G", "--which",
+                            "first_in", "--order", "letter G,letter A,letter E"),
+            "preference": ("something to drink", *household, "--types", "water bottle", "--words",
+                           "soda can,water bottle,juice box", "--careless", "soda can,juice box", "--undecided", "mug"),
+            "compound": ("the fruit nearest to the spoon, unless it is red", *household, "--types", "apple,pear",
+                         "--textures", "ALL but red", "--which", "nearest_to", "--of", "spoon", "--careless", "apple,pear/red"),
+        }
+        for family, (what, *words) in families.items():
+            with self.subTest(family):
+                self.new(family, "--command", f"Bring me {what}.", *words)
+                checked = self.call("check-scenario", f"{family}.json", "--scenes", "4", "--layout", "continuous").stdout
+                for arm in "train", "test":
+                    self.assertRegex(checked, rf"ok +{arm}, continuous +the oracle succeeds in 4 of 4")
+        made = json.loads((self.dir / "compound.json").read_text())
+        self.assertEqual(made["commands"][0]["truth"]["target"]["which"], {
+            "rule": "nearest_to", "of": {"object_types": ["spoon"], "textures": "ALL"}})
+        self.assertEqual(made["commands"][0]["truth"]["target"]["sets"][0]["textures"], {"except": ["red"]})
+        self.assertEqual(made["near_miss_sets"], [{"object_types": ["apple", "pear"], "textures": ["red"]}])
+
+    def test_a_rule_that_is_wrong_is_one_line(self):
+        for words, says in ((("--which", "behind"), "which/rule: expected one of left_of, right_of"),
+                            (("--which", "left_of"), 'which/of: expected'),
+                            (("--which", "first_in", "--order", "heart,red"), "object types of the feature space alone")):
+            with self.subTest(words):
+                said = self.new("bad", "--command", "Bring me the heart.", "--types", "heart", *words, expect=2).stderr
+                self.assertIn(says, said)
+                self.assertEqual(said.count("\n"), 1)
+
     def test_a_method_that_asks_fails_where_nobody_answers(self):
         self.new(*NAME)
         words = ("--scenario-path", ".", *SMALL, "--answers", "none", "--methods", "lga", "--out", "out")

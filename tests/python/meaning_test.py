@@ -1,10 +1,12 @@
 """What is meant in a scene, in Python, against the cases that C++ is tested with."""
+import itertools
 import json
 import pathlib
 import unittest
 
 import numpy
 
+import lgabench
 from lgabench_method import FeatureSet, Instance, Observation, Selection, goal_mask, grounded, values
 
 GOLDEN = json.loads((pathlib.Path(__file__).parents[1] / "unit/golden/grounded.json").read_text())
@@ -43,6 +45,23 @@ class Meanings(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "more than one product"):
             two.target
         self.assertTrue(two.belongs("heart", "red"))
+
+    def test_the_object_meant_is_the_samplers_target(self):
+        """Of every command of the suite words: C++ made a target of what its own grounding finds."""
+        commands = [id for id in lgabench.scenarios() if id.startswith("words_")]
+        self.assertEqual(len(commands), 56)
+        rules = set()
+        for id in commands:
+            with self.subTest(id), lgabench.Environment(id, "kinematic") as env:
+                truth = env.scenario.truth(0)
+                rules.add(truth.meaning.which.rule if truth.meaning.which else None)
+                for split, index in itertools.product(("train", "test"), range(6)):
+                    scene = env.reset(split, index)
+                    meant = grounded(truth.meaning, scene)
+                    self.assertEqual(len(meant), 1)
+                    numpy.testing.assert_array_equal(env.expert_action(meant[0]), env.expert_action())
+                    numpy.testing.assert_array_equal(goal_mask(scene, truth) == 1, scene.ids == meant[0])
+        self.assertEqual(rules, {None, "left_of", "right_of", "nearest_to", "farthest_from", "leftmost", "rightmost", "first_in"})
 
 
 if __name__ == "__main__":

@@ -23,6 +23,8 @@ using Words = std::vector<std::string>;
 struct NewScenarioArguments {
   std::string name, task = "pick_and_place", space = "tabletop", distractors = "1:2";
   Words commands, unseen, types, textures{"ALL"}, other_types, other_textures{"ALL"};
+  Words also, careless, undecided, order;  // all but the last: sets
+  std::string rule, of, words;
   std::optional<double> angle_deg;
   bool clockwise = false, hard = false, near_miss = false;
   fs::path directory = ".";
@@ -49,9 +51,41 @@ void ask(Words& words, const char* flag, const char* question, bool several) {
   for (std::string& word : words) CLI::detail::trim(word);
 }
 
+// "ALL", names, or "ALL but" names.
+Json names_of(Words words) {
+  const std::string but = "ALL but ";
+  if (words == Words{"ALL"}) return "ALL";
+  if (words.front().rfind(but, 0) != 0) return words;
+  words.front().erase(0, but.size());
+  return {{"except", words}};
+}
+
 Json set_of(const Words& types, const Words& textures) {
-  const auto names = [](const Words& words) { return words == Words{"ALL"} ? Json("ALL") : Json(words); };
-  return {{"object_types", names(types)}, {"textures", names(textures)}};
+  return {{"object_types", names_of(types)}, {"textures", names_of(textures)}};
+}
+
+// Of TYPE,.../TEXTURE,...; without a slash of any texture.
+Json set_of(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto names = [](const std::string& list) { return CLI::detail::split(list, ','); };
+  return set_of(names(text.substr(0, slash)), slash == text.npos ? Words{"ALL"} : names(text.substr(slash + 1)));
+}
+
+Json sets_of(const Words& texts) {
+  Json sets = Json::array();
+  for (const std::string& text : texts) sets.push_back(set_of(text));
+  return sets;
+}
+
+Json meaning_of(const NewScenarioArguments& a) {
+  const Json product = set_of(a.types, a.textures);
+  if (a.also.empty() && a.rule.empty()) return product;
+  Json meaning{{"sets", {product}}};
+  for (const std::string& text : a.also) meaning["sets"].push_back(set_of(text));
+  if (!a.rule.empty()) meaning["which"] = {{"rule", a.rule}};
+  if (!a.of.empty()) meaning["which"]["of"] = set_of(a.of);
+  if (!a.order.empty()) meaning["which"]["order"] = a.order;
+  return meaning;
 }
 
 Json range_of(const std::string& text) {
@@ -64,7 +98,7 @@ Json range_of(const std::string& text) {
 }
 
 Json scenario_json(const NewScenarioArguments& a) {
-  Json truth{{"target", set_of(a.types, a.textures)}};
+  Json truth{{"target", meaning_of(a)}};
   const EnvironmentType& environment = find_environment(environment_id);
   const std::optional<SecondRole>& second = find_task(environment, a.task).second;
   if (!a.other_types.empty()) {
@@ -85,6 +119,10 @@ Json scenario_json(const NewScenarioArguments& a) {
             {"commands", commands}, {"tests", tests}};
   if (a.angle_deg) json["angle_deg"] = *a.angle_deg;
   if (a.clockwise) json["direction"] = "clockwise";
+  if (!a.careless.empty()) json["near_miss_sets"] = sets_of(a.careless);
+  if (!a.words.empty()) json["words"] = set_of(a.words);
+  if (!a.undecided.empty()) json["undecided"] = sets_of(a.undecided);
+  if (!a.careless.empty() || !a.rule.empty()) json["train"] = {{"as_method_asks", false}, {"distractors", distractors}};
   return json;
 }
 
@@ -121,8 +159,15 @@ void add_new_scenario(CLI::App& app, int& exit) {
       ->allow_extra_args(false);
   verb->add_option("--unseen", a->unseen, "A command that is tested but never demonstrated; can be repeated")
       ->allow_extra_args(false);
-  list("--types", a->types, "Object types that the command means, or ALL; asked for if left out");
-  list("--textures", a->textures, "Their textures, or ALL");
+  list("--types", a->types, "Object types that the command means, ALL, or \"ALL but TYPE,...\"; asked for if left out");
+  list("--textures", a->textures, "Their textures, ALL, or \"ALL but TEXTURE,...\"");
+  verb->add_option("--also", a->also,
+                   "What it means besides: TYPE,.../TEXTURE,..., or TYPE,... of any texture; can be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--which", a->rule, "Of several that it means, the one that this rule tells");
+  verb->add_option("--of", a->of, "left_of, right_of, nearest_to, farthest_from: of what, TYPE,.../TEXTURE,...");
+  list("--order", a->order, "first_in: object types or textures, the first of which is the one");
+  verb->add_option("--words", a->words, "What the words alone would mean, where the person takes less of it");
   list("--other-types", a->other_types, "Object types of what a sweep must not touch");
   list("--other-textures", a->other_textures, "Their textures, or ALL");
   verb->add_option("--space", a->space,
@@ -138,6 +183,13 @@ void add_new_scenario(CLI::App& app, int& exit) {
   verb->add_flag("--hard", a->hard, "Add an arm where a distractor shares the target's type or texture");
   verb->add_flag("--near-miss", a->near_miss,
                  "Add an arm of near misses: all other objects share the target's type or texture, and each other's");
+  verb->add_option(
+          "--careless", a->careless,
+          "What a careless reading would keep, TYPE,.../TEXTURE,...: one is in every test scene; can be repeated")
+      ->allow_extra_args(false);
+  verb->add_option("--undecided", a->undecided,
+                   "What people would not agree on, TYPE,.../TEXTURE,...: never drawn; can be repeated")
+      ->allow_extra_args(false);
   verb->add_option("--directory", a->directory, "The directory for the file")->capture_default_str();
   arrange(*verb, "", {{"name", "NAME"}, {"--directory", "DIR"}});
   arrange(*verb, "The command",
@@ -146,6 +198,11 @@ void add_new_scenario(CLI::App& app, int& exit) {
            {"--space", "SPACE"},
            {"--types", "TYPE,..."},
            {"--textures", "TEXTURE,..."},
+           {"--also", "SET"},
+           {"--which", "RULE"},
+           {"--of", "SET"},
+           {"--order", "NAME,..."},
+           {"--words", "SET"},
            {"--other-types", "TYPE,..."},
            {"--other-textures", "TEXTURE,..."}});
   arrange(*verb, "The task and its scenes",
@@ -154,7 +211,9 @@ void add_new_scenario(CLI::App& app, int& exit) {
            {"--clockwise", ""},
            {"--distractors", "N:M"},
            {"--hard", ""},
-           {"--near-miss", ""}});
+           {"--near-miss", ""},
+           {"--careless", "SET"},
+           {"--undecided", "SET"}});
   verb->footer(
       "docs/own-scenarios.md says more; docs/formats has every member of the file.\n"
       "Example: lgabench new-scenario round --command \"Bring me something round.\" --types round,ring");
