@@ -56,7 +56,7 @@ class OwnScenario(Case):
             "lookup": ("a red heart", "--types", "heart", "--textures", "red", "--careless", "heart/blue,green"),
             "category": ("a citrus fruit", *household, "--types", "orange,lemon", "--careless", "apple"),
             "colour": ("a heart in the colour of lava", "--types", "heart", "--textures", "red", "--careless", "heart/blue"),
-            "negation": ("any block but an L-shaped one", "--types", "ALL but L-shaped block", "--careless", "L-shaped block"),
+            "negation": ("a heart of any colour but red", "--types", "heart", "--textures", "ALL but red", "--careless", "heart/red"),
             "union": ("a red heart or a blue star", "--types", "heart", "--textures", "red", "--also", "star/blue",
                       "--careless", "heart/blue", "--careless", "star/red"),
             "relation": ("the heart left of the bowl", "--types", "heart", "--which", "left_of", "--of", "bowl"),
@@ -81,7 +81,7 @@ class OwnScenario(Case):
 
     def test_a_rule_that_is_wrong_is_one_line(self):
         for words, says in ((("--which", "behind"), "which/rule: expected one of left_of, right_of"),
-                            (("--which", "left_of"), 'which/of: expected'),
+                            (("--which", "left_of"), 'which: expected a member "of"'),
                             (("--which", "first_in", "--order", "heart,red"), "object types of the feature space alone")):
             with self.subTest(words):
                 said = self.new("bad", "--command", "Bring me the heart.", "--types", "heart", *words, expect=2).stderr
