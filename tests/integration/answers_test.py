@@ -475,6 +475,24 @@ class Recorded(Case):
         self.assertIn("expected --answers openai with them",
                       self.call("select", "heart", "--max-queries", "5", expect=2).stderr)
 
+    def test_the_best_single_product_is_the_truth_where_one_product_says_it(self):
+        suite = json.loads((DATA / "suites/words.json").read_text())
+        commands = ["words_lookup_tiger_mug", "words_union_green_apple_yellow_banana"]
+        suite.update(id="two", scenarios=commands, groups={})
+        suite.pop("presets")
+        (self.dir / "two.json").write_text(json.dumps(suite))
+        self.call("select", "--suite", "two.json", "--best-product", "best.json")
+        best = {one["scenario"]: one["target"] for one in json.loads((self.dir / "best.json").read_text())["answers"]}
+        truths = [json.loads((DATA / f"scenarios/{id}.json").read_text())["commands"][0]["truth"]["target"] for id in commands]
+        self.assertEqual(best[commands[0]], truths[0])
+        scored = self.call("select", "--suite", "two.json", "--score", "--answers", "best.json", "--json").stdout
+        exact = {}
+        for row in map(json.loads, scored.splitlines()):
+            exact[row["asked"]] = row["exact_scenes"] / row["scenes"]
+        self.assertEqual(exact["flat"], .5, "all scenes of one command, none of the other, whose near misses are in the product")
+        said = self.call("select", "heart", "--best-product", "x.json", expect=2).stderr
+        self.assertIn("--suite", said)
+
     def test_a_scenario_without_answers_is_played_by_methods_that_ask_no_model(self):
         run = ["run", "q1", "--scenarios", "stack_small_block_on_hexagon", "--demos", "10", "--seeds", "0", "--episodes", "2",
                "--set", "*.epochs=2", "--out"]

@@ -29,7 +29,7 @@ namespace {
 
 struct SelectArguments {
   std::string command, suite, answers = "recorded", truth = "released", task = "pick_and_place", space = "tabletop",
-                              model, cassette, request;
+                              model, cassette, request, best_product;
   long reply_timeout_s = OpenAiOptions().timeout_s;
   int concurrency = 4, max_queries = -1;
   bool json = false, score = false;
@@ -267,6 +267,12 @@ void add_select(CLI::App& app, int&) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->needs(score);
+  verb->add_option(
+          "--best-product", arguments->best_product,
+          "With --suite: write answers instead, of each command the product of types and textures that keeps "
+          "what is meant in most training scenes (found by ascent, from the truth): a reference for --answers FILE")
+      ->needs("--suite")
+      ->excludes(score);
   verb->add_flag("--json", arguments->json,
                  "Print one line of JSON per command, as in a cell's selection.json, or per row of --score");
   arrange(*verb, "", {{"command", "COMMAND"}});
@@ -278,6 +284,7 @@ void add_select(CLI::App& app, int&) {
            {"--truth", "released|printed"},
            {"--score", ""},
            {"--scenes", "N"},
+           {"--best-product", "FILE"},
            {"--scenario-path", "DIR"}});
   arrange(*verb, "Who answers",
           {{"--answers", "SOURCE"},
@@ -297,6 +304,8 @@ void add_select(CLI::App& app, int&) {
   verb->callback([arguments] {
     if (arguments->command.empty() && arguments->suite.empty())
       throw InputError("select: expected a command, a scenario's id, or --suite");
+    if (!arguments->best_product.empty())
+      return write_best_products(load_suite(arguments->suite), read_truth(arguments->truth), arguments->best_product);
     const Answerer answerer = make_answerer(*arguments);
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {

@@ -7,10 +7,12 @@
 #include <optional>
 #include <vector>
 
+#include <lgabench/abstraction/best_product.hpp>
 #include <lgabench/abstraction/named.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/files.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/expand.hpp>
@@ -139,6 +141,22 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
                 fmt::join(words, "; "));
     }
   }
+}
+
+void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file) {
+  constexpr int scenes = 1000;
+  Json answers = Json::array();
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, truth);
+    for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i)
+      answers.push_back(Json{{"space", scenario.space.id},
+                             {"scenario", scenario.answers_of},
+                             {"command", scenario.commands[static_cast<std::size_t>(i)].utterance},
+                             {"target", to_json(best_product(scenario, i, suite.design.layouts.front(), scenes))}});
+  }
+  const std::string how = fmt::format("coordinate ascent on {} training scenes a command, from the truth", scenes);
+  write_file(file, Json{{"model", "best single product"}, {"how", how}, {"answers", answers}}.dump(1) + "\n");
+  to_stdout("{}: {} commands\n", file.string(), answers.size());
 }
 
 }  // namespace lgabench::cli

@@ -1,6 +1,7 @@
 // lgabench select --suite SUITE --score: how exactly a language model's answers keep what is meant, without a policy.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -16,5 +17,8 @@ using WithAnswers = std::function<void(const Scenario& scenario, const std::func
 /// the names in the command, in `scenes` scenes of each arm, and prints a row of each for every group and for all.
 /// A way of asking to which an answer lacks is left out with its reason. @throws what asking throws, for the first way.
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers);
+
+/// Writes best_product() of every command of the suite as a file of answers, for --answers FILE.
+void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file);
 
 }  // namespace lgabench::cli
