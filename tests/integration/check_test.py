@@ -29,6 +29,7 @@ class CheckPlugin(Case):
             "thread": {"threads"},
             "descriptor": {"descriptors"},
             "unseen": {"act on an unseen command"},
+            "forgets": {"saved policy"},
         }.items():
             with self.subTest(how):
                 problems = self.check(UNSOUND, f"how={how}", expect=1 if checks else 0)

@@ -135,10 +135,48 @@ struct Use {
   std::string selections, training, actions;
 };
 
+// A policy as a run keeps it, and how it acted on the first bench.
+struct Kept {
+  std::optional<std::string> bytes;
+  std::vector<Instruction> instructions;
+  std::vector<std::string> actions;
+};
+
+// The action's numbers as text. @throws MethodError where it cannot be carried out.
+std::string action_text(const Actor& actor, const Bench& bench, const Sight& sight) {
+  const Move move = actor(*bench.environment, sight.scene, sight.observation);
+  const ActionSpace& space = bench.environment->action_space();
+  executable(space, move.action);
+  std::string text;
+  for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
+  return text;
+}
+
+// In a process of its own, as where a kept policy is opened.
+void judge_restored(const HostJob& job, const Kept& kept, const Bench& bench, CheckReport& report) {
+  if (!kept.bytes) return report.ok("saved policy", "none: run --keep-policy leaves this method out");
+  std::string fault;
+  try {
+    HostedMethod method(job);
+    const std::unique_ptr<Policy> policy = method.restore(*kept.bytes);
+    const Actor actor = policy_actor(*policy, kept.instructions, job.method.id);
+    for (std::size_t i = 0; i < kept.actions.size(); ++i)
+      if (action_text(actor, bench, bench.sights[i]) != kept.actions[i])
+        throw MethodError("once restored, act() gives another action");
+  } catch (const std::exception& e) {
+    fault = e.what();
+  }
+  report.judge("saved policy", fault, fmt::format("{} bytes, of which another process acts alike", kept.bytes->size()),
+               "saved() must hold all that act() depends on, and restore() must bring it back");
+}
+
 // The method runs in one process from first to last, confined as in a run.
 class MethodCheck {
  public:
   MethodCheck(const HostJob& job, const CheckPhase& phase) : job_(job), phase_(phase), method_(job) {}
+
+  /// None where the method did not come so far.
+  const std::optional<Kept>& kept() const { return kept_; }
 
   CheckReport run(const std::vector<std::unique_ptr<Bench>>& benches) {
     report_.ok("environment", job_.environment);
@@ -240,6 +278,10 @@ class MethodCheck {
         actions.push_back(act(bench->is_seen(sight) ? "act" : "act on an unseen command", actor, *bench, sight));
       for (const std::string& action : actions) use.actions += action + '\n';
       if (judged) judge_policy(actor, *bench, actions, first);
+      if (first) {
+        phase_(doing_ = "saved");
+        kept_ = {policy->saved(), selected.instructions, actions};
+      }
       if (first && selected.needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
       phase_(doing_ = "destroy the policy");
       method_.drop_policy();
@@ -280,14 +322,8 @@ class MethodCheck {
     return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
   }
 
-  // The action's numbers as text. @throws MethodError where it cannot be carried out.
   std::string act(const std::string& what, const Actor& actor, const Bench& bench, const Sight& sight) {
-    const Move move = timed(what, [&] { return actor(*bench.environment, sight.scene, sight.observation); });
-    const ActionSpace& space = bench.environment->action_space();
-    executable(space, move.action);
-    std::string text;
-    for (const double value : as_stored(space, move.action)) text += fmt::format("{:a} ", value);
-    return text;
+    return timed(what, [&] { return action_text(actor, bench, sight); });
   }
 
   void judge_selection(const Selected& selected, int asked, const Scenario& scenario) {
@@ -391,6 +427,7 @@ class MethodCheck {
   std::string doing_;
   std::map<std::string, double> seconds_;  // of the last call of each kind
   CheckReport report_;
+  std::optional<Kept> kept_;
   HostedMethod method_;
 };
 
@@ -417,7 +454,16 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
   benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
   if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
   phase("load");
-  return MethodCheck(job, phase).run(benches);
+  std::optional<Kept> kept;
+  CheckReport report;
+  {
+    MethodCheck check(job, phase);
+    report = check.run(benches);
+    kept = check.kept();
+  }  // a worker has one method's process at a time
+  phase("restore");
+  if (kept) judge_restored(job, *kept, *benches.front(), report);
+  return report;
 }
 
 }  // namespace lgabench

@@ -29,7 +29,10 @@ class Unsound : public Policy {
     if (how_ == "address")
       return at_place(static_cast<double>(reinterpret_cast<std::uintptr_t>(this) % 1000003) / 1000003);
     if (how_ == "leak") kept_.push_back(observation);
-    return at_place(.5);
+    return at_place(how_ == "restored" ? .25 : .5);
+  }
+  std::optional<std::string> saved() const override {
+    return how_ == "forgets" ? std::optional<std::string>("nothing of use") : std::nullopt;
   }
 
  private:
@@ -61,11 +64,14 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
     if (how == "descriptor") static_cast<void>(::open("/dev/null", O_RDONLY));
     return std::make_unique<Unsound>(how, std::move(seen));
   }
+  std::unique_ptr<Policy> restore(const std::string&, Services&) override {
+    return std::make_unique<Unsound>("restored", std::set<std::string>());
+  }
 };
 
 }  // namespace
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen"]}
+    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen", "forgets"]}
 })")
