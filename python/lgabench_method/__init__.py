@@ -25,9 +25,10 @@ from typing import Any, Literal, Optional, Protocol, Union
 import numpy
 import numpy.typing
 
-__all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Instance", "Instruction", "LanguageModel",
-           "Meaning", "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet", "Selection", "Services",
-           "Shown", "Step", "TrainingLog", "Which", "goal_mask", "grounded", "select_features", "select_meaning"]
+__all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Hypothesis", "Instance", "Instruction",
+           "LanguageModel", "Meaning", "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet",
+           "Selection", "Services", "Shown", "Step", "TrainingLog", "Which", "goal_mask", "grounded", "select_features",
+           "select_meaning", "taken"]
 
 Bytes = numpy.typing.NDArray[numpy.uint8]
 Numbers = numpy.typing.NDArray[numpy.float64]
@@ -100,6 +101,13 @@ class Meaning:
     def belongs(self, object_type: str, texture: str) -> bool:
         """The object is in any of the sets."""
         return any(one.contains(object_type, texture) for one in self.sets)
+
+
+@dataclass
+class Hypothesis:
+    """A preference that a person may have and did not say: in words, and what they then take."""
+    text: str
+    meaning: Meaning
 
 
 @dataclass(init=False)
@@ -206,6 +214,11 @@ class LanguageModel(Protocol):
         """What the command means, in one answer; empty where the model gave no meaning that can be read. Raises Refused."""
 
 
+    def hypotheses(self, command: Command, space: FeatureSpace) -> list[Hypothesis]:
+        """Which unstated preferences could explain that a person takes only some of the objects that the words mean; empty where
+        nobody answered that. Raises Refused."""
+
+
 class HumanAnswers(Protocol):
     """A person's answers, for methods that declare that they ask people; for others every call raises Refused."""
 
@@ -214,6 +227,9 @@ class HumanAnswers(Protocol):
 
     def edit(self, command: Command, proposal: Selection) -> Selection:
         """What the person makes of a proposal."""
+
+    def accepts(self, command: Command, object_type: str, texture: str) -> bool:
+        """Whether the person, shown one object, would take it for that command."""
 
 
 class TrainingLog(Protocol):
@@ -234,6 +250,7 @@ class Services:
     log: TrainingLog
     files: str               # a directory for pictures and curves of the method's own; kept with the cell
     layout: dict[str, Any]   # "observation" and "action" of the protocol: rows, columns; numbers, rotations, places, stations
+    shows_truth: bool = False  # in revise(): the demonstrations' targets are drawn from the true distribution
 
 
 class Policy(Protocol):
@@ -316,3 +333,38 @@ def goal_mask(observation: Observation, selection: Selection) -> Bytes:
     if selection.second is not None:
         kept += [one.id for one in observation.instances if selection.second.contains(one.object_type, one.texture)]
     return numpy.isin(observation.ids, kept).astype(numpy.uint8)
+
+
+def taken(demonstration: Demonstration, layout: dict[str, Any]) -> Optional[int]:
+    """Id of the instance that the demonstrated action takes, or pushes, as lgabench::taken() of core/method.hpp finds it.
+
+    `layout` is that of the services. None where nothing that can be taken is in view.
+    """
+    step = demonstration.steps[0]
+    numbers, places = layout["action"]["numbers"], layout["action"]["places"]
+    ids = [one.id for one in step.observation.instances if one.object_type != PLACE]
+    rows, columns = numpy.nonzero(numpy.isin(step.observation.ids, ids))
+    if not len(rows) or not places:
+        return None
+
+    def pixel(place: Sequence[int]) -> Numbers:
+        shares = [(min(max(step.label[i], numbers[i]["low"]), numbers[i]["high"]) - numbers[i]["low"])
+                  / (numbers[i]["high"] - numbers[i]["low"]) for i in place]
+        return numpy.array(shares) * step.observation.ids.shape
+
+    def nearest_to(point: Numbers) -> tuple[float, int]:
+        distances = numpy.hypot(rows + .5 - point[0], columns + .5 - point[1])
+        nearest = int(distances.argmin())
+        return float(distances[nearest]), int(step.observation.ids[rows[nearest], columns[nearest]])
+
+    start = pixel(places[0])
+    distance, nearest = nearest_to(start)
+    if distance <= 2 or len(places) < 2:
+        return nearest
+    way = pixel(places[1]) - start
+    steps = math.ceil(math.hypot(*way))
+    for i in range(1, steps + 1):
+        distance, met = nearest_to(start + i / steps * way)
+        if distance <= 1:
+            return met
+    return nearest

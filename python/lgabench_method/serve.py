@@ -49,6 +49,11 @@ class _Model(_Worker):
                           "space": values.space_json(space)}, "meaning")
         return values.meaning(reply["meaning"])
 
+    def hypotheses(self, command, space):
+        reply = self.ask({"type": "ask", "how": "hypotheses", "command": values.command_json(command),
+                          "space": values.space_json(space)}, "hypotheses")
+        return values.hypotheses(reply["hypotheses"])
+
 
 class _Human(_Worker):
     def specify(self, command):
@@ -57,6 +62,10 @@ class _Human(_Worker):
     def edit(self, command, proposal):
         return self._person({"type": "person", "how": "edit", "command": values.command_json(command),
                              "proposal": values.selection_json(proposal, "edit() was given")})
+
+    def accepts(self, command, object_type, texture):
+        return self.ask({"type": "person", "how": "accept", "command": values.command_json(command),
+                         "object_type": str(object_type), "texture": str(texture)}, "accepts")["accepts"]
 
     def _person(self, question):
         return values.selection(self.ask(question, "person")["selection"])
@@ -168,6 +177,7 @@ class Host:
     def revise(self, header, payload, descriptor):
         if not hasattr(self.method, "revise"):  # asked all the same, as one that selects alone was not asked what it needs
             return {"type": "revised", "selection": header["selection"]}, b""
+        self.services.shows_truth = header["shows_truth"]
         revised = self.method.revise(values.command(header["command"]), values.selection(header["selection"]),
                                      values.demonstrations(header, descriptor), self.services)
         return {"type": "revised", "selection": values.selection_json(revised, "revise() returned")}, b""

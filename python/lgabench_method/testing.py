@@ -18,8 +18,8 @@ from typing import Any, Union
 
 import lgabench
 from lgabench.scenes import as_scenario
-from lgabench_method import (Command, Demonstration, FeatureSpace, Instruction, Meaning, Method, Observation, Question, Refused, Selection,
-                             Services, Step)
+from lgabench_method import (Command, Demonstration, FeatureSpace, Hypothesis, Instruction, Meaning, Method, Observation, Question,
+                             Refused, Selection, Services, Step)
 
 Scenario = Union[str, lgabench.Scenario]
 
@@ -44,6 +44,9 @@ class TrueAnswers:
         self.asked += 1
         return self.scenario.truth(self.scenario.commands.index(command.utterance)).meaning
 
+    def hypotheses(self, command: Command, space: FeatureSpace) -> list[Hypothesis]:
+        return []
+
 
 class NoPeople:
     """Nobody is asked: every call raises Refused."""
@@ -52,6 +55,9 @@ class NoPeople:
         raise Refused("no person is asked in a test")
 
     def edit(self, command: Command, proposal: Selection) -> Selection:
+        raise Refused("no person is asked in a test")
+
+    def accepts(self, command: Command, object_type: str, texture: str) -> bool:
         raise Refused("no person is asked in a test")
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy
 
-from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Instance, Instruction, Meaning, Needs,
+from lgabench_method import (Command, Demonstration, FeatureSet, FeatureSpace, Hypothesis, Instance, Instruction, Meaning, Needs,
                              Observation, SecondRole, SecondSet, Selection, Shown, Step, Which)
 
 
@@ -44,6 +44,10 @@ def meaning(json):
     which = json.get("which")
     return Meaning([_set(one) for one in json["sets"]],
                    which and Which(which["rule"], _set(which["of"]) if "of" in which else None, list(which.get("order", []))))
+
+
+def hypotheses(json):
+    return [Hypothesis(one["text"], meaning(one["meaning"])) for one in json]
 
 
 def _meaning_json(value):

@@ -7,7 +7,8 @@ import unittest
 import numpy
 
 import lgabench
-from lgabench_method import FeatureSet, Instance, Observation, Selection, goal_mask, grounded, values
+from lgabench_method import (Demonstration, FeatureSet, Instance, Instruction, Observation, Selection, Step, goal_mask, grounded,
+                             taken, values)
 
 GOLDEN = json.loads((pathlib.Path(__file__).parents[1] / "unit/golden/grounded.json").read_text())
 
@@ -45,6 +46,20 @@ class Meanings(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "more than one product"):
             two.target
         self.assertTrue(two.belongs("heart", "red"))
+
+    def test_what_is_taken_is_what_the_oracle_was_told_to_take(self):
+        """In every task; C++ has a test of its own."""
+        tasks = set()
+        for id in lgabench.scenarios():
+            with self.subTest(id), lgabench.Environment(id) as env:
+                tasks.add(env.scenario.command(0).task)
+                layout = {"action": json.loads(env.scenario._core.action_space_json)}
+                for index in range(2):
+                    scene = env.reset("train", index)
+                    action = env.expert_action()
+                    found = taken(Demonstration(Instruction("", Selection()), [Step(scene, action)]), layout)
+                    numpy.testing.assert_array_equal(env.expert_action(found), action)
+        self.assertEqual(tasks, {"pick_and_place", "rotate", "sweep", "stack", "bring", "throw_away", "fetch"})
 
     def test_the_object_meant_is_the_samplers_target(self):
         """Of every command of the suite words: C++ made a target of what its own grounding finds."""

@@ -781,5 +781,34 @@ TEST_F(Chat, IsEmptyWhereNoMeaningCanBeRead) {
   EXPECT_EQ(server.requests, 3) << "asked again twice at most";
 }
 
+TEST_F(Chat, AsksForHypothesesUntilTheyCanBeRead) {
+  const std::string hearts = R"({"text": "Hearts.", "meaning": {"object_types": ["heart"], "textures": "ALL"}})";
+  const std::vector<std::string> replies{"Final answer: {\"hypotheses\": []}",
+                                         "Final answer: {\"hypotheses\": [" + hearts + R"(, {"text": "Stars."}]})",
+                                         "Some {thoughts}.\nFinal answer:\n{\"hypotheses\": [" + hearts + "]}"};
+  Server server([&](int request, const httplib::Request&, httplib::Response& response) {
+    response.set_content(completion(replies[static_cast<std::size_t>(std::min(request, 3) - 1)]), "application/json");
+    return true;
+  });
+  const auto asked = [&](bool live) {
+    Cassette cassette(tape());
+    OpenAiClient client(server.options());
+    ChatLanguageModel model(cassette, live ? &client : nullptr, {"m"});
+    std::vector<Hypothesis> all = model.hypotheses(command, space);
+    EXPECT_EQ(model.cost().lm_queries, all.empty() ? 0 : 3);
+    return all;
+  };
+  EXPECT_TRUE(asked(false).empty()) << "nobody can be asked";
+  const std::vector<Hypothesis> all = asked(true);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].text, "Hearts.");
+  EXPECT_EQ(all[0].meaning.product().object_types, std::vector<std::string>{"heart"});
+  EXPECT_EQ(server.requests, 3);
+  EXPECT_SAYS(server.bodies[0], "unstated preferences");
+  EXPECT_SAYS(server.bodies[1], "/hypotheses: expected 1 to 50 hypotheses");
+  EXPECT_SAYS(server.bodies[2], "/hypotheses/1");
+  EXPECT_EQ(asked(false).size(), 1u) << "from the cassette";
+}
+
 }  // namespace
 }  // namespace lgabench

@@ -4,6 +4,7 @@ lgabench_unit_test(harness_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/harness_suite_
                                         ${CMAKE_CURRENT_LIST_DIR}/forecast_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/job_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/engine_contract_test.cpp
+                                        ${CMAKE_CURRENT_LIST_DIR}/taken_test.cpp
                    LINK lgabench_cell lgabench_harness lgabench_tabletop)
 target_compile_definitions(harness_test PRIVATE LGABENCH_TEST_REFERENCE="${PROJECT_SOURCE_DIR}/tests/reference")
 # They play on a real engine and read the real plugins, found as the programs find them: beside lib/.

@@ -23,6 +23,11 @@ class Yes : public LanguageModel {
     cost_.lm_queries += static_cast<int>(questions.size());
     return answers;
   }
+  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override {
+    if (refuses) return {};
+    ++cost_.lm_queries;
+    return {{"The person likes stars.", FeatureSet{{"star"}, {"red"}}}, {"Pans.", FeatureSet{{"pan"}, {"red"}}}};
+  }
   std::string model() const override { return "a model"; }
   std::string asked_as(const Command&) const override { return "Fetch the heart."; }
   Provenance provenance() const override { return Provenance::recorded; }
@@ -40,6 +45,9 @@ class Person : public HumanAnswers {
   Selection edit(const Command&, const Selection& proposal) override {
     proposed = proposal;
     return of(FeatureSet{{"heart", "star"}, {"red"}}, 3);
+  }
+  bool accepts(const Command&, const std::string& object_type, const std::string&) override {
+    return object_type == "star";
   }
   Selection proposed;
 
@@ -146,7 +154,10 @@ TEST_F(AnswerLedgerTest, an_answer_that_fails_is_why_the_call_failed) {
 
 TEST_F(AnswerLedgerTest, a_malformed_question_breaks_the_protocol) {
   EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "ask"}}); }), "expected");
-  EXPECT_SAYS(message_of<Malformed>([this] { say({{"type", "person"}, {"how", "guess"}}); }), "specify, edit or truth");
+  EXPECT_SAYS(message_of<Malformed>([this] {
+                say({{"type", "person"}, {"how", "guess"}});
+              }),
+              "specify, edit, accept or truth");
   EXPECT_FALSE(asked_.answer({{{"type", "act"}}}, *worker_));
 }
 
@@ -172,6 +183,62 @@ TEST_F(AnswerLedgerTest, a_revision_stands_on_the_answer_before_it) {
 
   earlier.provenance = Provenance::none;  // nobody's answer
   EXPECT_EQ(AnswerLedger(space, services_, earlier).account(narrower).provenance, Provenance::rule);
+}
+
+Json ask_for_hypotheses() {
+  return {{"type", "ask"},
+          {"how", "hypotheses"},
+          {"command", protocol::to_json(command)},
+          {"space", protocol::to_json(space)}};
+}
+
+Selection red(const std::string& object_type) {
+  Selection selection;
+  selection.target = {{object_type}, {"red"}};
+  return selection;
+}
+
+TEST_F(AnswerLedgerTest, a_hypothesis_is_an_answer_and_one_that_is_edited_is_not) {
+  Selection earlier = red("heart");
+  earlier.provenance = Provenance::recorded;
+  earlier.source = "a model";
+  earlier.cost = {20, 300, 1.5, 0};
+  AnswerLedger ledger(space, services_, earlier);
+  ledger.answer({ask_for_hypotheses()}, *worker_);
+  const Json reply = host_->receive()->header;
+  EXPECT_EQ(protocol::read_hypotheses(JsonReader(reply, "reply").at("hypotheses")).at(1).text, "Pans.");
+  EXPECT_EQ(ledger.account(red("star")).source, "a model, supposing \"The person likes stars.\"");
+  EXPECT_EQ(ledger.account(red("star")).provenance, Provenance::recorded);
+  EXPECT_EQ(ledger.account(red("star")).cost.lm_queries, 21);
+  EXPECT_EQ(ledger.account(red("heart")).source, "a model");
+  Selection other;
+  other.target = {{"pan", "heart"}, {"red"}};
+  EXPECT_EQ(ledger.account(other).source, "a model, edited by the method");
+}
+
+TEST_F(AnswerLedgerTest, what_nobody_knows_costs_its_questions_alone) {
+  model_.refuses = true;
+  EXPECT_EQ(say(ask_for_hypotheses())["hypotheses"], Json::array());
+  EXPECT_EQ(account({{"star"}, {"red"}}).provenance, Provenance::rule);
+  EXPECT_EQ(account({{"star"}, {"red"}}).cost.lm_queries, 0);
+}
+
+TEST_F(AnswerLedgerTest, a_person_who_is_shown_objects_makes_any_answer_a_simulated_edit) {
+  say(ask_for_hypotheses());
+  for (const bool star : {true, false})
+    EXPECT_EQ(say({{"type", "person"},
+                   {"how", "accept"},
+                   {"command", protocol::to_json(command)},
+                   {"object_type", star ? "star" : "pan"},
+                   {"texture", "red"}})["accepts"],
+              star);
+  const Selection star = account({{"star"}, {"red"}});
+  EXPECT_EQ(star.provenance, Provenance::simulated_edit);
+  EXPECT_EQ(star.source, "a model, supposing \"The person likes stars.\", after a person was shown objects");
+  EXPECT_EQ(star.cost.human_queries, 2);
+  EXPECT_EQ(star.cost.lm_queries, 1);
+  EXPECT_EQ(account({{"heart"}, {"blue"}}).provenance, Provenance::simulated_edit)
+      << "its own rule knows the truth too";
 }
 
 }  // namespace

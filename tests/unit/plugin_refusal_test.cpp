@@ -58,8 +58,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"two_descriptors", {"2 lgabench descriptors, expected one"}},
                     Case{"no_descriptor", {"no lgabench descriptor"}},
                     Case{"bad_options", {"options: /epochs: expected a member \"default\""}},
-                    Case{"bad_asks",
-                         {"asks \"everybody\"", "expected \"specify\", \"edit\", \"truth\" or \"network\""}},
+                    Case{
+                        "bad_asks",
+                        {"asks \"everybody\"", "expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\""}},
                     Case{"bad_needs", {"options: /way/needs/plain/see/0: expected a value of option see, got \"rgb\""}},
                     Case{"bad_id", {"id \"../bad id\"", "expected lower-case letters"}}),
     name_of);

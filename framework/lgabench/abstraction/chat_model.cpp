@@ -40,6 +40,10 @@ ChatReply complete(ChatClient& client, const Json& request) {
   }
 }
 
+Json messages_of(const Prompt& prompt) {
+  return {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}};
+}
+
 }  // namespace
 
 ChatLanguageModel::ChatLanguageModel(Cassette& cassette, ChatClient* client, ChatOptions options)
@@ -122,8 +126,7 @@ std::vector<ChatLanguageModel::Request> ChatLanguageModel::requests_of(const Com
   std::vector<Request> requests;
   for (const Question& question : questions) {
     const Prompt prompt = template_.fill(command, space, question);
-    const Json request = asked_model_.request(
-        {{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}});
+    const Json request = asked_model_.request(messages_of(prompt));
     const bool of_target = question.about == Question::About::target || !command.second;
     requests.push_back({Cassette::key(request, template_.version()),
                         fmt::format("\"{}\"{}", question.candidate, of_target ? "" : " (" + command.second->id + ")"),
@@ -187,16 +190,23 @@ std::vector<bool> ChatLanguageModel::answer(const Command& command, const Featur
   return answers;
 }
 
-Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
-  const Prompt prompt = of_meaning_.fill(command, space);
-  Json messages{{{"role", "system"}, {"content", prompt.system}}, {{"role", "user"}, {"content", prompt.user}}};
+ChatLanguageModel::Request ChatLanguageModel::request_in_one(const PromptTemplate& prompt, const Json& messages,
+                                                             const std::string& about) const {
+  const Json body = asked_model_.request(messages);
+  return {Cassette::key(body, prompt.version()), about, body, false};
+}
+
+template <class Read>
+auto ChatLanguageModel::asked_until_read(const PromptTemplate& prompt, const Command& command,
+                                         const FeatureSpace& space, const std::string& about, Read&& read)
+    -> decltype(read(std::string())) {
+  Json messages = messages_of(prompt.fill(command, space));
   for (int attempt = 1;; ++attempt) {
-    const Json body = asked_model_.request(messages);
-    const Request request{Cassette::key(body, of_meaning_.version()), "what it means", body, false};
+    const Request request = request_in_one(prompt, messages, about);
     expect_replies({request}, command, space);
     const std::string said = counted(request).text;
     try {
-      return meaning_in(said, space);
+      return read(said);
     } catch (const MethodError& e) {
       if (attempt == most_tries) return {};
       messages.push_back({{"role", "assistant"}, {"content", said}});
@@ -206,6 +216,19 @@ Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& spac
                                                   e.what())}});
     }
   }
+}
+
+Meaning ChatLanguageModel::mean(const Command& command, const FeatureSpace& space) {
+  return asked_until_read(of_meaning_, command, space, "what it means",
+                          [&space](const std::string& said) { return meaning_in(said, space); });
+}
+
+std::vector<Hypothesis> ChatLanguageModel::hypotheses(const Command& command, const FeatureSpace& space) {
+  const std::string about = "what it leaves unsaid";
+  const Request first = request_in_one(of_hypotheses_, messages_of(of_hypotheses_.fill(command, space)), about);
+  if (!client_ && !cassette_.find(first.key)) return {};
+  return asked_until_read(of_hypotheses_, command, space, about,
+                          [&space](const std::string& said) { return hypotheses_in(said, space); });
 }
 
 }  // namespace lgabench

@@ -63,6 +63,8 @@ class ChatLanguageModel : public LanguageModel {
   /// One question; a reply without a meaning that can be read is answered with what is wrong, twice at most, each
   /// asking a query. @throws as answer().
   Meaning mean(const Command& command, const FeatureSpace& space) override;
+  /// Likewise; empty, at no cost, where nobody can be asked: without a client, of what the cassette lacks.
+  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
   /// How many of these a server would be asked: those without a reply in the cassette.
   int open_questions(const Command& command, const FeatureSpace& space, const std::vector<Question>& questions) const;
   /// As in ChatOptions: what is not the usual request belongs to the name.
@@ -82,12 +84,17 @@ class ChatLanguageModel : public LanguageModel {
   void ask(const std::vector<Request>& requests, const std::string& utterance);
   void expect_replies(const std::vector<Request>& requests, const Command& command, const FeatureSpace& space);
   ChatReply counted(const Request& request);
+  /// A question whose reply `read` reads; told what is wrong and asked again where it throws.
+  template <class Read>
+  auto asked_until_read(const PromptTemplate& prompt, const Command& command, const FeatureSpace& space,
+                        const std::string& about, Read&& read) -> decltype(read(std::string()));
+  Request request_in_one(const PromptTemplate& prompt, const Json& messages, const std::string& about) const;
 
   Cassette& cassette_;
   ChatClient* client_;
   ChatOptions options_;
   AskedModel asked_model_;
-  PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"};
+  PromptTemplate template_{"selection.txt"}, of_meaning_{"meaning.txt"}, of_hypotheses_{"hypotheses.txt"};
   int asked_ = 0, without_answer_ = 0;
   SelectionCost cost_;
 };

@@ -29,20 +29,29 @@ Selection TruthAsHuman::edit(const Command& command, const Selection& proposal) 
   return edited;
 }
 
-void DeclaredHuman::expect(const char* asks) const {
+bool TruthAsHuman::accepts(const Command& command, const std::string& object_type, const std::string& texture) {
+  return truth_of(command).target.belongs(object_type, texture);
+}
+
+void DeclaredHuman::expect(const char* asks, const char* call) const {
   if (asks_ != asks)
     throw MethodError(fmt::format(
-        "services.human.{}(): expected a method declared as LGABENCH_METHOD_ASKING(\"{}\", ...)", asks, asks));
+        "services.human.{}(): expected a method declared as LGABENCH_METHOD_ASKING(\"{}\", ...)", call, asks));
 }
 
 Selection DeclaredHuman::specify(const Command& command) {
-  expect("specify");
+  expect("specify", "specify");
   return who_->specify(command);
 }
 
 Selection DeclaredHuman::edit(const Command& command, const Selection& proposal) {
-  expect("edit");
+  expect("edit", "edit");
   return who_->edit(command, proposal);
+}
+
+bool DeclaredHuman::accepts(const Command& command, const std::string& object_type, const std::string& texture) {
+  expect("accept", "accepts");
+  return who_->accepts(command, object_type, texture);
 }
 
 std::function<Selection(const Command&)> declared_truth(std::vector<ScenarioCommand> commands,

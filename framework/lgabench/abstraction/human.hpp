@@ -21,6 +21,8 @@ class TruthAsHuman : public HumanAnswers {
   /// The proposal with its object types corrected to the true ones, its textures and its cost kept: the study's people
   /// mostly did that (docs/protocol.md, section 5). Provenance simulated_edit.
   Selection edit(const Command& command, const Selection& proposal) override;
+  /// Whether the object belongs to the true distribution.
+  bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override;
 
  private:
   const Selection& truth_of(const Command& command) const;
@@ -31,15 +33,16 @@ class TruthAsHuman : public HumanAnswers {
 /// Answers in the one way that a method declares, so that the truth behind a stand-in reaches nobody else.
 class DeclaredHuman : public HumanAnswers {
  public:
-  /// `asks` as in the plugin's descriptor: "specify", "edit", or anything else for neither.
+  /// `asks` as in the plugin's descriptor: "specify", "edit", "accept", or anything else for none of them.
   DeclaredHuman(std::unique_ptr<HumanAnswers> who, std::string asks) : who_(std::move(who)), asks_(std::move(asks)) {}
 
   /// These @throw MethodError where the method declares something else.
   Selection specify(const Command& command) override;
   Selection edit(const Command& command, const Selection& proposal) override;
+  bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override;
 
  private:
-  void expect(const char* asks) const;
+  void expect(const char* asks, const char* call) const;
 
   std::unique_ptr<HumanAnswers> who_;
   std::string asks_;

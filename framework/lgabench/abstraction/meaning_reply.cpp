@@ -40,9 +40,9 @@ std::optional<std::string> object_in(const std::string& text, std::size_t from, 
   return found;
 }
 
-}  // namespace
-
-Meaning meaning_in(const std::string& reply, const FeatureSpace& space) {
+// What `read` makes of the reply's answer.
+template <class Read>
+auto read_answer(const std::string& reply, Read&& read) {
   const std::string thought = "</think>", answer = "final answer";
   const std::size_t end = reply.rfind(thought);
   const std::string said = end == std::string::npos ? reply : reply.substr(end + thought.size());
@@ -55,10 +55,23 @@ Meaning meaning_in(const std::string& reply, const FeatureSpace& space) {
   if (!object) throw MethodError("expected a JSON object after \"Final answer:\"");
   try {
     const Json document = parse_json(*object, "the answer");
-    return read_meaning(JsonReader(document, "the answer"), space);
+    return read(JsonReader(document, "the answer"));
   } catch (const InputError& e) {
     throw MethodError(e.what());
   }
+}
+
+}  // namespace
+
+Meaning meaning_in(const std::string& reply, const FeatureSpace& space) {
+  return read_answer(reply, [&space](const JsonReader& answer) { return read_meaning(answer, space); });
+}
+
+std::vector<Hypothesis> hypotheses_in(const std::string& reply, const FeatureSpace& space) {
+  return read_answer(reply, [&space](const JsonReader& answer) {
+    answer.only({"hypotheses"});
+    return read_hypotheses(answer.at("hypotheses"), space);
+  });
 }
 
 }  // namespace lgabench

@@ -1,8 +1,8 @@
-// How a language model's reply that says a meaning is read.
+// How a language model's reply that says a meaning, or several, is read.
 #pragma once
 #include <string>
 
-#include <lgabench/core/meaning.hpp>
+#include <lgabench/core/language_model.hpp>
 
 namespace lgabench {
 
@@ -10,5 +10,8 @@ namespace lgabench {
 /// thought aloud before "</think>" does not count. @throws MethodError, in a line, where there is none or where it is
 /// no meaning in the space.
 Meaning meaning_in(const std::string& reply, const FeatureSpace& space);
+
+/// Likewise an object {"hypotheses": [{"text", "meaning"}, ...]}. @throws MethodError likewise.
+std::vector<Hypothesis> hypotheses_in(const std::string& reply, const FeatureSpace& space);
 
 }  // namespace lgabench

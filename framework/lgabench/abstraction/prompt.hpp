@@ -13,7 +13,7 @@ struct Prompt {
 
 /// A template of the data directory's prompts/, whose version is the file's SHA-256. selection.txt: what the paper's
 /// prompt asks (appendix, "Full Prompt"), in other words, and of the second set that the task has. meaning.txt: what a
-/// command means, in one question.
+/// command means, in one question. hypotheses.txt: which unstated preferences there may be, likewise.
 class PromptTemplate {
  public:
   /// @throws InputError where the file is missing or lacks a part.
@@ -21,7 +21,7 @@ class PromptTemplate {
 
   /// The messages that ask this question about the command. The feature space is told in full.
   Prompt fill(const Command& command, const FeatureSpace& space, const Question& question) const;
-  /// Those that ask what the command means.
+  /// Those that ask about the whole command.
   Prompt fill(const Command& command, const FeatureSpace& space) const;
   /// SHA-256 of the file; owned by the template.
   const std::string& version() const { return version_; }

@@ -36,7 +36,8 @@ const FeatureSpace& space_of(const JsonReader& reader, std::map<std::string, Fea
 
 // Members that are sets belong to the second role of some task; which one, a command says.
 RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, const std::vector<std::string>& roles) {
-  std::vector<std::string> members{"space", "scenario", "command", "target", "structured", "note", "rationale"};
+  std::vector<std::string> members{"space",      "scenario",   "command", "target",
+                                   "structured", "hypotheses", "note",    "rationale"};
   members.insert(members.end(), roles.begin(), roles.end());
   entry.only(members);
   RecordedAnswer answer{space.id,
@@ -44,8 +45,10 @@ RecordedAnswer read_answer(const JsonReader& entry, const FeatureSpace& space, c
                         line(entry.at("command")),
                         read_feature_set(entry.at("target"), space),
                         {},
+                        {},
                         {}};
   if (entry.has("structured")) answer.structured = read_meaning(entry.at("structured"), space);
+  if (entry.has("hypotheses")) answer.hypotheses = read_hypotheses(entry.at("hypotheses"), space);
   for (const std::string& role : roles)
     if (entry.has(role)) answer.second[role] = read_feature_set(entry.at(role), space);
   return answer;
@@ -162,6 +165,16 @@ Meaning RecordedLanguageModel::mean(const Command& command, const FeatureSpace&)
   return *recorded.structured;
 }
 
-std::string RecordedLanguageModel::asked_as(const Command& command) const { return expect(command.utterance).asked_as; }
+std::vector<Hypothesis> RecordedLanguageModel::hypotheses(const Command& command, const FeatureSpace&) {
+  const RecordedAnswer* recorded = find(command.utterance);
+  if (!recorded || recorded->hypotheses.empty()) return {};
+  ++cost_.lm_queries;
+  return recorded->hypotheses;
+}
+
+std::string RecordedLanguageModel::asked_as(const Command& command) const {
+  const RecordedAnswer* recorded = find(command.utterance);
+  return recorded ? recorded->asked_as : command.utterance;
+}
 
 }  // namespace lgabench

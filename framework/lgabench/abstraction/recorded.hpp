@@ -24,6 +24,7 @@ struct RecordedAnswer {
   FeatureSet target;                         // the candidates answered yes
   std::map<std::string, FeatureSet> second;  // likewise, by role
   std::optional<Meaning> structured;         // what was said of the command in one answer
+  std::vector<Hypothesis> hypotheses;        // which unstated preferences it may have; mostly none were asked for
 };
 /// A file of recorded answers: one that is shipped, or that somebody wrote (docs/formats: recorded answers).
 struct RecordedFile {
@@ -58,6 +59,8 @@ class RecordedLanguageModel : public LanguageModel {
                            const std::vector<Question>& questions) override;
   /// @throws InputError as answer(), and where no meaning is recorded.
   Meaning mean(const Command& command, const FeatureSpace& space) override;
+  /// Empty, at no cost, where none are recorded.
+  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override;
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override;
   /// Always recorded.

@@ -81,4 +81,11 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
   return score;
 }
 
+bool covers_truth(const std::vector<Hypothesis>& hypotheses, const Scenario& scenario, int command) {
+  const Meaning& truth = scenario.commands[static_cast<std::size_t>(command)].truth.target;
+  return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& one) {
+    return one.meaning.which == truth.which && has_exact_sets(scenario, one.meaning, truth);
+  });
+}
+
 }  // namespace lgabench

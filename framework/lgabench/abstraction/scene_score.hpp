@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <set>
 #include <string>
+#include <vector>
 
+#include <lgabench/core/language_model.hpp>
 #include <lgabench/core/scenario.hpp>
 
 namespace lgabench {
@@ -22,5 +24,9 @@ SceneScore& operator+=(SceneScore& all, const SceneScore& more);
 /// @throws as test_scene().
 SceneScore score(const Scenario& scenario, int command, const Selection& selection, const std::string& layout,
                  std::uint64_t scene_seed, int scenes);
+
+/// Whether one of the hypotheses is the command's truth: the same rule, and no pair of the space wrong but those that
+/// the scenario calls undecided.
+bool covers_truth(const std::vector<Hypothesis>& hypotheses, const Scenario& scenario, int command);
 
 }  // namespace lgabench

@@ -19,18 +19,29 @@ fs::path kept_file(const fs::path& kept, const std::string& hash, const char* en
   return file;
 }
 
-// The model of a run. Its answers are live whichever cell was the first to ask, and a server that fails is not the
-// method's fault.
+// Returns ask(); a server that fails is not the method's fault.
+template <class Ask>
+auto not_of_the_method(Ask&& ask) {
+  try {
+    return ask();
+  } catch (const MethodError& e) {
+    throw InputError(e.what());
+  }
+}
+
+// The model of a run. Its answers are live whichever cell was the first to ask.
 class AskedByCells : public ChatLanguageModel {
  public:
   using ChatLanguageModel::ChatLanguageModel;
   std::vector<bool> answer(const Command& command, const FeatureSpace& space,
                            const std::vector<Question>& questions) override {
-    try {
-      return ChatLanguageModel::answer(command, space, questions);
-    } catch (const MethodError& e) {
-      throw InputError(e.what());
-    }
+    return not_of_the_method([&] { return ChatLanguageModel::answer(command, space, questions); });
+  }
+  Meaning mean(const Command& command, const FeatureSpace& space) override {
+    return not_of_the_method([&] { return ChatLanguageModel::mean(command, space); });
+  }
+  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override {
+    return not_of_the_method([&] { return ChatLanguageModel::hypotheses(command, space); });
   }
   Provenance provenance() const override { return Provenance::live; }
 };
@@ -42,6 +53,7 @@ class NobodyAnswers : public LanguageModel {
     throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers {} has none",
                                  command.utterance, model()));
   }
+  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { return {}; }
   std::string model() const override { return to_string(NoAnswers()); }
   Provenance provenance() const override { return Provenance::none; }
   SelectionCost cost() const override { return {}; }

@@ -38,6 +38,14 @@ class CountingModel : public LanguageModel {
     if (always_no_) std::fill(answers.begin(), answers.end(), false);
     return answers;
   }
+  Meaning mean(const Command& command, const FeatureSpace& space) override {
+    ++asked;
+    return always_no_ ? Meaning() : model_.mean(command, space);
+  }
+  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override {
+    ++asked;
+    return always_no_ ? std::vector<Hypothesis>() : model_.hypotheses(command, space);
+  }
   std::string model() const override { return model_.model(); }
   std::string asked_as(const Command& command) const override { return model_.asked_as(command); }
   Provenance provenance() const override { return model_.provenance(); }

@@ -67,8 +67,8 @@ Selected select(Method* method, const std::string& id, const Scenario& scenario,
 
 void expect_usable(const Selection& selection, const Scenario& scenario) {
   constexpr std::size_t longest = 2000;
-  const auto& [queries, tokens, lm_seconds, human_seconds] = selection.cost;
-  if (queries < 0 || tokens < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
+  const auto& [queries, tokens, lm_seconds, human_seconds, human_queries] = selection.cost;
+  if (queries < 0 || tokens < 0 || human_queries < 0 || !(lm_seconds >= 0) || !(human_seconds >= 0) ||
       !std::isfinite(lm_seconds + human_seconds))
     throw MethodError(
         fmt::format("selection: /cost: expected finite numbers, none below 0, got {} queries, {} tokens, "
@@ -105,6 +105,7 @@ std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const s
 void revise(Method& method, const std::string& id, const Scenario& scenario, std::vector<Demonstration>& demonstrations,
             const std::vector<Scene>& scenes, Services& services, Selected& selected) {
   if (!selected.needs.revise) return;
+  services.shows_truth = !scenario.as_method_asks || selected.needs.targets == Needs::Targets::truth;
   Selected revised = selected;
   for (std::size_t c = 0; c < revised.instructions.size(); ++c) {
     Selection& selection = revised.instructions[c].selection;

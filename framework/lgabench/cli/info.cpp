@@ -22,7 +22,9 @@ void print(const PluginInfo& plugin) {
   to_stdout("  {}\n  file        {}\n  sha256      {}\n  built with  {}\n", plugin.summary, plugin.file.string(),
             plugin.sha256, plugin.fingerprint);
   if (!plugin.asks.empty())
-    to_stdout("  asks        {}\n", plugin.asks == "truth" ? "for the truth: a diagnosis" : "people to " + plugin.asks);
+    to_stdout("  asks        {}\n", plugin.asks == "truth"    ? "for the truth: a diagnosis"
+                                    : plugin.asks == "accept" ? "people to accept objects that they are shown"
+                                                              : "people to " + plugin.asks);
   if (plugin.options.empty()) return;
   to_stdout("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {

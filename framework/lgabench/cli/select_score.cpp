@@ -41,6 +41,8 @@ struct Row {
   int questions = 0;
 };
 
+using Groups = std::vector<std::pair<std::string, std::vector<std::string>>>;  // name, scenarios
+
 // By scenario, of one way of asking.
 struct Scores {
   std::map<std::string, SceneScore> by_scenario;
@@ -63,6 +65,42 @@ Scores scores_of(const Asking& asking, const Suite& suite, Truth truth, int scen
     });
   }
   return all;
+}
+
+// Scenarios behind whose words stands a preference, and whether the hypotheses on it hold the truth. Those on which
+// there are none are left out.
+std::map<std::string, bool> coverage_of(const Suite& suite, Truth truth, const WithAnswers& with_answers) {
+  std::map<std::string, bool> covered;
+  for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
+    const Scenario scenario = suite_scenario(suite, id, truth);
+    if (!scenario.json.contains("words")) continue;
+    with_answers(scenario, [&](LanguageModel& model) {
+      const std::vector<Hypothesis> hypotheses = model.hypotheses(scenario.command(0), scenario.space);
+      if (!hypotheses.empty()) covered[id] = covers_truth(hypotheses, scenario, 0);
+    });
+  }
+  return covered;
+}
+
+// A row for each group with such scenarios, or a line for all of them.
+void print_coverage(const std::map<std::string, bool>& covered, const Groups& groups, bool json) {
+  if (covered.empty()) return;
+  for (const auto& [group, scenarios] : groups) {
+    int commands = 0, with_truth = 0;
+    for (const std::string& id : scenarios)
+      if (const auto found = covered.find(id); found != covered.end()) ++commands, with_truth += found->second;
+    if (json && commands > 0)
+      to_stdout(
+          "{}\n",
+          canonical({{"group", group}, {"asked", "hypotheses"}, {"commands", commands}, {"covered", with_truth}}));
+  }
+  if (json) return;
+  std::vector<std::string> lacking;
+  for (const auto& [id, holds_truth] : covered)
+    if (!holds_truth) lacking.push_back(id);
+  to_stdout("hypotheses on what the words leave unsaid hold the truth for {} of {} commands{}{}\n",
+            covered.size() - lacking.size(), covered.size(), lacking.empty() ? "" : ", not for ",
+            fmt::join(lacking, ", "));
 }
 
 std::string share(int part, int of) { return of == 0 ? "-" : fixed(static_cast<double>(part) / of); }
@@ -105,7 +143,13 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
       left_out += fmt::format("{}: {}\n", asking.name, one_line(e.what()));
     }
   }
-  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  std::map<std::string, bool> covered;
+  try {
+    covered = coverage_of(suite, truth, with_answers);
+  } catch (const InputError& e) {
+    left_out += fmt::format("hypotheses: {}\n", one_line(e.what()));
+  }
+  Groups groups;
   for (const auto& [name, scenarios] : suite.groups.items()) groups.emplace_back(name, scenarios);
   groups.emplace_back("all", suite_scenario_ids(suite, suite.design));
 
@@ -124,11 +168,12 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
       }
       json ? to_stdout("{}\n", canonical(to_json(row))) : print(row);
     }
-  if (json) return;
+  if (json) return print_coverage(covered, groups, json);
   to_stdout(
       "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
       "objects kept.\n{}",
       left_out);
+  print_coverage(covered, groups, json);
   for (const Asking& asking : ways_of_asking()) {
     const auto scores = by_asking.find(asking.name);
     if (scores == by_asking.end() || std::string(asking.name) == "named") continue;

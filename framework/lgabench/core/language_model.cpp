@@ -1,10 +1,37 @@
 #include <lgabench/core/language_model.hpp>
 
+#include <fmt/format.h>
+
+#include <lgabench/core/terminal.hpp>
+
 namespace lgabench {
+
+std::vector<Hypothesis> read_hypotheses(const JsonReader& reader, const FeatureSpace& space) {
+  constexpr std::size_t most = 50, longest = 300;
+  const std::vector<JsonReader> elements = reader.elements();
+  if (elements.empty() || elements.size() > most) reader.fail(fmt::format("1 to {} hypotheses", most));
+  std::vector<Hypothesis> all;
+  for (const JsonReader& one : elements) {
+    one.only({"text", "meaning"});
+    const std::string text = one.at("text").string();
+    if (text.empty() || text.size() > longest || text != one_line(text))
+      one.at("text").fail(fmt::format("words, in a line of at most {} bytes", longest));
+    all.push_back({text, read_meaning(one.at("meaning"), space)});
+  }
+  return all;
+}
 
 Meaning LanguageModel::mean(const Command& command, const FeatureSpace&) {
   throw MethodError(model() + ": expected a source that says what \"" + command.utterance +
                     "\" means in one answer (meaning=structured)");
+}
+
+std::vector<Hypothesis> LanguageModel::hypotheses(const Command& command, const FeatureSpace&) {
+  throw MethodError(model() + ": expected a source that says what \"" + command.utterance + "\" leaves unsaid");
+}
+
+bool HumanAnswers::accepts(const Command& command, const std::string&, const std::string&) {
+  throw MethodError("\"" + command.utterance + "\": expected people who say of an object whether they would take it");
 }
 
 }  // namespace lgabench

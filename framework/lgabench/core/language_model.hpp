@@ -16,6 +16,16 @@ struct Question {
   std::string candidate;
 };
 
+/// A preference that a person may have and did not say: in words, and what they then take.
+struct Hypothesis {
+  std::string text;
+  Meaning meaning;
+};
+
+/// Reads [{"text", "meaning"}, ...]: 1 to 50, each text a line. @throws InputError with file and place, as
+/// read_meaning().
+std::vector<Hypothesis> read_hypotheses(const JsonReader& reader, const FeatureSpace& space);
+
 /// A language model that answers for one command. One thread.
 class LanguageModel {
  public:
@@ -29,6 +39,10 @@ class LanguageModel {
   /// What the command means, in one answer: sets, and which of several objects. Empty where the model gave no meaning
   /// that can be read. @throws MethodError for a model that answers questions of yes and no alone.
   virtual Meaning mean(const Command& command, const FeatureSpace& space);
+
+  /// Which unstated preferences could explain that a person who gives this command takes only some of the objects that
+  /// the words mean, in one answer. Empty where nobody answered that, or nothing that can be read. @throws as mean().
+  virtual std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space);
 
   /// Its name, for Selection::source.
   virtual std::string model() const = 0;
@@ -49,6 +63,9 @@ class HumanAnswers {
   virtual Selection specify(const Command& command) = 0;
   /// The proposal as the person leaves it (the paper's LGA-HILL condition).
   virtual Selection edit(const Command& command, const Selection& proposal) = 0;
+  /// Whether the person, shown one object, would take it for that command. @throws MethodError for people who are asked
+  /// for Selections alone.
+  virtual bool accepts(const Command& command, const std::string& object_type, const std::string& texture);
 };
 
 }  // namespace lgabench

@@ -37,6 +37,11 @@ struct Demonstration {
   std::vector<Step> steps;
 };
 
+/// Id of the instance that the first step's label takes or, in a sweep, pushes: the visible one within two pixels of
+/// the action's first place that is nearest to it, else the first one met on the straight way to the second place, else
+/// the nearest. Place types (`is_place`) never are. None where nothing else is in view.
+std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions);
+
 /// What a method asks of the data it learns from.
 struct Needs {
   /// Training targets are drawn from the method's own Selection, or from the true distribution.
@@ -74,6 +79,9 @@ struct Services {
   /// A directory for pictures and curves of the method's own: plain files in it are kept with the cell (files/). It is
   /// read when the last scored episode is over.
   std::filesystem::path files = {};
+  /// In revise(): whether the demonstrations' targets are drawn from the true distribution, as their method or the
+  /// scenario wants it. Otherwise they show what was selected, and tell nothing more of the command.
+  bool shows_truth = false;
 };
 
 /// What was learned. It may outlive its Method and the demonstrations. One thread.

@@ -22,12 +22,13 @@ SelectionCost& operator+=(SelectionCost& cost, const SelectionCost& more) {
   cost.lm_tokens += more.lm_tokens;
   cost.lm_seconds += more.lm_seconds;
   cost.human_seconds += more.human_seconds;
+  cost.human_queries += more.human_queries;
   return cost;
 }
 
 SelectionCost operator-(const SelectionCost& all, const SelectionCost& before) {
   return {all.lm_queries - before.lm_queries, all.lm_tokens - before.lm_tokens, all.lm_seconds - before.lm_seconds,
-          all.human_seconds - before.human_seconds};
+          all.human_seconds - before.human_seconds, all.human_queries - before.human_queries};
 }
 
 std::string to_string(Provenance provenance) {
@@ -66,6 +67,7 @@ Json to_json(const Selection& selection) {
                   {"lm_tokens", selection.cost.lm_tokens},
                   {"lm_seconds", selection.cost.lm_seconds},
                   {"human_seconds", selection.cost.human_seconds}};
+  if (selection.cost.human_queries > 0) json["cost"]["human_queries"] = selection.cost.human_queries;
   return json;
 }
 

@@ -28,6 +28,7 @@ struct SelectionCost {
   long long lm_tokens = 0;
   double lm_seconds = 0;
   double human_seconds = 0;
+  int human_queries = 0;  // objects that a person was shown, to say whether they would take it
 };
 SelectionCost& operator+=(SelectionCost& cost, const SelectionCost& more);
 SelectionCost operator-(const SelectionCost& all, const SelectionCost& before);

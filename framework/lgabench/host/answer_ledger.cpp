@@ -1,5 +1,7 @@
 #include <lgabench/host/answer_ledger.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <tuple>
@@ -68,7 +70,7 @@ void AnswerLedger::rethrow() const {
 }
 
 Json AnswerLedger::answer_questions(const JsonReader& reader) {
-  if (reader.has("how")) return answer_meaning(reader);
+  if (reader.has("how")) return answer_in_one(reader);
   const auto [command, space, questions] = protocol::read_or_malformed([&] {
     std::vector<Question> all;
     const Command asked = protocol::read_command(reader.at("command"));
@@ -86,29 +88,53 @@ Json AnswerLedger::answer_questions(const JsonReader& reader) {
         .push_back(questions[i].candidate);
   }
   Json reply = signed_reply(command);
+  keep(model_);
   reply.update({{"type", "answers"}, {"answers", answers}});
   return reply;
 }
 
-Json AnswerLedger::answer_meaning(const JsonReader& reader) {
-  const auto [command, space] = protocol::read_or_malformed([&] {
-    if (reader.at("how").string() != "meaning") reader.at("how").fail("meaning");
-    return std::pair(protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")));
+Json AnswerLedger::answer_in_one(const JsonReader& reader) {
+  const auto [how, command, space] = protocol::read_or_malformed([&] {
+    const std::string word = reader.at("how").string();
+    if (word != "meaning" && word != "hypotheses") reader.at("how").fail("meaning or hypotheses");
+    return std::tuple(word, protocol::read_command(reader.at("command")), protocol::read_space(reader.at("space")));
   });
+  if (how == "hypotheses") {
+    const std::vector<Hypothesis> hypotheses = services_.lm.hypotheses(command, space);
+    Json reply = signed_reply(command);
+    suppose(hypotheses);
+    reply.update({{"type", "hypotheses"}, {"hypotheses", protocol::to_json(hypotheses)}});
+    return reply;
+  }
   model_.target = services_.lm.mean(command, space);
   Json reply = signed_reply(command);
+  keep(model_);
   reply.update({{"type", "meaning"}, {"meaning", to_json(model_.target)}});
   return reply;
 }
 
-// Keeps what the model has answered so far, and says whose that is.
+// Hypotheses count as answers that were given before all others: a Selection that equals none is no edit of them.
+void AnswerLedger::suppose(const std::vector<Hypothesis>& hypotheses) {
+  if (hypotheses.empty()) return;
+  if (answers_.empty()) keep(model_);
+  std::vector<Selection> first;
+  for (const auto& [text, meaning] : hypotheses) {
+    Selection supposed = model_;
+    supposed.target = meaning;
+    supposed.second = answers_.back().second;
+    supposed.source += fmt::format(", supposing \"{}\"", text);
+    first.push_back(in_order(supposed, space_));
+  }
+  answers_.insert(answers_.begin(), first.begin(), first.end());
+}
+
+// Whose answers these are.
 Json AnswerLedger::signed_reply(const Command& command) {
   LanguageModel& lm = services_.lm;
   model_.provenance = lm.provenance();
   model_.source = lm.model();
   model_.asked_as = lm.asked_as(command);
   model_.cost = lm.cost() - before_;
-  keep(model_);
   return {{"model", lm.model()},
           {"provenance", to_string(lm.provenance())},
           {"asked_as", model_.asked_as},
@@ -118,10 +144,17 @@ Json AnswerLedger::signed_reply(const Command& command) {
 Json AnswerLedger::ask_person(const JsonReader& reader) {
   const auto [how, command, proposal] = protocol::read_or_malformed([&] {
     const std::string word = reader.at("how").string();
-    if (word != "specify" && word != "edit" && word != "truth") reader.at("how").fail("specify, edit or truth");
+    if (word != "specify" && word != "edit" && word != "accept" && word != "truth")
+      reader.at("how").fail("specify, edit, accept or truth");
     return std::tuple(word, protocol::read_command(reader.at("command")),
                       word == "edit" ? protocol::read_selection(reader.at("proposal")) : Selection());
   });
+  if (how == "accept") {
+    const auto [type, texture] = protocol::read_or_malformed(
+        [&] { return std::pair(reader.at("object_type").string(), reader.at("texture").string()); });
+    ++accepts_;
+    return {{"type", "accepts"}, {"accepts", services_.human.accepts(command, type, texture)}};
+  }
   const Selection answered = how == "edit"    ? services_.human.edit(command, account(proposal))
                              : how == "truth" ? services_.truth(command)
                                               : services_.human.specify(command);
@@ -140,16 +173,20 @@ Selection AnswerLedger::account(Selection selection) const {
                                    [&ordered](const Selection& answer) { return same_distribution(answer, ordered); });
     from = same == answers_.rend() ? answers_.back() : *same;
     if (same == answers_.rend()) edited = ", edited by the method";
-    from.cost = model_.cost;
-    for (const Selection& answer : answers_)
-      from.cost.human_seconds = std::max(from.cost.human_seconds, answer.cost.human_seconds);
   } else if (!nothing_in(selection)) {
     from.provenance = Provenance::rule;
+  }
+  SelectionCost cost = model_.cost;
+  cost.human_queries = accepts_;
+  for (const Selection& answer : answers_) cost.human_seconds = std::max(cost.human_seconds, answer.cost.human_seconds);
+  if (accepts_ > 0) {
+    from.provenance = Provenance::simulated_edit;
+    edited += fmt::format(", after a person was shown {}", accepts_ == 1 ? "an object" : "objects");
   }
   selection.provenance = from.provenance;
   selection.source = from.source + edited;
   selection.asked_as = from.asked_as;
-  selection.cost = from.cost;
+  selection.cost = cost;
   selection.cost += earlier_;
   return selection;
 }

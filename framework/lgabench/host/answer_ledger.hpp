@@ -25,18 +25,21 @@ class AnswerLedger {
 
   /// The Selection with provenance, source, wording and cost: those of the answers that it equals, the last ones first;
   /// of the last ones, ", edited by the method", where it equals none. Nobody asked: rule, or none where it is empty.
+  /// Where a person was shown objects, it is a simulated edit.
   Selection account(Selection selection) const;
 
  private:
   Json answer_questions(const JsonReader& reader);
-  Json answer_meaning(const JsonReader& reader);
+  Json answer_in_one(const JsonReader& reader);
   Json signed_reply(const Command& command);
   Json ask_person(const JsonReader& reader);
+  void suppose(const std::vector<Hypothesis>& hypotheses);
   void keep(Selection answered);
 
   const FeatureSpace& space_;
   Services& services_;
   SelectionCost before_, earlier_;
+  int accepts_ = 0;  // objects that a person was shown
   std::exception_ptr failure_;
   Selection model_;                 // all that the language model said yes to
   std::vector<Selection> answers_;  // the model's and people's, the last one at the end

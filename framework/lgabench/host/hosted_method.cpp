@@ -261,6 +261,7 @@ Selection HostedMethod::revise(const Command& command, const Selection& selected
   request["type"] = "revise";
   request["command"] = protocol::to_json(command);
   request["selection"] = protocol::told(selected);
+  request["shows_truth"] = services.shows_truth;
   try {
     const Frame frame = session_->call(request, "revised", answer, &packed.file);
     return ledger.account(session_->read([&] {

@@ -107,6 +107,19 @@ Question read_question(const JsonReader& reader, const Command& command) {
           reader.at("candidate").string()};
 }
 
+Json to_json(const std::vector<Hypothesis>& hypotheses) {
+  Json all = Json::array();
+  for (const auto& [text, meaning] : hypotheses) all.push_back({{"text", text}, {"meaning", to_json(meaning)}});
+  return all;
+}
+
+std::vector<Hypothesis> read_hypotheses(const JsonReader& reader) {
+  std::vector<Hypothesis> all;
+  for (const JsonReader& one : reader.elements())
+    all.push_back({one.at("text").string(), read_unchecked_meaning(one.at("meaning"))});
+  return all;
+}
+
 Json to_json(const SelectionCost& cost) {
   return {{"lm_queries", cost.lm_queries},
           {"lm_tokens", cost.lm_tokens},

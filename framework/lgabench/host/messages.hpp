@@ -42,6 +42,9 @@ Needs read_needs(const JsonReader& reader);
 Json to_json(const Question& question, const Command& command);
 Question read_question(const JsonReader& reader, const Command& command);
 
+Json to_json(const std::vector<Hypothesis>& hypotheses);
+std::vector<Hypothesis> read_hypotheses(const JsonReader& reader);
+
 Json to_json(const SelectionCost& cost);
 SelectionCost read_cost(const JsonReader& reader);
 

@@ -60,6 +60,17 @@ class RemoteModel : public LanguageModel {
     note(reader, command);
     return read_unchecked_meaning(reader.at("meaning"));
   }
+  std::vector<Hypothesis> hypotheses(const Command& command, const FeatureSpace& space) override {
+    const Frame frame = ask(channel_,
+                            {{"type", "ask"},
+                             {"how", "hypotheses"},
+                             {"command", protocol::to_json(command)},
+                             {"space", protocol::to_json(space)}},
+                            "hypotheses");
+    const JsonReader reader(frame.header, "hypotheses");
+    note(reader, command);
+    return protocol::read_hypotheses(reader.at("hypotheses"));
+  }
   std::string model() const override { return model_; }
   std::string asked_as(const Command& command) const override {
     const auto found = asked_as_.find(command.utterance);
@@ -95,6 +106,16 @@ class RemoteHuman : public HumanAnswers {
                    {"how", "edit"},
                    {"command", protocol::to_json(command)},
                    {"proposal", distribution_json(proposal)}});
+  }
+  bool accepts(const Command& command, const std::string& object_type, const std::string& texture) override {
+    const Frame frame = ask(channel_,
+                            {{"type", "person"},
+                             {"how", "accept"},
+                             {"command", protocol::to_json(command)},
+                             {"object_type", object_type},
+                             {"texture", texture}},
+                            "accepts");
+    return JsonReader(frame.header, "accepts").at("accepts").boolean();
   }
   Selection truth(const Command& command) {
     return person({{"type", "person"}, {"how", "truth"}, {"command", protocol::to_json(command)}});
@@ -214,6 +235,7 @@ class Host {
       const Command command = protocol::read_command(reader.at("command"));
       const Selection selected = protocol::read_selection(reader.at("selection"));
       const std::vector<Demonstration> demonstrations = protocol::unpack(layout_, reader, frame.file);
+      services.shows_truth = reader.at("shows_truth").boolean();
       const Selection revised = call([&] { return method().revise(command, selected, demonstrations, services); });
       return {{{"type", "revised"}, {"selection", distribution_json(revised)}}};
     }

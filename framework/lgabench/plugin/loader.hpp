@@ -20,7 +20,7 @@ struct PluginInfo {
   Json options;        // {name: {"default", "help", "source", "values"?, "min"?, "max"?, "words"?, "needs"?,
                        // "framework"?}}
   std::string sha256;  // of the file
-  std::string asks{};  // "specify", "edit", "truth", "network" or "": see LGABENCH_METHOD_ASKING
+  std::string asks{};  // "specify", "edit", "accept", "truth", "network" or "": see LGABENCH_METHOD_ASKING
   /// What a method in Python has (host/python_method.hpp): {"class", "interpreter", "reads", "user_base",
   /// "versions"}; else null.
   Json python{};

@@ -24,7 +24,8 @@
 
 /// A method that asks more than the language model. `asks` is "specify" or "edit": people, as HumanAnswers says; with
 /// `lgabench run --humans` it has a cell for each of them, and a method that edits starts from the recorded answers
-/// that people were given to edit. Or "truth": Services::truth, for a diagnosis that is nobody's entry. Or "network":
+/// that people were given to edit. Or "accept": people are shown objects, and say whether they would take them, for
+/// whom the truth stands in. Or "truth": Services::truth, for a diagnosis that is nobody's entry. Or "network":
 /// its process may open sockets; its rows are marked, and no leaderboard ranks them.
 #define LGABENCH_METHOD_ASKING(asks, id, version, summary, Class, options_json) \
   LGABENCH_PLUGIN_("method", asks, id, version, summary, ::lgabench::Method, Class, options_json)

@@ -170,11 +170,12 @@ DeclaredOptions read_options(const std::string& options_json) {
 }
 
 void check_asks(const std::string& kind, const std::string& asks) {
-  constexpr std::array<const char*, 5> known{"", "specify", "edit", "truth", "network"};
+  constexpr std::array<const char*, 6> known{"", "specify", "edit", "accept", "truth", "network"};
   if (std::find(known.begin(), known.end(), asks) == known.end() || (kind == "engine" && !asks.empty()))
-    throw PluginError(fmt::format(
-        "descriptor: asks \"{}\", expected \"specify\", \"edit\", \"truth\" or \"network\" of a method, or \"\"",
-        asks));
+    throw PluginError(
+        fmt::format("descriptor: asks \"{}\", expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\" of "
+                    "a method, or \"\"",
+                    asks));
 }
 
 PluginDescriptor find_descriptor(std::string_view bytes) {

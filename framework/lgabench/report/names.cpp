@@ -19,13 +19,15 @@ struct Mark {
   int sides;
   double turned;
 };
-constexpr std::array<Mark, 7> marks{{{"circle", 0, 0},
+constexpr std::array<Mark, 9> marks{{{"circle", 0, 0},
                                      {"square", 4, 45},
                                      {"triangle", 3, -90},
                                      {"diamond", 4, 0},
                                      {"triangle_down", 3, 90},
                                      {"pentagon", 5, -90},
-                                     {"hexagon", 6, 0}}};
+                                     {"hexagon", 6, 0},
+                                     {"triangle_right", 3, 0},
+                                     {"triangle_left", 3, 180}}};
 constexpr std::array<const char*, 4> spare{"#8C564B", "#7F3C8D", "#4B6A00", "#909400"};
 
 struct Known {

@@ -1,0 +1,47 @@
+// What a person prefers and did not say, learned from what they take (after Peng et al., HRI 2024).
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <lgabench/core/method.hpp>
+
+namespace lgabench {
+
+/// What the words say and what could stand behind them, weighed by what the person took. The words have a prior of 1/2,
+/// the hypotheses share the rest equally.
+class Preference {
+ public:
+  /// What holds the same objects as another before it is left out.
+  Preference(const Meaning& words, const std::vector<Hypothesis>& hypotheses, const FeatureSpace& space);
+
+  /// The person took that instance. P = .95 / number of visible objects that a candidate holds if it is one of them,
+  /// else .05 / number of visible objects. Place types are neither.
+  void took(const Observation& seen, std::uint8_t instance);
+  /// The person said of an object whether they would take it: P = .95 where the candidate says so too, else .05.
+  void said(const std::string& object_type, const std::string& texture, bool accepts);
+
+  /// The words first, then the hypotheses in their order.
+  const std::vector<Hypothesis>& candidates() const { return candidates_; }
+  /// Of each candidate; they add up to 1.
+  std::vector<double> probabilities() const;
+  /// Candidates by number: the likeliest first, of equals the one that holds more pairs of the space.
+  std::vector<std::size_t> ranked() const;
+
+ private:
+  std::vector<Hypothesis> candidates_;
+  std::vector<std::vector<bool>> pairs_;  // of the space, that each holds
+  std::vector<double> logs_;              // of what is proportional to the probabilities
+};
+
+/// Whether the person is asked, too.
+enum class AskPerson { no, yes };
+
+/// plga: the Selection with the target that explains best what was taken in the command's demonstrations; the Selection
+/// itself where their targets are not the person's (Services::shows_truth) or no hypotheses are known, which the log
+/// says. With AskPerson::yes the person is shown the first visible object of the demonstrations on which the two
+/// likeliest candidates differ, if there is one.
+Selection preferred(const Command& command, const Selection& selected, const FeatureSpace& space,
+                    const std::vector<Demonstration>& demonstrations, Services& services, AskPerson ask);
+
+}  // namespace lgabench

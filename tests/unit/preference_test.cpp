@@ -1,0 +1,187 @@
+// What a person leaves unsaid: weighed by what they take, and by what they say of an object.
+#include <lgabench/abstraction/preference.hpp>
+
+#include <gtest/gtest.h>
+
+#include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/recorded.hpp>
+#include <lgabench/core/scenario.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+const FeatureSpace space{"test", {"apple", "banana", "pear", "pallet"}, {"red", "blue"}};
+const Meaning words{{"apple", "banana"}, {"red", "blue"}};
+const std::vector<Hypothesis> hypotheses{{"apples", {{"apple"}, {"red", "blue"}}},
+                                         {"what is red", {{"apple", "banana"}, {"red"}}}};
+
+// A row of objects, a pixel each, from id 1 on.
+Observation row_of(const std::vector<std::pair<std::string, std::string>>& objects) {
+  Observation seen;
+  seen.size = {1, static_cast<int>(objects.size())};
+  for (const auto& [type, texture] : objects) {
+    const auto id = static_cast<std::uint8_t>(seen.ids.size() + 1);
+    seen.ids.push_back(id);
+    seen.instances.push_back({id, type, texture, 1});
+  }
+  return seen;
+}
+
+// Takes hold at (grasp, 0), in columns of a picture that is `columns` wide and one row high, and leads to `to`.
+ActionSpace in_a_row(int columns) {
+  ActionSpace actions;
+  for (const char* name : {"down", "from", "to"}) actions.numbers.push_back({name, "", 0, 1.0 * columns});
+  actions.numbers[0].high = 1;
+  actions.places = {{0, 1}, {0, 2}};
+  return actions;
+}
+Demonstration shown(Observation seen, double from, double to, const std::string& utterance = "Bring me some fruit.") {
+  return {{utterance, {}}, {{std::move(seen), {.5, from, to}}}};
+}
+
+TEST(Preference, IsWeighedByWhatWasTaken) {
+  Preference preference(words, hypotheses, space);
+  EXPECT_EQ(preference.probabilities(), (std::vector<double>{.5, .25, .25}));
+
+  // Of apple, banana and pear (the pallet does not count): 1/2 * .95/2 and twice 1/4 * .95/1. Equal: the broader.
+  preference.took(row_of({{"apple", "red"}, {"banana", "blue"}, {"pear", "red"}, {"pallet", "red"}}), 1);
+  for (const double p : preference.probabilities()) EXPECT_NEAR(p, 1.0 / 3, 1e-12);
+  EXPECT_EQ(preference.ranked(), (std::vector<std::size_t>{0, 1, 2}));
+
+  // .95/2, .95/1, and .05/2 of what holds neither: as 19 : 38 : 1.
+  preference.took(row_of({{"apple", "blue"}, {"banana", "blue"}}), 1);
+  const std::vector<double> after = preference.probabilities();
+  EXPECT_NEAR(after[0], 19.0 / 58, 1e-12);
+  EXPECT_NEAR(after[1], 38.0 / 58, 1e-12);
+  EXPECT_NEAR(after[2], 1.0 / 58, 1e-12);
+  EXPECT_EQ(preference.ranked(), (std::vector<std::size_t>{1, 0, 2}));
+
+  // 19 * .05 : 38 * .95 : 1 * .05
+  preference.said("banana", "red", false);
+  EXPECT_NEAR(preference.probabilities()[1], 36.1 / 37.1, 1e-12);
+}
+
+TEST(Preference, LeavesOutWhatHoldsTheSameObjects) {
+  std::vector<Hypothesis> twice = hypotheses;
+  twice.push_back({"the words again", {{"banana", "apple"}, {"blue", "red"}}});
+  twice.push_back({"apples again", {{"apple"}, {"blue", "red"}}});
+  const Preference preference(words, twice, space);
+  ASSERT_EQ(preference.candidates().size(), 3u);
+  EXPECT_EQ(preference.candidates()[2].text, "what is red");
+  EXPECT_EQ(Preference(words, {}, space).probabilities(), std::vector<double>{1});
+}
+
+// Knows the hypotheses above, or none; counts.
+class Supposing : public LanguageModel {
+ public:
+  std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override { return {}; }
+  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override {
+    ++asked;
+    return known;
+  }
+  std::string model() const override { return "a model"; }
+  Provenance provenance() const override { return Provenance::recorded; }
+  SelectionCost cost() const override { return {}; }
+  std::vector<Hypothesis> known = lgabench::hypotheses;
+  int asked = 0;
+};
+
+struct TakesNoBananas : HumanAnswers {
+  Selection specify(const Command&) override { return {}; }
+  Selection edit(const Command&, const Selection& proposal) override { return proposal; }
+  bool accepts(const Command&, const std::string& object_type, const std::string& texture) override {
+    asked.push_back(object_type + ", " + texture);
+    return object_type != "banana";
+  }
+  std::vector<std::string> asked;
+};
+
+struct NoLog : TrainingLog {
+  void epoch(int, long long, double) override {}
+};
+
+class Preferred : public testing::Test {
+ protected:
+  Selection preferred(const std::vector<Demonstration>& demonstrations, AskPerson ask) {
+    Selection selected;
+    selected.target = words;
+    return lgabench::preferred({"Bring me some fruit.", "pick_and_place"}, selected, space, demonstrations, services_,
+                               ask);
+  }
+  const std::vector<Demonstration> two_apples{
+      shown(row_of({{"pear", "red"}, {"apple", "red"}, {"banana", "blue"}}), 1.5, 0),
+      shown(row_of({{"pear", "red"}, {"apple", "blue"}, {"banana", "blue"}}), 1.5, 0)};
+
+  Supposing model_;
+  TakesNoBananas person_;
+  NoLog log_;
+  Json options_ = Json::object();
+  ActionSpace actions_ = in_a_row(3);
+  Services services_{model_, person_, options_, 0, log_, actions_, {}, {}, true};
+};
+
+TEST_F(Preferred, IsWhatExplainsTheDemonstrationsBest) {
+  EXPECT_EQ(preferred(two_apples, AskPerson::no).target, hypotheses[0].meaning);
+  EXPECT_TRUE(person_.asked.empty());
+  EXPECT_EQ(preferred({two_apples[0]}, AskPerson::no).target, words) << "of equals the broader";
+  std::vector<Demonstration> of_another_command = two_apples;
+  for (Demonstration& one : of_another_command) one.instruction.utterance = "Bring me a pear.";
+  EXPECT_EQ(preferred(of_another_command, AskPerson::no).target, words);
+}
+
+TEST_F(Preferred, ShowsAPersonTheFirstObjectOnWhichTheLikeliestTwoDiffer) {
+  EXPECT_EQ(preferred({two_apples[0]}, AskPerson::yes).target, hypotheses[0].meaning);
+  EXPECT_EQ(person_.asked, std::vector<std::string>{"banana, blue"});
+  person_.asked.clear();
+  preferred({shown(row_of({{"apple", "red"}, {"pear", "red"}}), .5, 0)}, AskPerson::yes);
+  EXPECT_TRUE(person_.asked.empty()) << "nothing in view tells them apart";
+}
+
+TEST_F(Preferred, StaysWhatTheWordsSayWhereNothingTellsMore) {
+  services_.shows_truth = false;
+  EXPECT_EQ(preferred(two_apples, AskPerson::yes).target, words);
+  EXPECT_EQ(model_.asked, 0);
+  services_.shows_truth = true;
+  model_.known.clear();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(preferred(two_apples, AskPerson::yes).target, words);
+  EXPECT_SAYS(testing::internal::GetCapturedStdout(), "no hypotheses are known");
+  EXPECT_TRUE(person_.asked.empty());
+}
+
+TEST(Preference, OfACommandIsRecordedForThoseOfTheSuiteAlone) {
+  for (const std::string& id : scenario_ids()) {
+    const Scenario scenario = load_scenario(id);
+    if (id.rfind("words_", 0) != 0) continue;
+    RecordedLanguageModel model(scenario, scenario.recorded);
+    const std::size_t count = model.hypotheses(scenario.command(0), scenario.space).size();
+    EXPECT_EQ(count, id.rfind("words_preference_", 0) == 0 ? 6u : 0u) << id;
+    EXPECT_EQ(model.cost().lm_queries, count > 0 ? 1 : 0) << id;
+  }
+}
+
+TEST(Taken, IsWhatLiesUnderTheGraspOrOnTheWay) {
+  const ActionSpace actions = in_a_row(40);
+  Observation seen;
+  seen.size = {1, 40};
+  seen.ids.assign(40, 0);
+  for (const auto& [id, type, from, to] : {std::tuple{1, "pallet", 0, 4}, {2, "apple", 12, 14}, {3, "pear", 26, 28}}) {
+    for (int i = from; i < to; ++i) seen.ids[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(id);
+    seen.instances.push_back({static_cast<std::uint8_t>(id), type, "red", to - from});
+  }
+  const auto at = [&](double from, double to) { return taken(shown(seen, from, to), actions); };
+  EXPECT_EQ(at(13, 1), 2);
+  EXPECT_EQ(at(15, 40), 2) << "beside its edge";
+  EXPECT_EQ(at(17, 40), 3) << "pushed away from what is nearer";
+  EXPECT_EQ(at(24.6, 0), 3) << "within two pixels";
+  EXPECT_EQ(at(22, 0), 2);
+  EXPECT_EQ(at(35, 40), 3) << "nothing on the way";
+  EXPECT_EQ(at(2, 3), 2) << "never the pallet";
+  seen.ids.assign(40, 0);
+  EXPECT_EQ(at(13, 1), std::nullopt);
+}
+
+}  // namespace
+}  // namespace lgabench

@@ -1,0 +1,36 @@
+// What a demonstration takes, in every task, against what the oracle was told to take.
+#include <algorithm>
+#include <map>
+
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/method.hpp>
+
+#include "../engine_under_test.hpp"
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+TEST(Taken, IsTheOraclesTargetInEveryTask) {
+  constexpr int scenes = 4;
+  std::map<std::string, int> tasks;
+  for (const std::string& id : scenario_ids()) {
+    const Scenario scenario = load_scenario(id);
+    const auto environment = make_environment(scenario, make_engine());
+    for (const std::string& layout : layouts_of(scenario)) try {
+        for (int i = 0; i < scenes; ++i) {
+          const Scene scene = training_scene(scenario, layout, {}, 7, i);
+          const Observation seen = environment->reset(scene);
+          const Action label = environment->expert_action();
+          const auto found = taken({{}, {{seen, label}}}, environment->action_space());
+          EXPECT_EQ(found, scene.find("target")->instance_id) << id << " " << layout << " " << i;
+          ++tasks[scenario.task];
+        }
+      } catch (const NothingToShow&) {  // what is too wide for this layout
+      }
+  }
+  for (const TaskInfo& task : installed_tasks()) EXPECT_GE(tasks[task.id], scenes) << task.id;
+}
+
+}  // namespace
+}  // namespace lgabench
