@@ -276,12 +276,12 @@ std::vector<Features> members_of(const Scenario& scenario, const std::string& la
   const Layout layout = find_layout(find_task(scenario.task), layout_id);
   double widest_m = std::min({layout.widest_m, layout.widest_target_m, content_of(*scenario.train).widest_m()});
   for (const Arm& arm : scenario.tests) widest_m = std::min(widest_m, content_of(*arm.scenes).widest_m());
-  const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
+  const ScenarioCommand& meant = scenario.commands.at(static_cast<std::size_t>(command));
   std::vector<Features> all, drawn;
-  for (const std::string& type : truth.target.product().object_types)
+  for (const std::string& type : meant.truth.target.product().object_types)
     if (can_show(type, widest_m))
-      for (const std::string& texture : truth.target.product().textures) all.push_back({type, texture});
-  RandomStream random(fmt::format("members/{}/{}/{}", utterance, layout_id, training_seed));
+      for (const std::string& texture : meant.truth.target.product().textures) all.push_back({type, texture});
+  RandomStream random(fmt::format("members/{}/{}/{}", meant.utterance, layout_id, training_seed));
   for (const int i : random.permutation(static_cast<int>(all.size())))
     drawn.push_back(all[static_cast<std::size_t>(i)]);
   return drawn;

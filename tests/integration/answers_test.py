@@ -211,7 +211,7 @@ class Cassettes(Asking):
     def test_what_is_no_cassette_of_one_model_is_refused(self):
         run = ["run", self.suite, *RUN, "--out", "out", "--answers"]
         for word in ("gpt5", "gpt4"):
-            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_fetch, claude_words, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
+            self.assertIn("--answers: expected recorded, claude, claude_clutter, claude_fetch, claude_paraphrases, claude_words, gpt4_released, gpt4_study, openai, none, cassette:FILE or FILE.json",
                           self.call(*run, word, expect=2).stderr)
         (self.dir / "empty.jsonl").write_text("")
         self.assertIn("expected replies of one model, it has none", self.call(*run, "cassette:empty.jsonl", expect=2).stderr)
@@ -534,6 +534,45 @@ class Recorded(Case):
         self.assertEqual(json.loads((self.dir / "out/run.json").read_text())["request"]["truth"], "printed")
         shown = json.loads(self.call("select", "red_heart", "--truth", "printed", "--json").stdout)
         self.assertEqual(shown["quality"]["target"]["textures"]["true_size"], 4)
+
+
+class Paraphrases(Case):
+    def test_a_method_is_asked_about_the_words_of_the_episode(self):
+        table = self.call("run", "paraphrases", "--preset", "smoke", "--scenarios", "paraphrase_red_heart,paraphrase_rotate_block",
+                          "--methods", "lga", "--episodes", "4", "--set", "lga.epochs=2", "--out", "run").stdout
+        self.assert_matches_schemas("run")
+        selected = {cell["scenario"]["id"]: (cell["scenario"]["commands"], json.loads((path.parent / "selection.json").read_text()))
+                    for path in (self.dir / "run/cells").glob("*/cell.json")
+                    for cell in [json.loads(path.read_text())] if cell["method"]["id"] == "lga"}
+        for commands, selections in selected.values():
+            for command, one in zip(commands, selections["commands"], strict=True):
+                self.assertEqual(one["selection"]["asked_as"], command["utterance"])
+                self.assertEqual(one["selection"]["source"], "Claude (Anthropic, 2026)")
+        rows = {(row["scenario"], row["arm"]): row for row in json.loads((self.dir / "run/summary.json").read_text())["rows"]
+                if row["method"] == "lga"}
+        self.assertEqual(rows["paraphrase_red_heart", "implied"]["marks"].count("ambiguous"), 1)
+        self.assertEqual(rows["(mean)", "implied"]["episodes"], 4, "of rotate_block alone")
+        self.assertEqual(rows["(mean)", "described"]["shift"]["selected_otherwise"], 1, "both changed")
+        self.assertEqual(rows["(mean)", "synonym"]["shift"]["selected_otherwise"], .5)
+        self.assertIn("implied (1 of 2)", table)
+
+    def test_answers_are_scored_by_arm_without_a_policy(self):
+        score = ["select", "--suite", "paraphrases", "--score", "--scenes", "4"]
+        rows = {(row["group"], row["asked"]): row for row in map(json.loads, self.call(*score, "--json").stdout.splitlines())}
+        self.assertEqual([group for group, asked in rows if asked == "flat"],
+                         ["original", "synonym", "polite", "described", "implied", "all"])
+        self.assertEqual([rows[group, "flat"]["commands"] for group in ("original", "described", "implied", "all")],
+                         [13, 12, 7, 58], "without the ambiguous ones")
+        self.assertEqual([rows[group, "flat"]["otherwise"] for group in ("original", "synonym", "described")], [0, 3, 6])
+        self.assertEqual(rows["original", "flat"]["scenes"], 13 * 4)
+        text = self.call(*score).stdout
+        self.assertIn("flat, paraphrase_red_heart, implied (ambiguous, in no mean): 4 of 4 scenes", text.replace("; missed", ""))
+        self.assertRegex(text, r'structured: answers of claude_paraphrases: expected "structured" for "Bring me the red heart."')
+
+    def test_where_nothing_is_recorded_the_cell_says_so(self):
+        refused = self.call("run", "paraphrases", "--preset", "smoke", "--methods", "lga", "--answers", "claude", "--out", "run",
+                            expect=2).stderr
+        self.assertIn('answers of claude: expected some for scenario paraphrase_red_heart, "Fetch me the heart that is red."', refused)
 
 
 class Written(Case):

@@ -260,8 +260,9 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
     if (!s.json.contains("answers")) continue;  // an example: nobody was asked about it
     const auto other = others.find(id);
     using Sources = std::pair<std::string, std::string>;
-    const Sources otherwise =
-        id.rfind("words_", 0) == 0 ? Sources{"claude_words", "claude_words"} : Sources{"gpt4_released", "gpt4_study"};
+    const Sources otherwise = id.rfind("words_", 0) == 0        ? Sources{"claude_words", "claude_words"}
+                              : id.rfind("paraphrase_", 0) == 0 ? Sources{"claude_paraphrases", "claude_paraphrases"}
+                                                                : Sources{"gpt4_released", "gpt4_study"};
     const Sources expected = other == others.end() ? otherwise : other->second;
     EXPECT_EQ(recorded_source(s, "recorded"), expected.first);
     EXPECT_EQ(recorded_source(s, "recorded", true), expected.second);
@@ -272,6 +273,31 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
         EXPECT_TRUE(RecordedLanguageModel(s, source).knows(s.command(static_cast<int>(c))));
   }
   EXPECT_EQ(of_study, 9);
+}
+
+// What changes with the words shall not be who answered, or what is meant.
+TEST(RecordedAnswers, OfAParaphraseAreToItsOwnWords) {
+  int paraphrases = 0;
+  for (const std::string& id : scenario_ids()) {
+    if (id.rfind("paraphrase_", 0) != 0) continue;
+    SCOPED_TRACE(id);
+    const Scenario s = load_scenario(id);
+    RecordedLanguageModel model(s, s.recorded), alone(s, "claude");
+    EXPECT_EQ(distribution_json(select_features(s.command(0), s.space, model)),
+              distribution_json(select_features(s.command(0), s.space, alone)))
+        << "repeated from claude";
+    for (int i = 1; i < static_cast<int>(s.commands.size()); ++i, ++paraphrases) {
+      const Selection answered = select_features(s.command(i), s.space, model);
+      EXPECT_EQ(answered.asked_as, s.command(i).utterance);
+      EXPECT_EQ(answered.provenance, Provenance::recorded);
+      EXPECT_EQ(answered.source, "Claude (Anthropic, 2026)");
+      EXPECT_FALSE(answered.empty());
+      EXPECT_FALSE(alone.knows(s.command(i)));
+      EXPECT_EQ(distribution_json(s.commands[static_cast<std::size_t>(i)].truth),
+                distribution_json(s.commands[0].truth));
+    }
+  }
+  EXPECT_EQ(paraphrases, 13 * 4);
 }
 
 TEST(RecordedAnswers, OfSweepSayWhatToAvoidAtTwiceTheQueries) {
@@ -291,8 +317,8 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
               "vowel_with_multiple_colors");
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
-              "expected recorded or one of claude, claude_clutter, claude_fetch, claude_words, gpt4_released, "
-              "gpt4_study, got \"gpt4\"");
+              "expected recorded or one of claude, claude_clutter, claude_fetch, claude_paraphrases, claude_words, "
+              "gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 

@@ -255,7 +255,8 @@ std::string refusal(const Json& json) {
 TEST(Scenario, AllShippedOnesAreRead) {
   int pick_and_place = 0;
   for (const std::string& id : scenario_ids()) pick_and_place += load_scenario(id).task == "pick_and_place";
-  EXPECT_EQ(pick_and_place, 78);  // words has 56, q1 9, clutter 6 more, many_commands 4, q2 two, q3 one
+  EXPECT_EQ(pick_and_place,
+            87);  // words has 56, q1 9 and as many paraphrased, clutter 6, many_commands 4, q2 two, q3 one
   const Scenario s = load_scenario("heart");
   EXPECT_EQ(s.commands[0].truth.target.product().object_types, std::vector<std::string>{"heart"});
   EXPECT_EQ(s.commands[0].truth.target.product().textures.size(), 83u);  // ALL
@@ -270,6 +271,35 @@ TEST(Scenario, DemonstrationsCountForEachSeenCommand) {
     EXPECT_EQ(s.training_scenes(50), 100) << id;
     EXPECT_EQ(s.commands_of("train"), (std::vector<int>{0, 1})) << "in turn";
   }
+}
+
+TEST(Scenario, ACommandMayNameTheArmThatGivesIt) {
+  const Scenario s = load_scenario("paraphrase_red_heart");
+  EXPECT_EQ(s.commands_of("train"), std::vector<int>{0});
+  EXPECT_EQ(s.commands_of("original"), std::vector<int>{0});
+  for (int i = 1; i < 5; ++i) {
+    const std::string& arm = s.tests[static_cast<std::size_t>(i)].id;
+    EXPECT_EQ(s.commands_of(arm), std::vector<int>{i}) << arm;
+    EXPECT_EQ(s.is_ambiguous(arm), arm == "implied") << arm;
+  }
+  EXPECT_FALSE(s.is_ambiguous("train"));
+  EXPECT_FALSE(s.is_ambiguous("original"));
+
+  Json json = s.json;
+  json["commands"][1].erase("arm");
+  EXPECT_EQ(read_scenario(json, "mine.json").commands_of("polite"), (std::vector<int>{1, 2})) << "it names none";
+  json["commands"].push_back(json["commands"][1]);
+  json["commands"][5]["arm"] = "original";
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/5/arm: expected an arm with \"unseen\": true (synonym, polite, ");
+  json["commands"][1]["arm"] = "synonym";
+  json["commands"][1]["seen"] = true;
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/1/arm: expected \"seen\": false beside it");
+  json = s.json;
+  json["commands"][4].erase("arm");
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/4/ambiguous: expected \"arm\" beside it");
+  json = s.json;
+  json["commands"][1]["arm"] = "polite";
+  EXPECT_SAYS(refusal(json), "mine.json: /tests/1: expected a scenario with commands for this arm");
 }
 
 TEST(Scenario, TheReleasedTruthIsThePaperAuthorsAnnotations) {
@@ -319,8 +349,8 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
   EXPECT_SAYS(refusal(json),
-              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, claude_words, "
-              "gpt4_released, gpt4_study");
+              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, "
+              "claude_paraphrases, claude_words, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
   EXPECT_SAYS(refusal(json), "mine.json: /printed: unknown member \"task\"");

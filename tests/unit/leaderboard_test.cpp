@@ -169,6 +169,20 @@ TEST(LeaderboardEntry, MoreFailuresThanLettersAreRefusedBeforeAnythingIsWritten)
   EXPECT_SAYS(message_of<InputError>([&] { played_cell(result, "", "", entry); }), "27 words for failures");
 }
 
+TEST(LeaderboardEntry, ArmsOfAmbiguousWordsAreNoPartOfIt) {
+  const Setting setting = installed_setting("paraphrases", "leaderboard").setting;
+  const std::vector<std::string> all{"original", "synonym", "polite", "described", "implied"};
+  EXPECT_EQ(setting.scenario("paraphrase_heart").arms, all);
+  EXPECT_EQ(setting.scenario("paraphrase_red_heart").arms, std::vector<std::string>(all.begin(), all.end() - 1));
+  Entry entry;
+  report::CellResult result;
+  result.failed = true;
+  result.episodes_per_arm = 2;
+  result.arms = {"original", "implied"};
+  result.ambiguous = {"implied"};
+  EXPECT_EQ(played_cell(result, "", "", entry).outcomes.size(), 1u);
+}
+
 // A line of fresh scenes: in each arm so many successes more than on the board's.
 Json fresh_of(const Entry& entry, const std::map<std::string, int>& more, char nonce = '7') {
   Json line = replay_of(entry, "b", "another");

@@ -336,5 +336,23 @@ TEST(ManyCommands, DecoysAreWhatOtherCommandsMeanAndVariantsHearTheFirstOnes) {
     }
 }
 
+TEST(Paraphrases, AreGivenInTheScenesOfTheCommandAsItIsDemonstrated) {
+  constexpr int scenes = 20;
+  const Suite suite = load_suite("paraphrases");
+  EXPECT_EQ(suite.design.scenarios.size(), 13u);
+  for (const std::string& id : suite.design.scenarios) {
+    const Scenario scenario = suite_scenario(suite, id, Truth::released);
+    ASSERT_EQ(scenario.tests.size(), 5u);
+    for (int i = 0; i < scenes; ++i)
+      for (std::size_t arm = 0; arm < scenario.tests.size(); ++arm) {
+        Json first = to_json(test_scene(scenario, "continuous", "original", 1, i, 2)),
+             other = to_json(test_scene(scenario, "continuous", scenario.tests[arm].id, 1, i, 2));
+        EXPECT_EQ(other.at("command"), arm);
+        for (const char* words : {"arm", "command"}) first.erase(words), other.erase(words);
+        EXPECT_EQ(first, other) << id << ", " << scenario.tests[arm].id;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace lgabench::tabletop

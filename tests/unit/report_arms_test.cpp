@@ -30,6 +30,7 @@ Spec ambiguous(const std::string& method, int seen, int unseen) {
   Spec spec{method, 0, "q3_fruit", 50};
   spec.arms = {{"seen", seen, {0, 1}}, {"unseen", unseen, {2}}};
   spec.commands = {{"Bring me a tomato.", true}, {"Bring me an apple.", true}, {"Bring me a fruit.", false}};
+  spec.of_commands[2]["truth"] = {{"target", {{"object_types", {"heart", "star"}}, {"textures", "ALL"}}}};
   return spec;
 }
 
@@ -112,6 +113,43 @@ TEST(Arms, OfOtherCommandsAreNotPaired) {
   EXPECT_EQ(rows.at("q3_fruit lga unseen").at("success"), 0.75);
   EXPECT_SILENT(table_text(run.path), "change against");
   EXPECT_SILENT(read_file(run.path / "report.md"), "Change against");
+}
+
+// A command and two paraphrases, of which the second may be ambiguous.
+Spec paraphrased(const std::string& method, const std::string& scenario, int original, int synonym, int implied,
+                 bool is_ambiguous) {
+  Spec spec{method, 0, scenario, 50};
+  spec.arms = {{"original", original, {0}}, {"synonym", synonym, {1}}, {"implied", implied, {2}}};
+  spec.commands = {{"Bring me the heart.", true}, {"Fetch me the heart.", false}, {"I need its symbol.", false}};
+  spec.of_commands = {{1, {{"arm", "synonym"}}}, {2, {{"arm", "implied"}}}};
+  if (is_ambiguous) spec.of_commands[2]["ambiguous"] = true;
+  return spec;
+}
+
+TEST(Arms, OfAParaphraseArePairedAndEnterNoMeanWhereItIsAmbiguous) {
+  FabricatedRun run;
+  run.run["suite"] = "paraphrases";
+  for (const char* method : {"lga", "gcbc_dart"}) {
+    run.add(paraphrased(method, "clear", 20, 18, 10, false));
+    Spec open = paraphrased(method, "open", 16, 16, 0, true);
+    open.selected[1] = {{"object_types", {"heart"}}, {"textures", {"red"}}};
+    run.add(open);
+  }
+  const Json rows = rows_of(run);
+  EXPECT_NEAR(rows.at("clear lga synonym").at("shift").at("difference"), -.1, 1e-12);
+  EXPECT_EQ(rows.at("clear lga synonym").at("shift").at("selected_otherwise"), 0.);
+  EXPECT_EQ(rows.at("open lga synonym").at("shift").at("selected_otherwise"), 1.);
+  EXPECT_EQ(rows.at("(mean) lga synonym").at("shift").at("selected_otherwise"), .5);
+  EXPECT_FALSE(rows.at("(mean) gcbc_dart synonym").at("shift").contains("selected_otherwise")) << "selects nothing";
+  EXPECT_EQ(rows.at("open lga implied").at("marks"), Json{"ambiguous"});
+  EXPECT_EQ(rows.at("open lga implied").at("success"), 0.) << "shown";
+  EXPECT_EQ(rows.at("(mean) lga implied").at("success"), .5) << "in no mean";
+  EXPECT_EQ(rows.at("(mean) lga implied").at("marks"), Json::array());
+  EXPECT_NEAR(rows.at("(mean) lga implied").at("shift").at("difference"), -.5, 1e-12);
+  const std::string text = table_text(run.path);
+  EXPECT_SAYS(text, "implied (1 of 2): the mean is over clear; in the others its words are ambiguous (?).");
+  EXPECT_SAYS(text, "? ambiguous words, by which a person might mean something else: shown, in no mean.");
+  EXPECT_SAYS(text, "commands for which something else was selected than in original, share");
 }
 
 TEST(Arms, ThatOneScenarioHasAloneHaveTheirMeanOverIt) {

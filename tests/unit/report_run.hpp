@@ -58,6 +58,8 @@ class FabricatedRun : public TemporaryDirectory {
     std::vector<Arm> arms{};                               // none: "test", with `won`
     std::vector<std::pair<std::string, bool>> commands{};  // utterance, seen; none: one that is seen
     Json selection_errors{};                               // as in cell.json; null: none
+    std::map<std::size_t, Json> of_commands{};             // members of the scenario's commands, beside or instead
+    std::map<std::size_t, Json> selected{};                // targets, instead of the usual one
     Json options = Json::object();                         // of the method, beside those in its row's name
 
     std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
@@ -84,6 +86,7 @@ class FabricatedRun : public TemporaryDirectory {
       commands.push_back({{"utterance", utterance},
                           {"seen", seen},
                           {"truth", {{"target", {{"object_types", {"heart"}}, {"textures", "ALL"}}}}}});
+    for (const auto& [command, members] : s.of_commands) commands.at(command).update(members);
     for (const Arm& arm : s.all_arms()) tests.push_back({{"arm", arm.name}});
     Json cell{{"suite", "q1"},
               {"environment", "tabletop"},
@@ -122,6 +125,7 @@ class FabricatedRun : public TemporaryDirectory {
       commands.push_back(selected_json(s));
       commands.back()["utterance"] = utterance;
     }
+    for (const auto& [command, target] : s.selected) commands.at(command)["selection"]["target"] = target;
     return {{"commands", commands}};
   }
 

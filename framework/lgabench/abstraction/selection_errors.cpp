@@ -70,13 +70,13 @@ SelectionErrors read_selection_errors(const JsonReader& reader) {
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant) {
   if (errors.none() || selected.provenance == Provenance::none) return selected;
-  const auto& [utterance, truth, seen] = scenario.commands.at(static_cast<std::size_t>(command));
-  RandomStream random(fmt::format("selection_errors/{}/{}", utterance, training_seed));
+  const ScenarioCommand& meant = scenario.commands.at(static_cast<std::size_t>(command));
+  RandomStream random(fmt::format("selection_errors/{}/{}", meant.utterance, training_seed));
   selected.target =
-      erring(scenario.space, selected.target.product(), truth.target.product(), errors, random, never_meant);
-  if (selected.second && truth.second)
+      erring(scenario.space, selected.target.product(), meant.truth.target.product(), errors, random, never_meant);
+  if (selected.second && meant.truth.second)
     static_cast<FeatureSet&>(*selected.second) =
-        erring(scenario.space, *selected.second, *truth.second, errors, random, never_meant);
+        erring(scenario.space, *selected.second, *meant.truth.second, errors, random, never_meant);
   return selected;
 }
 

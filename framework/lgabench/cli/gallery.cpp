@@ -82,6 +82,13 @@ Sheet sheet(const std::vector<Tile>& tiles, int across) {
           {{"names", std::move(names)}, {"tile", width - gutter}, {"step", width}, {"across", across}}};
 }
 
+// Whether the arm has other words for the scenes of the first one.
+bool in_other_words(const Scenario& scenario, const Arm& arm) {
+  const std::vector<int> given = scenario.commands_of(arm.id);
+  return std::all_of(given.begin(), given.end(),
+                     [&](int command) { return !scenario.commands[static_cast<std::size_t>(command)].arm.empty(); });
+}
+
 }  // namespace
 
 Sheet scene_sheet(const Scenario& scenario, const std::string& layout) {
@@ -113,7 +120,8 @@ Sheet gallery(const std::string& what) {
       const bool stands_freely_alone =
           layout != find_task(find_environment(environment), scenario.task).layouts.front();
       if (stands_freely_alone != words) continue;
-      for (const Arm& arm : scenario.tests) tiles.push_back(scene_and_mask(scenario, layout, arm.id));
+      for (const Arm& arm : scenario.tests)
+        if (!in_other_words(scenario, arm)) tiles.push_back(scene_and_mask(scenario, layout, arm.id));
     }
     return sheet(tiles, 2);
   }

@@ -35,32 +35,70 @@ const std::vector<Asking>& ways_of_asking() {
   return all;
 }
 
+// Of one command, or summed over a group of them.
 struct Row {
   std::string group, asking;
   SceneScore score;
-  int questions = 0;
+  int questions = 0, otherwise = 0;  // otherwise: commands for which something else was selected than for the first
+
+  void add(const Row& other) {
+    score += other.score;
+    questions += other.questions;
+    otherwise += other.otherwise;
+  }
 };
 
 using Groups = std::vector<std::pair<std::string, std::vector<std::string>>>;  // name, scenarios
 
-// By scenario, of one way of asking.
+struct ScoredCommand {
+  std::string scenario, arm;  // arm: the one that gives it, where the scenario's commands name arms; else ""
+  std::string title;          // for a reader
+  bool ambiguous = false;
+  Row row;
+};
+
+// Of one way of asking.
 struct Scores {
-  std::map<std::string, SceneScore> by_scenario;
-  std::map<std::string, int> questions;
+  std::vector<ScoredCommand> commands;
   std::string source;
 };
+
+std::string title_of(const Scenario& scenario, const ScenarioCommand& command, const std::string& arm) {
+  if (!arm.empty()) return scenario.id + ", " + arm;
+  return scenario.commands.size() == 1 ? scenario.id : fmt::format("{}, \"{}\"", scenario.id, command.utterance);
+}
+
+// The arm that gives the command, where they name arms.
+std::string arm_of(const Scenario& scenario, int command) {
+  const auto names = [](const ScenarioCommand& one) { return !one.arm.empty(); };
+  if (std::none_of(scenario.commands.begin(), scenario.commands.end(), names)) return "";
+  for (const Arm& arm : scenario.tests) {
+    const std::vector<int> given = scenario.commands_of(arm.id);
+    if (std::find(given.begin(), given.end(), command) != given.end()) return arm.id;
+  }
+  return "";
+}
 
 Scores scores_of(const Asking& asking, const Suite& suite, Truth truth, int scenes, const WithAnswers& with_answers) {
   Scores all;
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
     with_answers(scenario, [&](LanguageModel& model) {
+      Json first;
       for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i) {
         const Selection selection = asking.select(scenario.command(i), scenario.space, model);
         all.source = selection.source;
-        all.questions[id] += selection.cost.lm_queries;
-        all.by_scenario[id] +=
+        const Json kept = distribution_json(selection);
+        if (i == 0) first = kept;
+        const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(i)];
+        const std::string arm = arm_of(scenario, i);
+        const SceneScore scored =
             score(scenario, i, selection, suite.design.layouts.front(), suite.design.scene_seed, scenes);
+        all.commands.push_back({id,
+                                arm,
+                                title_of(scenario, command, arm),
+                                command.ambiguous,
+                                {"", asking.name, scored, selection.cost.lm_queries, kept == first ? 0 : 1}});
       }
     });
   }
@@ -110,23 +148,40 @@ std::string exact_scenes(const SceneScore& score) {
   return fmt::format("{} [{}, {}]", share(score.exact_scenes, score.scenes), fixed(interval.low), fixed(interval.high));
 }
 
-Json to_json(const Row& row) {
-  return {{"group", row.group},
-          {"asked", row.asking},
-          {"commands", row.score.commands},
-          {"exact_sets", row.score.exact_sets},
-          {"scenes", row.score.scenes},
-          {"exact_scenes", row.score.exact_scenes},
-          {"kept", row.score.kept},
-          {"meant", row.score.meant},
-          {"right", row.score.right},
-          {"questions", row.questions}};
+Json to_json(const Row& row, bool by_arm) {
+  Json json{{"group", row.group},
+            {"asked", row.asking},
+            {"commands", row.score.commands},
+            {"exact_sets", row.score.exact_sets},
+            {"scenes", row.score.scenes},
+            {"exact_scenes", row.score.exact_scenes},
+            {"kept", row.score.kept},
+            {"meant", row.score.meant},
+            {"right", row.score.right},
+            {"questions", row.questions}};
+  if (by_arm) json["otherwise"] = row.otherwise;
+  return json;
 }
 
-void print(const Row& row) {
-  to_stdout("{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}\n", row.group, row.asking, row.score.commands,
+void print(const Row& row, bool by_arm) {
+  to_stdout("{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n", row.group, row.asking, row.score.commands,
             exact_scenes(row.score), share(row.score.exact_sets, row.score.commands),
-            share(row.score.right, row.score.kept), share(row.score.right, row.score.meant), row.questions);
+            share(row.score.right, row.score.kept), share(row.score.right, row.score.meant), row.questions,
+            by_arm ? fmt::format("  {:>9}", share(row.otherwise, row.score.commands)) : "");
+}
+
+// What a reader is told of a command: one whose scenes are not all exact, or that enters no mean.
+void print_misread(const Scores& scores) {
+  for (const ScoredCommand& command : scores.commands) {
+    const int scenes = command.row.score.scenes, exact = command.row.score.exact_scenes;
+    if (exact == scenes && !command.ambiguous) continue;
+    std::vector<std::string> words{fmt::format("{} of {} scenes", exact, scenes)};
+    const SceneScore& score = command.row.score;
+    if (!score.wrongly_kept.empty()) words.push_back(fmt::format("kept: {}", fmt::join(score.wrongly_kept, ", ")));
+    if (!score.missed.empty()) words.push_back(fmt::format("missed: {}", fmt::join(score.missed, ", ")));
+    to_stdout("{}, {}{}: {}\n", command.row.asking, command.title, command.ambiguous ? " (ambiguous, in no mean)" : "",
+              fmt::join(words, "; "));
+  }
 }
 
 }  // namespace
@@ -149,42 +204,48 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
   } catch (const InputError& e) {
     left_out += fmt::format("hypotheses: {}\n", one_line(e.what()));
   }
-  Groups groups;
-  for (const auto& [name, scenarios] : suite.groups.items()) groups.emplace_back(name, scenarios);
-  groups.emplace_back("all", suite_scenario_ids(suite, suite.design));
+  Groups families;
+  for (const auto& [name, scenarios] : suite.groups.items()) families.emplace_back(name, scenarios);
+  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
+  // Those of the suite, or the arms where commands name them, then all.
+  using InGroup = std::function<bool(const ScoredCommand&)>;
+  std::vector<std::pair<std::string, InGroup>> groups;
+  for (const auto& [name, scenarios] : suite.groups.items())
+    groups.emplace_back(name, [list = scenarios](const ScoredCommand& command) {
+      return std::find(list.begin(), list.end(), command.scenario) != list.end();
+    });
+  bool by_arm = false;
+  for (const ScoredCommand& command : by_asking.at("flat").commands) {
+    const auto same = [&command](const auto& group) { return group.first == command.arm; };
+    if (command.arm.empty() || std::any_of(groups.begin(), groups.end(), same)) continue;
+    by_arm = true;
+    groups.emplace_back(command.arm, [arm = command.arm](const ScoredCommand& one) { return one.arm == arm; });
+  }
+  groups.emplace_back("all", [](const ScoredCommand&) { return true; });
 
   if (!json)
-    to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}\n",
+    to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
               by_asking.at("flat").source, scenes, "", "asked", "n", "scenes exact", "sets", "precision", "recall",
-              "questions");
-  for (const auto& [group, scenarios] : groups)
+              "questions", by_arm ? "  otherwise" : "");
+  for (const auto& [group, is_in] : groups)
     for (const Asking& asking : ways_of_asking()) {
       const auto scores = by_asking.find(asking.name);
       if (scores == by_asking.end()) continue;
-      Row row{group, asking.name, {}, 0};
-      for (const std::string& id : scenarios) {
-        row.score += scores->second.by_scenario.at(id);
-        row.questions += scores->second.questions.at(id);
-      }
-      json ? to_stdout("{}\n", canonical(to_json(row))) : print(row);
+      Row row{group, asking.name, {}};
+      for (const ScoredCommand& command : scores->second.commands)
+        if (is_in(command) && !command.ambiguous) row.add(command.row);
+      json ? to_stdout("{}\n", canonical(to_json(row, by_arm))) : print(row, by_arm);
     }
-  if (json) return print_coverage(covered, groups, json);
+  if (json) return print_coverage(covered, families, json);
   to_stdout(
       "\nn: commands; sets: share of them with no pair of type and texture wrong; precision and recall of the "
-      "objects kept.\n{}",
+      "objects kept.\n{}{}",
+      by_arm ? "otherwise: share of them for which something else was selected than for the scenario's first.\n" : "",
       left_out);
-  print_coverage(covered, groups, json);
+  print_coverage(covered, families, json);
   for (const Asking& asking : ways_of_asking()) {
     const auto scores = by_asking.find(asking.name);
-    if (scores == by_asking.end() || std::string(asking.name) == "named") continue;
-    for (const auto& [id, score] : scores->second.by_scenario) {
-      if (score.exact_scenes == score.scenes) continue;
-      std::vector<std::string> words;
-      if (!score.wrongly_kept.empty()) words.push_back(fmt::format("kept: {}", fmt::join(score.wrongly_kept, ", ")));
-      if (!score.missed.empty()) words.push_back(fmt::format("missed: {}", fmt::join(score.missed, ", ")));
-      to_stdout("{}, {}: {} of {} scenes; {}\n", asking.name, id, score.exact_scenes, score.scenes,
-                fmt::join(words, "; "));
-    }
+    if (scores != by_asking.end() && std::string(asking.name) != "named") print_misread(scores->second);
   }
 }
 

@@ -24,9 +24,9 @@ auto& named(const JsonReader& reader, Find find) {
 }
 
 ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario) {
-  reader.only({"utterance", "truth", "seen"});
+  reader.only({"utterance", "truth", "seen", "arm", "ambiguous"});
   ScenarioCommand command{reader.at("utterance").string(),
-                          read_distribution(reader.at("truth"), scenario.space, scenario.second), true};
+                          read_distribution(reader.at("truth"), scenario.space, scenario.second)};
   command.truth.provenance = Provenance::truth;
   command.truth.source = "true distribution";
   command.truth.asked_as = command.utterance;
@@ -34,7 +34,21 @@ ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario)
   if (scenario.second && !command.truth.second)
     reader.at("truth").fail(fmt::format("\"{}\" for {}", scenario.second->id, scenario.task));
   if (reader.has("seen")) command.seen = reader.at("seen").boolean();
+  if (reader.has("arm")) command.arm = reader.at("arm").string();
+  if (reader.has("arm") && command.seen) reader.at("arm").fail("\"seen\": false beside it");
+  if (reader.has("ambiguous")) command.ambiguous = reader.at("ambiguous").boolean();
+  if (command.ambiguous && command.arm.empty()) reader.at("ambiguous").fail("\"arm\" beside it");
   return command;
+}
+
+// Of the test arms, the one that a command names.
+void expect_arms(const JsonReader& commands, const Scenario& scenario) {
+  std::vector<std::string> unseen;
+  for (const Arm& arm : scenario.tests)
+    if (arm.unseen) unseen.push_back(arm.id);
+  for (const JsonReader& command : commands.elements())
+    if (command.has("arm") && std::count(unseen.begin(), unseen.end(), command.at("arm").string()) == 0)
+      command.at("arm").fail(fmt::format("an arm with \"unseen\": true ({})", fmt::join(unseen, ", ")));
 }
 
 double read_probability(const JsonReader& reader) {
@@ -139,6 +153,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
     if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
   }
+  expect_arms(reader.at("commands"), s);
   if (s.tests.empty()) reader.at("tests").fail("at least one arm");
   if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
@@ -161,8 +176,15 @@ std::vector<int> Scenario::commands_of(const std::string& name) const {
   const bool seen = name == "train" || !arm(name).unseen;
   std::vector<int> indices;
   for (std::size_t i = 0; i < commands.size(); ++i)
-    if (commands[i].seen == seen) indices.push_back(static_cast<int>(i));
+    if (commands[i].seen == seen && (commands[i].arm.empty() || commands[i].arm == name))
+      indices.push_back(static_cast<int>(i));
   return indices;
+}
+
+bool Scenario::is_ambiguous(const std::string& name) const {
+  const std::vector<int> given = commands_of(name);
+  return std::any_of(given.begin(), given.end(),
+                     [this](int command) { return commands[static_cast<std::size_t>(command)].ambiguous; });
 }
 
 int Scenario::training_scenes(int demonstrations) const {

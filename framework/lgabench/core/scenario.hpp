@@ -13,8 +13,10 @@ namespace lgabench {
 /// One way to ask for the task, and what the scenario's author means by it.
 struct ScenarioCommand {
   std::string utterance;
-  Selection truth;   // provenance truth
-  bool seen = true;  // demonstrated; an unseen command is only tested (paper, Q3)
+  Selection truth;         // provenance truth
+  bool seen = true;        // demonstrated; an unseen command is only tested (paper, Q3)
+  std::string arm{};       // the one arm that gives it; "": each that gives commands of its kind
+  bool ambiguous = false;  // a reasonable person might mean something else by it: its arm enters no mean
 };
 
 /// What scenes of one kind hold: the environment's own, see EnvironmentType::read_content().
@@ -58,6 +60,9 @@ struct Scenario {
   /// Commands that scenes of this arm ("train" for training scenes) give in turn, as indices: scene i gives number
   /// i modulo their count. @throws InputError for an arm that the scenario lacks.
   std::vector<int> commands_of(const std::string& name) const;
+  /// Whether the arm gives an ambiguous command: its episodes are shown, and enter no mean. @throws InputError as
+  /// there.
+  bool is_ambiguous(const std::string& name) const;
   /// How many training scenes `demonstrations` of each seen command take: the first ones.
   int training_scenes(int demonstrations) const;
 };

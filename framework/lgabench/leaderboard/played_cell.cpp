@@ -18,6 +18,7 @@ Json selections_of(const CellResult& result) {
   Json all = Json::array();
   bool selects = false;
   for (const report::CommandResult& command : result.commands) {
+    if (command.ambiguous) continue;
     selects = selects || !command.quality.empty();
     all.push_back(
         {{"utterance", command.utterance}, {"selection", command.selection}, {"quality", to_json(command.quality)}});
@@ -38,12 +39,12 @@ PlayedCell played_cell(const CellResult& result, const fs::path& directory, cons
   cell.key = key;
   if (result.failed) {
     cell.failed = result.reason;
-    for (const std::string& arm : result.arms)
+    for (const std::string& arm : result.arms_in_means())
       cell.outcomes[arm] = std::string(static_cast<std::size_t>(result.episodes_per_arm), failed_cell_letter);
     return cell;
   }
   std::string scenes, results;
-  for (const std::string& arm : result.arms) {
+  for (const std::string& arm : result.arms_in_means()) {
     std::string& letters = cell.outcomes[arm];
     for (const Episode& e : result.episodes.at(arm)) {
       scenes += e.scene;

@@ -121,7 +121,8 @@ Installed installed_setting(const std::string& suite, const std::string& preset)
     Setting::Scenario& one = setting.scenarios.emplace_back();
     one.id = id;
     one.sha256 = sha256(canonical(scenario.json));
-    for (const Json& arm : scenario.json.at("tests")) one.arms.push_back(arm.at("arm"));
+    for (const Arm& arm : scenario.tests)
+      if (!scenario.is_ambiguous(arm.id)) one.arms.push_back(arm.id);
   }
   return installed;
 }

@@ -59,7 +59,7 @@ void Field::add(const CellResult& cell) {
   engine = cell.engine;
   if (cell.is_reference()) return;
   if (cell.rehearsal) rehearsal = true;
-  for (const std::string& arm : cell.arms)
+  for (const std::string& arm : cell.arms_in_means())
     if (std::find(arms.begin(), arms.end(), arm) == arms.end()) arms.push_back(arm);
   demonstrations.insert(cell.demonstrations);
   rows[cell.method][cell.demonstrations][{cell.scenario, cell.training_seed}][cell.participant] = &cell;
@@ -90,7 +90,8 @@ std::string find_row(const Field& field, const ClaimedMethod& method) {
 }
 
 bool has_arm(const CellResult& cell, const std::string& arm) {
-  return std::find(cell.arms.begin(), cell.arms.end(), arm) != cell.arms.end();
+  const std::vector<std::string> arms = cell.arms_in_means();
+  return std::find(arms.begin(), arms.end(), arm) != arms.end();
 }
 
 ClaimedDifference measured(const Field& field, const std::string& claim, const ClaimedMethod& above,

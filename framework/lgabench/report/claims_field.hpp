@@ -44,6 +44,7 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const C
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
                                 const std::string& below, const std::string& arm, int n);
 
+/// As one that enters means.
 bool has_arm(const CellResult& cell, const std::string& arm);
 
 }  // namespace lgabench::report

@@ -76,7 +76,7 @@ std::vector<CellPair> pair_arms(const std::vector<CellPair>& cells, RunCompariso
       other.cells.push_back(fmt::format("{} n={} seed={}{}", b.method, b.demonstrations, b.training_seed,
                                         b.participant.empty() ? "" : " participant=" + b.participant));
     };
-    for (const std::string& arm : a.arms)
+    for (const std::string& arm : a.arms_in_means())
       if (b.episodes.count(arm) == 0)
         differ(arm, "an arm of A alone");
       else if (const std::string why = why_unpaired(a, b, arm); !why.empty())

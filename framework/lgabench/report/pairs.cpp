@@ -36,9 +36,13 @@ std::vector<double> PolicyPair::differences() const {
   return all;
 }
 
-std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second) {
-  const auto same_command = [](const Episode& a, const Episode& b) { return a.command == b.command; };
-  if (!std::equal(first.begin(), first.end(), second.begin(), second.end(), same_command)) return {};
+std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second,
+                                        const std::vector<CommandResult>& commands) {
+  const auto means_the_same = [&commands](const Episode& a, const Episode& b) {
+    const Json &one = commands.at(a.command).truth, &other = commands.at(b.command).truth;
+    return a.command == b.command || (!one.empty() && one == other);
+  };
+  if (!std::equal(first.begin(), first.end(), second.begin(), second.end(), means_the_same)) return {};
   PolicyPair pair;
   for (std::size_t i = 0; i < first.size(); ++i) {
     pair.add(first[i], second[i]);
@@ -64,7 +68,7 @@ PolicyPair pair_policies(const CellResult& first, const CellResult& second, cons
   if (const std::string why = why_unpaired(first, second, arm); !why.empty())
     throw InputError(
         fmt::format("{} and {} cannot be paired: {}, arm {}: {}", first.key, second.key, first.scenario, arm, why));
-  return pair_episodes(first.episodes.at(arm), second.episodes.at(arm)).value();
+  return pair_episodes(first.episodes.at(arm), second.episodes.at(arm), first.commands).value();
 }
 
 void PairedRow::add(const std::string& scenario, const PolicyPair& pair, const std::string& participant) {

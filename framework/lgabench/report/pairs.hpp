@@ -34,8 +34,10 @@ struct PolicyPair : EpisodePairs {
   /// Second minus first, in each episode.
   std::vector<double> differences() const;
 };
-/// None unless they are as many, with the same commands in the same order: those of two arms have other scenes.
-std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second);
+/// None unless they are as many, with the same commands in the same order, or with `commands` of the same truth, which
+/// paraphrase each other: those of two arms have other scenes.
+std::optional<PolicyPair> pair_episodes(const std::vector<Episode>& first, const std::vector<Episode>& second,
+                                        const std::vector<CommandResult>& commands);
 
 /// Why the two did not play the same scenes with the same commands in the arm, in one line; empty if they did. @pre
 /// both cells finished and have the arm

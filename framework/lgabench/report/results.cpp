@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -95,7 +96,9 @@ void read_configuration(const fs::path& directory, CellResult& result) {
                                !command.has("seen") || command.at("seen").boolean(),
                                command.has("truth") ? command.at("truth").json() : Json::object(),
                                Json(),
-                               {}});
+                               {},
+                               command.has("ambiguous") && command.at("ambiguous").boolean()});
+    if (result.commands.back().ambiguous) result.ambiguous.insert(shown(command.at("arm")));
     if (!result.commands.back().truth.is_object()) command.at("truth").fail("an object");
   }
   result.demonstrated_commands = static_cast<int>(
@@ -126,6 +129,13 @@ const std::vector<std::string>& phases() {
     return members;
   }();
   return all;
+}
+
+std::vector<std::string> CellResult::arms_in_means() const {
+  std::vector<std::string> some;
+  std::copy_if(arms.begin(), arms.end(), std::back_inserter(some),
+               [this](const std::string& arm) { return ambiguous.count(arm) == 0; });
+  return some;
 }
 
 CellResult read_cell(const fs::path& directory) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,11 @@ const std::vector<std::string>& phases();
 /// A command of the cell's scenario, and what the method selected for it.
 struct CommandResult {
   std::string utterance;
-  bool seen = true;  // trained on; the others are tested only
-  Json truth;        // as the scenario says: an object
-  Json selection;    // as in selection.json
-  Quality quality;   // of the Selection; empty for a method that selects nothing
+  bool seen = true;        // trained on; the others are tested only
+  Json truth;              // as the scenario says: an object
+  Json selection;          // as in selection.json
+  Quality quality;         // of the Selection; empty for a method that selects nothing
+  bool ambiguous = false;  // as the scenario says
 };
 
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
@@ -41,6 +43,7 @@ struct CellResult {
   bool rehearsal = false;   // that was no person
   std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
+  std::set<std::string> ambiguous;  // arms that give an ambiguous command: shown, in no mean
   std::vector<CommandResult> commands;
   int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
   bool failed = false;
@@ -53,6 +56,8 @@ struct CellResult {
   Json timing;  // as in timing.json
 
   bool is_reference() const { return kind == "reference"; }
+  /// Those that are not ambiguous.
+  std::vector<std::string> arms_in_means() const;
 };
 
 struct RunResults {

@@ -51,6 +51,11 @@ TableCell shift_cell(const Row* row) {
   return cell;
 }
 
+TableCell otherwise_cell(const Row* row) {
+  if (!row || !row->shift || !row->shift->selected_otherwise) return {};
+  return Span::number(rate_text(*row->shift->selected_otherwise), place_of(*row, "shift/selected_otherwise"));
+}
+
 TableCell seen_cell(const Row* row) {
   if (!row) return {};
   const std::optional<double> share = row->seen_share();
@@ -275,6 +280,14 @@ void add_view(const Material& material, const Table& table, const View& view, co
         "Change against " + control);
     add(in_terminal, told(own(shift_cell, view.shifted, all, true)), "",
         fmt::format("{}: change against {} [95 % interval]", field, control));
+  }
+  if (const Grid otherwise = told(own(otherwise_cell, view.shifted, {mean_scenario}, true)); !otherwise.rows.empty()) {
+    const std::string what =
+        fmt::format("ommands for which something else was selected than in {}, share", table.arms.front());
+    section.add(in_markdown, Paragraph{{fmt::format("C{}:", what)}});
+    add(reading, otherwise, "otherwise", fmt::format("C{}, {}; {}", what, table.title(), columns),
+        "Selected otherwise than in " + table.arms.front());
+    add(in_terminal, otherwise, "", fmt::format("{}: c{}", field, what));
   }
   if (!any_seen(table)) return;
   if (!any_seen_input(table)) {

@@ -21,7 +21,8 @@ struct SeedResult {
   std::string participant;
   std::vector<std::string> scenes;   // of each episode
   std::vector<double> won;           // 1 or 0
-  std::optional<PolicyPair> paired;  // with the first arm's; none where the arms give other commands
+  std::optional<PolicyPair> paired;  // with the first arm's; none where the arms give commands of other meanings
+  std::optional<double> selected_otherwise;  // as in Shift
 };
 
 using Episodes = std::vector<Episode>;
@@ -99,6 +100,23 @@ std::vector<PhiOfCommand> phi_of(const std::vector<const CellResult*>& cells, co
   return all;
 }
 
+// What a Selection keeps.
+Json kept(Json selection) {
+  for (const char* other : {"provenance", "source", "asked_as", "cost"}) selection.erase(other);
+  return selection;
+}
+
+// See Shift. @pre the episodes are paired
+std::optional<double> selected_otherwise(const CellResult& cell, const Episodes& first, const Episodes& second) {
+  std::vector<double> others;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const CommandResult &one = cell.commands[first[i].command], &other = cell.commands[second[i].command];
+    if (first[i].command != second[i].command && !one.quality.empty() && !other.quality.empty())
+      others.push_back(kept(one.selection) == kept(other.selection) ? 0 : 1);
+  }
+  return others.empty() ? std::nullopt : std::optional(mean(others));
+}
+
 std::string stream_name(const char* what, const Row& row) {
   return fmt::format("{}/{}/{}/{}/{}/{}/{}", what, row.scenario, row.layout, row.engine, row.method, row.demonstrations,
                      row.arm);
@@ -131,7 +149,13 @@ void estimate(Draft& draft, const std::string& first_arm) {
   row.interval = success_interval(rates, stream_name("report", row));
   if (!shifts) return;
   const Change change = paired_change(differences, stream_name("report/shift", row), 2000);
-  row.shift = Shift{first_arm, change.difference, change.interval, same_actions};
+  std::vector<std::optional<double>> otherwise;
+  for (const auto& seeds : draft.scenarios) {
+    std::vector<std::optional<double>> of_seeds;
+    for (const SeedResult& seed : seeds) of_seeds.push_back(seed.selected_otherwise);
+    otherwise.push_back(mean_of(of_seeds));
+  }
+  row.shift = Shift{first_arm, change.difference, change.interval, same_actions, mean_of(otherwise)};
 }
 
 // The row of `cells`: all seeds and participants of one (scenario, method, demonstrations).
@@ -156,11 +180,13 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
       continue;
     }
     const Episodes& episodes = cell->episodes.at(arm);
-    SeedResult result{cell->participant, {}, {}, {}};
+    SeedResult result{cell->participant, {}, {}, {}, {}};
     if (!cell->participant.empty()) draft.participants.insert(cell->participant);
     seeds.insert(cell->training_seed);
-    if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end())
-      result.paired = pair_episodes(control->second, episodes);
+    if (const auto control = cell->episodes.find(first_arm); control != cell->episodes.end()) {
+      result.paired = pair_episodes(control->second, episodes, cell->commands);
+      if (result.paired) result.selected_otherwise = selected_otherwise(*cell, control->second, episodes);
+    }
     for (const Episode& e : episodes) {
       result.scenes.push_back(e.scene);
       result.won.push_back(e.success() ? 1 : 0);
@@ -177,6 +203,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.participants = static_cast<int>(draft.participants.size());
   if (results.size() < cells.size()) row.marks.emplace_back("incomplete");
   if (first.asks == "network") row.marks.emplace_back("network");
+  if (first.ambiguous.count(arm) != 0) row.marks.emplace_back("ambiguous");
   estimate(draft, first_arm);
   return draft;
 }
@@ -288,7 +315,7 @@ Table make_table(const Cells& cells) {
 
     std::map<Place, std::vector<const Draft*>> by_place;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      by_place[*groups[i].first].push_back(&drafts[i]);
+      if (!drafts[i].row.marked("ambiguous")) by_place[*groups[i].first].push_back(&drafts[i]);
       table.rows.push_back(drafts[i].row);
     }
     std::vector<std::vector<const Draft*>> over_scenarios;
@@ -319,7 +346,7 @@ std::vector<std::string> Table::scenarios() const {
 std::vector<std::string> Table::scenarios_with(const std::string& arm) const {
   std::vector<std::string> all;
   for (const Row& row : rows)
-    if (!row.is_mean() && row.arm == arm) add_new(all, row.scenario);
+    if (!row.is_mean() && row.arm == arm && !row.marked("ambiguous")) add_new(all, row.scenario);
   return all;
 }
 

@@ -20,6 +20,9 @@ struct Shift {
   double difference = 0;
   Interval interval;          // 95 %
   bool same_actions = false;  // every policy acted in every scene exactly as in its pair
+  /// Where the arm says the same in other words: the share of episodes for whose words something else was selected than
+  /// for the first arm's, as a mean like success. None for a method that selects nothing.
+  std::optional<double> selected_otherwise;
 };
 
 /// What a row's cells selected for one command. Words: the different ones, joined by "; "; numbers: means over cells.
@@ -88,7 +91,7 @@ struct Table {
   /// Ids of a scenario's methods, or of its reference rows, in order.
   std::vector<std::string> methods(const std::string& scenario) const { return ids(scenario, "method"); }
   std::vector<std::string> references(const std::string& scenario) const { return ids(scenario, "reference"); }
-  /// Those that have the arm; a mean in an arm is over these.
+  /// Those that have the arm and whose words in it are not ambiguous; a mean in an arm is over these.
   std::vector<std::string> scenarios_with(const std::string& arm) const;
   /// "mean over 3 scenarios" for the mean, else the scenario's own id.
   std::string title(const std::string& scenario) const;

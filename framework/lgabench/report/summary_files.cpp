@@ -10,11 +10,13 @@ namespace {
 
 Json shift_json(const std::optional<Shift>& shift) {
   if (!shift) return nullptr;
-  return {{"against", shift->against},
-          {"difference", shift->difference},
-          {"low", shift->interval.low},
-          {"high", shift->interval.high},
-          {"same_actions", shift->same_actions}};
+  Json json{{"against", shift->against},
+            {"difference", shift->difference},
+            {"low", shift->interval.low},
+            {"high", shift->interval.high},
+            {"same_actions", shift->same_actions}};
+  if (shift->selected_otherwise) json["selected_otherwise"] = *shift->selected_otherwise;
+  return json;
 }
 
 Json phi_json(const std::vector<PhiOfCommand>& phi) {

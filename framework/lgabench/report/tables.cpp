@@ -22,6 +22,11 @@ bool any_shift(const Table& table, const Column& column) {
   });
 }
 
+bool any_ambiguous(const Table& table, const std::string& arm) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [&arm](const Row& row) { return row.arm == arm && row.marked("ambiguous"); });
+}
+
 // "LGA, Human and GCBC-SEG"
 std::string listed(const std::vector<std::string>& methods) {
   std::string text;
@@ -94,8 +99,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   for (const Table& table : summary.tables) {
     for (const std::string& arm : table.arms)
       if (const auto some = table.scenarios_with(arm); some.size() + 1 < table.scenarios().size())
-        of_some.insert(fmt::format("{}: the mean is over {}; no other scenario has this arm.", table.arm_title(arm),
-                                   fmt::join(some, ", ")));
+        of_some.insert(fmt::format("{}: the mean is over {}; {}.", table.arm_title(arm), fmt::join(some, ", "),
+                                   any_ambiguous(table, arm) ? "in the others its words are ambiguous (?)"
+                                                             : "no other scenario has this arm"));
     for (const Row& row : table.rows) {
       marked.insert(row.marks.begin(), row.marks.end());
       if (acts_the_same(row)) same_as.insert(row.shift->against);

@@ -28,11 +28,12 @@ std::vector<View> views(const Table& table);
 struct Mark {
   const char *word, *sign, *meaning;
 };
-constexpr std::array<Mark, 5> table_marks{
+constexpr std::array<Mark, 6> table_marks{
     {{"baseline_not_learned", "†", "below the best constant action with as many demonstrations: nothing was learned"},
      {"below_random_object", "§", "below the random visible object, which needs no demonstration"},
      {"incomplete", "‡", "incomplete: a cell failed, or the mean lacks a scenario"},
      {"method_error", "!", "the method's own code failed in some of the episodes, which count as failures"},
+     {"ambiguous", "?", "ambiguous words, by which a person might mean something else: shown, in no mean"},
      {"network", "¶", "reached the network on its own: in no leaderboard"}}};
 /// Colours that page.css has for failures, as classes f0, f1 and so on: one for each of failure_words().
 constexpr std::ptrdiff_t failure_colours = 16;
@@ -49,8 +50,9 @@ bool acts_the_same(const Row& row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
-/// What a reader of the tables must know, one line each: what †, §, ‡, !, ¶ and = say, how many people made Selections
-/// or that none did, the model behind a cassette, cells that have not run, that the run is not for the leaderboard.
+/// What a reader of the tables must know, one line each: what †, §, ‡, !, ?, ¶ and = say, how many people made
+/// Selections or that none did, the model behind a cassette, cells that have not run, that the run is not for the
+/// leaderboard.
 std::vector<std::string> notes(const RunResults& run, const Summary& summary);
 
 /// "5 of 5 episodes of X are method_error: what the first one threw", and the log of its cell, relative to the run.
