@@ -34,6 +34,7 @@ void fill(FabricatedRun& run) {
       Spec letter{method, 0, "letter", n};
       letter.arms = {{"control", won, {0}, .5}, {"hard", won / 3, {1}, .25}};
       letter.commands = {{"Bring me the <b>A</b>.", true}, {"Bring me a | \"letter\".", false}};
+      letter.of_commands[1]["truth"] = {{"target", {{"sets", {{{"object_types", {"heart"}}, {"textures", "ALL"}}}}}}};
       run.add(letter);
     }
   }
