@@ -45,7 +45,8 @@ inline std::vector<fs::path> files_with_schema(const fs::path& run) {
     const Json status = Json::parse(read_file(cell / "status.json"), nullptr, false);
     if (!status.contains("state") || status["state"] != "failed")
       names.insert(names.end(), {"selection.json", "training.jsonl", "episodes.jsonl", "timing.json"});
-    if (fs::exists(cell / "shown.json")) names.emplace_back("shown.json");
+    for (const char* name : {"shown.json", "perturbed.jsonl"})
+      if (fs::exists(cell / name)) names.emplace_back(name);
     for (const std::string& name : names) files.push_back(cell / name);
   }
   std::sort(files.begin(), files.end());

@@ -7,6 +7,7 @@
 #include <lgabench/abstraction/textualization.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/random.hpp>
 
 namespace lgabench {
@@ -62,15 +63,24 @@ Scene test_scene(const Scenario& scenario, const std::string& layout, const std:
 Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
   const TextualizationNoise noise{arm.label_noise, arm.missed_segment};
   const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
-  if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0) return nullptr;
+  std::vector<const PerturbationAxis*> axes;
+  if (arm.perturbation)
+    for (const PerturbationAxis* axis : axes_named(arm.perturbation->axis))
+      if (axis->perceive) axes.push_back(axis);
+  if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
   const std::string own = own_stream(training_seed);
-  return [&scenario, noise, perceive, own](const Observation& seen, const Scene& scene) {
+  const int level = arm.perturbation ? arm.perturbation->level : 0;
+  return [&scenario, noise, perceive, own, axes, level, training_seed](const Observation& seen, const Scene& scene) {
     const auto stream = [&](const char* of) {
       return RandomStream(
           fmt::format("{}/{}/{}/{}{}/{}", of, scene.scenario, scene.layout, scene.seed, own, scene.index));
     };
-    return imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen, scenario.space, noise,
-                                    stream("textualization"));
+    Observation perceived = imperfect_textualization(perceive ? perceive(seen, stream("perception")) : seen,
+                                                     scenario.space, noise, stream("textualization"));
+    for (const PerturbationAxis* axis : axes)
+      perceived =
+          axis->perceive(std::move(perceived), scenario, level, perturbation_stream(axis->id, scene, training_seed));
+    return perceived;
   };
 }
 

@@ -69,9 +69,15 @@ SelectionErrors read_selection_errors(const JsonReader& reader) {
 
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant) {
+  const std::string& utterance = scenario.commands.at(static_cast<std::size_t>(command)).utterance;
+  return with_errors(std::move(selected), scenario, command, errors,
+                     RandomStream(fmt::format("selection_errors/{}/{}", utterance, training_seed)), never_meant);
+}
+
+Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
+                      RandomStream random, const std::string& never_meant) {
   if (errors.none() || selected.provenance == Provenance::none) return selected;
   const ScenarioCommand& meant = scenario.commands.at(static_cast<std::size_t>(command));
-  RandomStream random(fmt::format("selection_errors/{}/{}", meant.utterance, training_seed));
   selected.target =
       erring(scenario.space, selected.target.product(), meant.truth.target.product(), errors, random, never_meant);
   if (selected.second && meant.truth.second)

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/selection.hpp>
 
@@ -30,5 +31,8 @@ SelectionErrors read_selection_errors(const JsonReader& reader);
 /// to bring things to; "" for none.
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant);
+/// Likewise, with the numbers of that stream.
+Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
+                      RandomStream random, const std::string& never_meant);
 
 }  // namespace lgabench

@@ -92,11 +92,17 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
 }  // namespace
 
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
-  return [&policy, &instructions, plugin_id](const Environment&, const Scene& scene, const Observation& observation) {
+  return policy_actor(
+      policy, [&](const Scene& scene) { return instructions.at(static_cast<std::size_t>(scene.command)); }, plugin_id);
+}
+
+Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id) {
+  return [&policy, told = std::move(told), plugin_id](const Environment&, const Scene& scene,
+                                                      const Observation& observation) {
     try {
       return guarded(plugin_id, [&] {
         policy.reset();
-        const Action action = policy.act(observation, instructions.at(static_cast<std::size_t>(scene.command)));
+        const Action action = policy.act(observation, told(scene));
         return Move(action, policy.seen_in_training());
       });
     } catch (const InputError& e) {  // at this point only the method can be at fault

@@ -28,6 +28,9 @@ using Actor = std::function<Move(const Environment& environment, const Scene& sc
 /// throws, an InputError included, is a MethodError. Holds references. `instructions`: one a command of the scenario.
 Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id);
 
+/// Likewise, told what `told` says of the scene.
+Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id);
+
 /// The rows that a method is measured against: "oracle", or the oracle's rule for one visible object that no command
 /// decides, the goal excepted: "random_object", any; "most_shared", one of those that share types and textures with
 /// most others; "never_demonstrated", one whose type and texture together were no target's in the scenes

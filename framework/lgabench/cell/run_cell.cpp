@@ -13,6 +13,7 @@
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/perturbed.hpp>
 #include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/selected_by.hpp>
 #include <lgabench/cell/showing.hpp>
@@ -164,6 +165,61 @@ std::vector<Instruction> true_instructions(const Scenario& scenario) {
   return all;
 }
 
+// What the policy is told in a scene: with the errors of its arm's perturbation.
+Instruction told_in(const Scene& scene, const Scenario& scenario, const Cell& cell,
+                    const std::vector<Instruction>& instructions) {
+  Instruction told = instructions.at(static_cast<std::size_t>(scene.command));
+  const Arm& arm = scenario.arm(scene.arm);
+  if (!arm.perturbation) return told;
+  for (const PerturbationAxis* axis : axes_named(arm.perturbation->axis)) {
+    if (!axis->selection_errors) continue;
+    const double p = axis->selection_errors(arm.perturbation->level);
+    told.selection = lgabench::with_errors(std::move(told.selection), scenario, scene.command, SelectionErrors{p, p},
+                                           perturbation_stream(axis->id, scene, cell.scenes_of_seed()),
+                                           find_environment(scenario.environment).goal_type());
+  }
+  return told;
+}
+
+// Hash of what the policy's last act() read; "" where it does not tell.
+std::string read_by(const Policy& policy, const std::string& id) {
+  try {
+    const Shown shown = guarded(id, [&policy] { return policy.shown(); });
+    if (shown.empty()) return "";
+    std::string all;
+    for (const ShownPicture& one : shown.pictures)
+      all += fmt::format("{} {} {}\n", one.name, one.note, sha256(std::string(one.rgb.begin(), one.rgb.end())));
+    for (const auto& text : shown.texts) all += canonical(Json(text)) + '\n';
+    return hex(hash64(all));
+  } catch (const MethodError&) {
+    return "";
+  }
+}
+
+// Notes of each episode what the actor is given.
+Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, const Selected& selected, Policy* policy,
+             std::vector<PerturbedEpisode>& all) {
+  return [&, actor, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
+    const auto& perturbation = scenario.arm(scene.arm).perturbation;
+    PerturbedEpisode one{
+        scene.arm, scene.index, perturbation ? perturbation->axis : "", perturbation ? perturbation->level : 0, {}};
+    const Instruction told = told_in(scene, scenario, cell, selected.instructions);
+    one.hashes =
+        parts_of(scene, seen, policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
+                 policy ? &told : nullptr);
+    all.push_back(one);
+    const Move move = actor(environment, scene, seen);
+    if (policy) all.back().read = read_by(*policy, cell.method.id);
+    return move;
+  };
+}
+
+std::string perturbed_text(const std::vector<PerturbedEpisode>& all) {
+  std::string lines;
+  for (const PerturbedEpisode& one : all) lines += canonical(to_json(one)) + '\n';
+  return lines;
+}
+
 using Files = std::vector<std::pair<std::string, std::string>>;  // names and bytes
 
 // What the first act() that failed threw, "" where none did.
@@ -307,15 +363,20 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
   const std::vector<TestScene> tests = test_scenes(scenario, cell, course, selected);
-  const Actor actor = policy                        ? policy_actor(*policy, selected.instructions, id)
+  const auto told = [&](const Scene& scene) { return told_in(scene, scenario, cell, selected.instructions); };
+  const Actor actor = policy                        ? policy_actor(*policy, told, id)
                       : course == Course::reference ? reference_actor(id, demonstrated_to(cell, scenario))
                                                     : Actor();
   std::optional<Showing> showing;
   if (policy) showing.emplace(*policy, id);
-  std::vector<Episode> episodes = evaluate(*environment, tests, actor, [&](int n) {
+  const bool perturbs = cell.perturbs();
+  std::vector<PerturbedEpisode> perturbed;
+  const Actor noted = perturbs && actor ? noting(actor, scenario, cell, selected, policy.get(), perturbed) : actor;
+  std::vector<Episode> episodes = evaluate(*environment, tests, noted, [&](int n) {
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
+  expect_declared(perturbed, episodes, policy != nullptr);
   auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());
@@ -325,13 +386,14 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   if (hosted) guarded(id, [&] { hosted->end(); });
 
   // 6 record: no clock but in timing.json.
-  record(job, self,
-         {{cell_file::configuration, canonical(to_json(cell)) + '\n'},
-          {cell_file::selections, selection_text(scenario, cell, selected, first, right)},
-          {cell_file::training, training.lines},
-          {cell_file::episodes, episodes_text(episodes)},
-          {cell_file::timing, canonical(phases.seconds()) + '\n'}},
-         of_method, showing ? showing->scenes() : std::vector<ShownScene>(), kept, first_error(episodes));
+  Files files{{cell_file::configuration, canonical(to_json(cell)) + '\n'},
+              {cell_file::selections, selection_text(scenario, cell, selected, first, right)},
+              {cell_file::training, training.lines},
+              {cell_file::episodes, episodes_text(episodes)},
+              {cell_file::timing, canonical(phases.seconds()) + '\n'}};
+  if (perturbs) files.emplace_back(cell_file::perturbed, perturbed_text(perturbed));
+  record(job, self, files, of_method, showing ? showing->scenes() : std::vector<ShownScene>(), kept,
+         first_error(episodes));
 }
 
 }  // namespace lgabench

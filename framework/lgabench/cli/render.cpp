@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
@@ -76,7 +77,9 @@ void render(const RenderArguments& arguments) {
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
-  const Observation seen = environment.draw(scene);
+  Observation seen = environment.draw(scene);
+  if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
+    seen = perception_of(scenario, scenario.arm(scene.arm))(seen, scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3, seen.size);

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
 
@@ -60,7 +61,7 @@ double read_probability(const JsonReader& reader) {
 // With what the environment's own members are read by.
 Arm read_arm(const JsonReader& reader, std::vector<std::string> members,
              const std::function<std::shared_ptr<const SceneContent>()>& read_content) {
-  members.insert(members.end(), {"arm", "unseen", "label_noise", "missed_segment"});
+  members.insert(members.end(), {"arm", "unseen", "label_noise", "missed_segment", "perturbation"});
   reader.only(members);
   Arm arm;
   arm.id = reader.at("arm").string();
@@ -74,7 +75,16 @@ Arm read_arm(const JsonReader& reader, std::vector<std::string> members,
   if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();
   if (reader.has("label_noise")) arm.label_noise = read_probability(reader.at("label_noise"));
   if (reader.has("missed_segment")) arm.missed_segment = read_probability(reader.at("missed_segment"));
+  if (reader.has("perturbation")) arm.perturbation = read_perturbation(reader.at("perturbation"));
   return arm;
+}
+
+// An arm is compared with its control scene by scene, so that nothing else may differ.
+void expect_control(const JsonReader& file, const JsonReader& arm) {
+  Json control = file.at("tests").elements().front().json(), same = arm.json();
+  if (control.contains("perturbation")) arm.at("perturbation").fail("a first arm without one, its control");
+  for (const char* own : {"arm", "perturbation"}) control.erase(own), same.erase(own);
+  if (control != same) arm.at("perturbation").fail("the members of the first arm, its control, beside it");
 }
 
 void read_train(const JsonReader& file, std::vector<std::string> members, const EnvironmentType& environment,
@@ -151,6 +161,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     s.tests.push_back(read_arm(arm, of_scenes, [&] { return environment.read_content(s, reader, &arm, false); }));
     const auto same = [&](const Arm& other) { return other.id == s.tests.back().id; };
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
+    if (s.tests.back().perturbation) expect_control(reader, arm);
     if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
   }
   expect_arms(reader.at("commands"), s);

@@ -24,12 +24,19 @@ struct SceneContent {
   virtual ~SceneContent() = default;
 };
 
+/// How an arm's scenes differ from the control's (perturbations.hpp).
+struct Perturbation {
+  std::string axis;  // or "all"
+  int level = 0;
+};
+
 /// Test scenes of one kind, played by one policy. Arms share their random streams: scene i of each has one layout.
 struct Arm {
   std::string id;
-  std::shared_ptr<const SceneContent> scenes;  // never null
-  bool unseen = false;                         // give the unseen commands instead of the seen ones
-  double label_noise = 0, missed_segment = 0;  // how imperfect the textualization is (see textualization.hpp)
+  std::shared_ptr<const SceneContent> scenes;     // never null
+  bool unseen = false;                            // give the unseen commands instead of the seen ones
+  double label_noise = 0, missed_segment = 0;     // how imperfect the textualization is (see textualization.hpp)
+  std::optional<Perturbation> perturbation = {};  // of the scenes of the scenario's first arm, its control
 };
 
 /// Whose true distributions: the annotations that the paper's authors released with their code where there are any, or

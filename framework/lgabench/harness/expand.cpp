@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/harness/competitors.hpp>
 
@@ -89,7 +90,7 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
   return ids;
 }
 
-Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) {
+Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, const Json* perturbations) {
   std::string base = id, variant;
   for (const auto& [name, ignored] : suite.variants.items()) {
     const std::string end = "_" + name;
@@ -114,6 +115,13 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth) 
     if (suite.near_miss.contains(base) && arm.value("near_miss", Json()) == Json(true))
       json["tests"].back()["near_miss"] = suite.near_miss[base];
   }
+  const Json control = json["tests"].front();
+  for (const Json& axis : perturbations ? *perturbations : suite.design.perturbations)
+    for (const int level : axis["levels"]) {
+      const Perturbation one{axis["axis"], level};
+      json["tests"].push_back(control);
+      json["tests"].back().update({{"arm", arm_of(one)}, {"perturbation", {{one.axis, one.level}}}});
+    }
   if (!variant.empty()) {
     json["id"] = id;
     json["answers_of"] = scenario.answers_of;
@@ -142,7 +150,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
   if (all_errors.empty()) all_errors.emplace_back();
   std::vector<Cell> cells;
   for (const std::string& id : suite_scenario_ids(suite, design)) {
-    const Scenario scenario = suite_scenario(suite, id, variation.truth);
+    const Scenario scenario = suite_scenario(suite, id, variation.truth, &design.perturbations);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);

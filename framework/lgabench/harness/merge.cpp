@@ -14,6 +14,7 @@
 #include <set>
 #include <string_view>
 
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/plain_directory.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
@@ -109,6 +110,7 @@ void unite(RunRecord& all, const Part& first, const Part& part) {
 // What status.json says of a cell that the run's own programs computed.
 Json build_of(const Part& part, const Cell& cell) {
   Json build = part.record().build;
+  if (!cell.perturbs()) build.erase(perturbation_library);
   const auto plugin = [&](const std::string& kind, const std::string& id) {
     const auto found = part.programs().find(kind + " " + id);
     if (found != part.programs().end()) build[kind] = *found;
@@ -250,7 +252,7 @@ void copy_cell(const fs::path& from, const fs::path& to) {
   const PlainDirectory files(from / "files");
   for (const char* name : cell_files)
     if (fs::exists(from / name)) copy(name);
-  for (const char* name : {cell_file::shown, cell_file::policy})
+  for (const char* name : {cell_file::shown, cell_file::policy, cell_file::perturbed})
     if (fs::exists(from / name)) copy(name);
   for (const std::string& name : files.kept_names())
     write_file(to / "files" / name, files.read_file(name), Sync::later);

@@ -11,6 +11,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/record/layout.hpp>
 
 namespace lgabench {
@@ -38,7 +39,7 @@ bool has_content(const fs::path& directory) {
 
 }  // namespace
 
-Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
+Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool perturbs) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
     Json hashes;
@@ -48,7 +49,12 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method) {
     for (const std::string& name : libraries) hashes[name] = sha256_file(bin.parent_path() / "lib" / name);
     return hashes;
   }();
+  static const fs::path perturbations = program_directory().parent_path() / "lib" / perturbation_library;
   Json build = programs;
+  if (perturbs) {
+    static const std::string hash = sha256_file(perturbations);
+    build[perturbation_library] = hash;
+  }
   build["engine"] = engine.sha256;
   if (method) build["method"] = method->sha256;
   if (method && !method->python.is_null()) build["python"] = canonical(method->python.at("versions"));

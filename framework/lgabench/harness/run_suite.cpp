@@ -34,7 +34,7 @@ const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
 }
 
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
-  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue));
+  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.perturbs());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
   return build;
 }
@@ -125,7 +125,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
           run.settings[cell.method.name][option] = value;
       }
     }
-    run.build = build_of(cell, catalogue);
+    run.build.update(build_of(cell, catalogue));
   }
   for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
   run.suite = plan.request.at("suite");

@@ -7,6 +7,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -40,10 +41,10 @@ std::vector<std::string> names(const JsonReader& list, const char* what = "",
   });
 }
 
-const std::vector<std::string> grid_members{"scenarios",      "layouts", "engines",  "methods",
-                                            "demonstrations", "seeds",   "episodes", "scene_seed",
-                                            "test_scenes",    "smoke",   "options",  "selection_errors"};
-const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", "selection_errors"};
+const std::vector<std::string> grid_members{
+    "scenarios",  "layouts",     "engines", "methods", "demonstrations",   "seeds",        "episodes",
+    "scene_seed", "test_scenes", "smoke",   "options", "selection_errors", "perturbations"};
+const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", "selection_errors", "perturbations"};
 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
@@ -58,6 +59,24 @@ Json options_of(const JsonReader& options, const std::vector<std::string>& metho
         values.at(option.key()).fail("a text, a number, true or false");
   }
   return options.json();
+}
+
+// Each line an axis and its levels.
+Json perturbations_of(const JsonReader& list) {
+  Json all = Json::array();
+  std::vector<std::string> axes;
+  for (const JsonReader& line : list.elements()) {
+    line.only({"axis", "levels"});
+    const std::string axis = line.at("axis").string();
+    if (std::find(axes.begin(), axes.end(), axis) != axes.end()) line.at("axis").fail("each axis once");
+    axes.push_back(axis);
+    const std::vector<int> levels = distinct<int>(line.at("levels"), [&](const JsonReader& level) {
+      const Json one{{axis, level.json()}};
+      return read_perturbation(JsonReader(one, list.file(), line.place())).level;
+    });
+    all.push_back({{"axis", axis}, {"levels", levels}});
+  }
+  return all;
 }
 
 // What pages say of the suite (report/about_suite.hpp).
@@ -80,6 +99,7 @@ Json to_json(const Design& design) {
       {"episodes", design.episodes},   {"scene_seed", design.scene_seed}, {"test_scenes", design.test_scenes},
       {"smoke", design.smoke},         {"options", design.options}};
   for (const SelectionErrors& errors : design.selection_errors) json["selection_errors"].push_back(to_json(errors));
+  if (!design.perturbations.empty()) json["perturbations"] = design.perturbations;
   return json;
 }
 
@@ -106,6 +126,7 @@ Design apply(const JsonReader& overrides, Design design) {
   }
   if (overrides.has("selection_errors"))
     design.selection_errors = distinct<SelectionErrors>(overrides.at("selection_errors"), read_selection_errors);
+  if (overrides.has("perturbations")) design.perturbations = perturbations_of(overrides.at("perturbations"));
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
 }

@@ -25,7 +25,9 @@ struct Design {
   /// Method id, or "*" for each method that has the framework's option of that name -> option -> value.
   Json options = Json::object();
   std::vector<SelectionErrors> selection_errors{};  // made in what methods select; none: cells without
-  std::string options_place = "/options";           // in the suite's file, for messages; no member
+  /// [{"axis", "levels"}, ...]: arms of every scenario beside its others, its first arm with that perturbation.
+  Json perturbations = Json::array();
+  std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 
 Json to_json(const Design& design);

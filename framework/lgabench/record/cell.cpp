@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include <lgabench/abstraction/prompt.hpp>
@@ -30,6 +31,12 @@ std::uint64_t seed_at(const JsonReader& reader) {
 std::string Cell::title() const {
   return fmt::format("{} {} {} {} n={} seed={}{}", method.name, scenario_id(), layout, engine, demonstrations,
                      training_seed, participant ? " participant=" + participant->id : "");
+}
+
+bool Cell::perturbs() const {
+  const auto tests = scenario->find("tests");
+  return tests != scenario->end() &&
+         std::any_of(tests->begin(), tests->end(), [](const Json& arm) { return arm.contains("perturbation"); });
 }
 
 std::optional<std::uint64_t> Cell::scenes_of_seed() const {

@@ -58,6 +58,8 @@ struct Cell {
   bool smoke = false;
 
   std::string scenario_id() const { return scenario->at("id"); }
+  /// Whether an arm of its scenario has a perturbation.
+  bool perturbs() const;
   /// For people: "lga heart cells n=20 seed=0".
   std::string title() const;
   /// The training seed where the test scenes are its own.

@@ -32,7 +32,9 @@ CellStatus read_cell_status(const fs::path& cell) {
   status.build = reader.at("build").json();
   if (!status.failed) {
     const JsonReader files = reader.at("files");
-    files.only({cell_files.begin(), cell_files.end()});
+    std::vector<std::string> names{cell_files.begin(), cell_files.end()};
+    names.emplace_back(cell_file::perturbed);
+    files.only(names);
     for (const auto& file : files.json().items()) status.files[file.key()] = files.at(file.key()).string();
     if (reader.has("method_error")) status.method_error = reader.at("method_error").string();
     return status;

@@ -17,8 +17,9 @@ inline constexpr const char *configuration = "cell.json", *selections = "selecti
                             *episodes = "episodes.jsonl", *timing = "timing.json",
                             *shown = "shown.json",       // may lack, like `files`: no checksum, no result depends on it
                                 *policy = "policy.bin",  // likewise, where a run keeps policies
-                                    *log = "log.txt",    // may hold anything: status.json has no checksum of it
-                                        *status = "status.json";  // written last
+                                    *perturbed = "perturbed.jsonl",  // where arms have perturbations
+                                        *log = "log.txt",  // may hold anything: status.json has no checksum of it
+                                            *status = "status.json";  // written last
 }  // namespace cell_file
 /// All but the status.
 inline constexpr std::array cell_files{cell_file::configuration, cell_file::selections, cell_file::training,

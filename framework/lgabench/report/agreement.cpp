@@ -99,7 +99,9 @@ std::string to_string(Reproduction verdict) {
 
 CellAgreement compare_cells(const fs::path& recorded, const fs::path& recomputed, bool excused) {
   std::vector<std::string> differences;
-  for (const char* name : result_files)
+  std::vector<const char*> names{result_files.begin(), result_files.end()};
+  if (fs::exists(recomputed / cell_file::perturbed)) names.push_back(cell_file::perturbed);
+  for (const char* name : names)
     if (std::string where = first_difference(recorded / name, recomputed / name); !where.empty())
       if (std::string_view(name) != cell_file::episodes || !same_but_for_causes(recorded, recomputed))
         differences.push_back(std::move(where));

@@ -1,0 +1,110 @@
+#include <lgabench/cell/perturbed.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/hash.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr double fewest_changed = .95;
+
+std::string hash_of(const std::string& bytes) { return hex(hash64(bytes)); }
+std::string hash_of(const Json& json) { return hash_of(canonical(json)); }
+
+std::string bytes_of(const std::vector<std::uint8_t>& values) { return {values.begin(), values.end()}; }
+
+using Key = std::pair<std::string, int>;  // arm, index
+
+}  // namespace
+
+std::vector<const PerturbationAxis*> installed_axes(const PerturbedEpisode& episode) {
+  return episode.axis.empty() ? std::vector<const PerturbationAxis*>() : axes_named(episode.axis);
+}
+
+std::array<std::string, parts> parts_of(const Scene& scene, const Observation& observation, const Instruction* selected,
+                                        const Instruction* told) {
+  Json whole = to_json(scene), physics = Json::array(), instances = Json::array(), pixels = Json::array();
+  whole.erase("arm");  // which alone differs between a control and scenes that are its own
+  for (const SceneObject& o : scene.objects) physics.push_back({o.object_type, o.role});
+  for (const Instance& one : observation.instances) {
+    instances.push_back({one.id, one.object_type, one.texture});
+    pixels.push_back(one.pixels);
+  }
+  std::array<std::string, parts> hashes;
+  const auto of = [&hashes](EpisodePart part) -> std::string& { return hashes[static_cast<std::size_t>(part)]; };
+  of(EpisodePart::objects) = hash_of(whole.at("objects"));
+  of(EpisodePart::physics) = hash_of(Json{{"bodies", physics}, {"parameters", scene.parameters}});
+  of(EpisodePart::rgb) = hash_of(bytes_of(observation.rgb));
+  of(EpisodePart::ids) = hash_of(bytes_of(observation.ids));
+  of(EpisodePart::instances) = hash_of(instances);
+  of(EpisodePart::control) = hash_of(whole);
+  std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
+  if (selected && told) {
+    of(EpisodePart::words) = hash_of(told->utterance);
+    if (selected->selection.provenance != Provenance::none) {
+      of(EpisodePart::answers) = hash_of(distribution_json(selected->selection));
+      of(EpisodePart::selection) = hash_of(distribution_json(told->selection));
+    }
+    input += of(EpisodePart::words) + of(EpisodePart::selection);
+  }
+  of(EpisodePart::input) = hash_of(input);
+  return hashes;
+}
+
+void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector<Episode>& episodes, bool actions,
+                     const AxesOf& axes_of) {
+  std::map<Key, const Action*> acted;
+  for (const Episode& e : episodes)
+    if (!e.action.empty()) acted[{e.arm, e.index}] = &e.action;
+  std::map<int, const PerturbedEpisode*> control;
+  std::map<std::tuple<std::string, int, std::size_t>, std::pair<int, int>>
+      changed;  // of how many, by axis, level, part
+  for (const PerturbedEpisode& e : all) {
+    if (e.axis.empty()) {
+      control[e.index] = &e;
+      continue;
+    }
+    const auto found = control.find(e.index);
+    if (found == control.end()) continue;  // not played
+    const auto axes = axes_of(e);
+    for (std::size_t part = 0; part < parts; ++part) {
+      const bool differs = e.hashes[part] != found->second->hashes[part];
+      const auto touches = [part](const PerturbationAxis* axis) {
+        return axis->touches(static_cast<EpisodePart>(part));
+      };
+      if (differs && std::none_of(axes.begin(), axes.end(), touches))
+        throw EngineError(
+            fmt::format("perturbation {} at level {}: {} differs from the control's in episode {}, which "
+                        "the axis does not declare",
+                        e.axis, e.level, part_names[part], e.index));
+      const auto changes = [part](const PerturbationAxis* axis) {
+        return std::count(axis->changes.begin(), axis->changes.end(), static_cast<EpisodePart>(part)) > 0;
+      };
+      if (e.hashes[part].empty() || std::none_of(axes.begin(), axes.end(), changes)) continue;
+      auto& [of_all, differing] = changed[{e.axis, e.level, part}];
+      ++of_all;
+      differing += differs;
+    }
+    constexpr auto input = static_cast<std::size_t>(EpisodePart::input);
+    const auto one = acted.find({e.arm, e.index}), other = acted.find({found->second->arm, e.index});
+    if (actions && e.hashes[input] == found->second->hashes[input] && one != acted.end() && other != acted.end() &&
+        *one->second != *other->second)
+      throw MethodError(fmt::format("act(): another action than in the control for the same input, in episode {} of {}",
+                                    e.index, e.arm));
+  }
+  for (const auto& [what, counts] : changed)
+    if (counts.second < fewest_changed * counts.first)
+      throw EngineError(fmt::format(
+          "perturbation {} at level {}: {} is the control's in {} of {} episodes, where the axis declares a "
+          "change: it is dead",
+          std::get<0>(what), std::get<1>(what), part_names[std::get<2>(what)], counts.first - counts.second,
+          counts.first));
+}
+
+}  // namespace lgabench

@@ -1,0 +1,87 @@
+#include <lgabench/core/perturbations.hpp>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/files.hpp>
+#include <lgabench/core/suggest.hpp>
+
+namespace lgabench {
+
+bool PerturbationAxis::touches(EpisodePart part) const {
+  const auto has = [](const std::vector<EpisodePart>& some, EpisodePart one) {
+    return std::find(some.begin(), some.end(), one) != some.end();
+  };
+  if (part != EpisodePart::input) return has(changes, part) || has(may_change, part);
+  for (const EpisodePart of_input :
+       {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances, EpisodePart::words, EpisodePart::selection})
+    if (touches(of_input)) return true;
+  return false;
+}
+
+const std::vector<PerturbationAxis>& perturbation_axes() {
+  // Never closed: functions of the axes live as long as the program. Not linked, as most programs never blur a picture.
+  static const std::vector<PerturbationAxis>* const axes = [] {
+    const fs::path file = library_directory() / perturbation_library;
+    void* const library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    const auto entry =
+        library ? reinterpret_cast<decltype(&lgabench_perturbations)>(::dlsym(library, "lgabench_perturbations"))
+                : nullptr;
+    if (!entry) throw InputError(fmt::format("perturbations: {}", ::dlerror()));
+    return entry();
+  }();
+  return *axes;
+}
+
+std::vector<std::string> perturbation_ids() {
+  std::vector<std::string> ids;
+  for (const PerturbationAxis& axis : perturbation_axes()) ids.push_back(axis.id);
+  ids.emplace_back(all_axes);
+  return ids;
+}
+
+std::vector<const PerturbationAxis*> axes_named(const std::string& id) {
+  std::vector<const PerturbationAxis*> axes;
+  for (const PerturbationAxis& axis : perturbation_axes())
+    if (id == axis.id || id == all_axes) axes.push_back(&axis);
+  if (axes.empty()) throw InputError(none_named("axis", id, perturbation_ids()));
+  return axes;
+}
+
+Perturbation read_perturbation(const JsonReader& reader) {
+  const Json& json = reader.json();
+  if (!json.is_object() || json.size() != 1)
+    reader.fail(fmt::format("an object with one axis and its level (two at once: {}), one of: {}", all_axes,
+                            fmt::join(perturbation_ids(), ", ")));
+  const std::string id = json.begin().key();
+  const JsonReader level = reader.at(id);
+  std::vector<const PerturbationAxis*> axes;
+  try {
+    axes = axes_named(id);
+  } catch (const InputError& e) {
+    throw InputError(fmt::format("{}: {}: {}", reader.file(), reader.place(), e.what()));
+  }
+  const int most = (*std::min_element(axes.begin(), axes.end(), [](const auto* a, const auto* b) {
+                     return a->most() < b->most();
+                   }))->most();
+  if (!level.json().is_number_integer() || level.json() < 1 || level.json() > most)
+    level.fail(id == all_axes ? fmt::format("a level from 1 to {}", most)
+                              : fmt::format("a level from 1 to {} ({})", most, fmt::join(axes.front()->levels, "; ")));
+  return {id, level.json().get<int>()};
+}
+
+std::string arm_of(const Perturbation& perturbation) {
+  return fmt::format("{}_{}", perturbation.axis, perturbation.level);
+}
+
+RandomStream perturbation_stream(const std::string& axis, const Scene& scene,
+                                 std::optional<std::uint64_t> training_seed) {
+  return RandomStream(fmt::format("perturbation/{}/{}/{}/{}{}/{}", axis, scene.scenario, scene.layout, scene.seed,
+                                  own_stream(training_seed), scene.index));
+}
+
+}  // namespace lgabench

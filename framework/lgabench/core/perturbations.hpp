@@ -1,0 +1,67 @@
+// Perturbation axes: one way each in which what is seen of a test scene differs from the control's (docs/protocol.md,
+// section 8).
+#pragma once
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <lgabench/core/json.hpp>
+#include <lgabench/core/observation.hpp>
+#include <lgabench/core/random.hpp>
+#include <lgabench/core/scenario.hpp>
+
+namespace lgabench {
+
+/// The parts of an episode that are told apart, in the order of a record.
+enum class EpisodePart { objects, physics, rgb, ids, instances, words, answers, selection, input, control };
+/// Their names in a record.
+constexpr std::array part_names{"objects", "physics", "rgb",       "ids",   "instances",
+                                "words",   "answers", "selection", "input", "control"};
+constexpr std::size_t parts = part_names.size();
+
+/// One axis. Level 0 is the control, which it leaves as it is. The stream is the episode's own and the same at every
+/// level: what it gives is the direction of a change, and the level gives the size alone.
+struct PerturbationAxis {
+  std::string id;
+  std::vector<std::string> levels;           // what each is, in a few words; the first is level 1
+  std::vector<EpisodePart> changes;          // in nearly every episode
+  std::vector<EpisodePart> may_change = {};  // in some
+  /// What is perceived at that level. Null: nothing else than without it.
+  std::function<Observation(Observation, const Scenario&, int level, RandomStream)> perceive = nullptr;
+  /// How likely each true feature is missing from what was selected, and each wrong one added. Null: as it is.
+  std::function<double(int level)> selection_errors = nullptr;
+
+  int most() const { return static_cast<int>(levels.size()); }
+  /// Whether the part may differ from the control's. The policy's input may wherever a part of it may.
+  bool touches(EpisodePart part) const;
+};
+
+/// The word for every axis at once.
+inline constexpr const char* all_axes = "all";
+
+/// The file that defines them.
+inline constexpr const char* perturbation_library = "liblgabench_perturbations.so";
+
+/// All that are installed, in the order in which `all` applies them: that library beside
+/// lgabench's own, loaded when it is first asked for. @throws InputError where it is not there.
+const std::vector<PerturbationAxis>& perturbation_axes();
+/// Their ids and, last, `all`.
+std::vector<std::string> perturbation_ids();
+/// The axis of that id, or every axis for `all`. @throws InputError that lists the known ones.
+std::vector<const PerturbationAxis*> axes_named(const std::string& id);
+
+/// {"AXIS": LEVEL}, an axis or `all`. @throws InputError with file and place for an unknown axis, a level that it
+/// lacks, two axes.
+Perturbation read_perturbation(const JsonReader& reader);
+/// "AXIS_LEVEL": an arm's name.
+std::string arm_of(const Perturbation& perturbation);
+
+/// The stream of one axis in one test scene; `training_seed`: as in SceneRequest.
+RandomStream perturbation_stream(const std::string& axis, const Scene& scene,
+                                 std::optional<std::uint64_t> training_seed);
+
+}  // namespace lgabench
+
+/// What the library defines.
+extern "C" const std::vector<lgabench::PerturbationAxis>* lgabench_perturbations();

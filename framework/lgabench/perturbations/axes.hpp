@@ -1,0 +1,14 @@
+// The axes, one file each.
+#pragma once
+#include <lgabench/core/perturbations.hpp>
+
+namespace lgabench::perturbations {
+
+PerturbationAxis light_intensity();
+PerturbationAxis light_colour();
+PerturbationAxis texture_noise();
+PerturbationAxis sensor_noise();
+PerturbationAxis segmentation();
+PerturbationAxis selection_errors();
+
+}  // namespace lgabench::perturbations

@@ -1,0 +1,89 @@
+"""The suite `perturbations`: what its record proves, and what is refused.
+
+LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 perturbations_test.py Perturbations
+"""
+import json
+import pathlib
+import unittest
+
+import case
+
+EPISODES = 6
+PARTS = ("objects", "physics", "rgb", "ids", "instances", "words", "answers", "selection", "input", "control")
+CHANGES = {"light_intensity": {"rgb"}, "segmentation": {"ids"}, "selection_errors": {"selection"}}  # and so the input
+MAY_CHANGE = {"segmentation": {"instances"}}
+
+
+def lines(file):
+    return [json.loads(line) for line in pathlib.Path(file).read_text().splitlines()]
+
+
+class Perturbations(case.BesideOneRun):
+    run_of_class = ("run", "perturbations", "--preset", "smoke", "--episodes", EPISODES, "--set", "*.epochs=20")
+
+    def setUp(self):
+        super().setUp()
+        if self is not self.first:
+            self.copy_first("run")
+
+    def cells_of(self, *methods):
+        return [path.parent for path in sorted(self.dir.glob("run/cells/*/cell.json"))
+                if json.loads(path.read_text())["method"]["id"] in methods]
+
+    def test_a_line_for_each_episode_and_a_hash_for_each_part(self):
+        self.assert_matches_schemas("run")
+        for cell in self.cells_of("lga", "gcbc_dart", "oracle"):
+            perturbed, episodes = lines(cell / "perturbed.jsonl"), lines(cell / "episodes.jsonl")
+            self.assertEqual([(e["arm"], e["index"]) for e in perturbed], [(e["arm"], e["index"]) for e in episodes])
+            self.assertEqual({e["arm"] for e in perturbed},
+                             {"control", *(f"{axis}_{level}" for axis in CHANGES for level in (1, 4))})
+            acts = cell not in self.cells_of("oracle")
+            for e in perturbed:
+                self.assertEqual([part for part in PARTS if e[part] is None],
+                                 [] if acts else ["words", "answers", "selection"])
+
+    def test_an_arm_changes_what_its_axis_declares_and_nothing_else(self):
+        for cell in self.cells_of("lga"):
+            perturbed = lines(cell / "perturbed.jsonl")
+            controls = {e["index"]: e for e in perturbed if e["axis"] is None}
+            self.assertEqual(len(controls), EPISODES)
+            for e in perturbed:
+                if e["axis"] is None:
+                    continue
+                differ = {part for part in PARTS if e[part] != controls[e["index"]][part]}
+                must = CHANGES[e["axis"]] | {"input"}
+                self.assertEqual(differ - MAY_CHANGE.get(e["axis"], set()), must, e["arm"])
+
+    def test_status_vouches_for_the_record_and_names_its_library(self):
+        for cell in self.cells_of("lga", "oracle"):
+            status = json.loads((cell / "status.json").read_text())
+            self.assertIn("perturbed.jsonl", status["files"])
+            self.assertIn("liblgabench_perturbations.so", status["build"])
+        said = self.call("verify", "run", "--sample", "2", "--seed", "1").stdout
+        self.assertEqual(said.count("\nbit-identical "), 2, said)
+
+    def test_other_suites_neither_have_the_record_nor_name_the_library(self):
+        self.call("run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", "2", "--seeds", "0", "--episodes",
+                  "1", "--set", "lga.epochs=2", "--out", "other")
+        for _, status in self.cells("other").values():
+            self.assertNotIn("perturbed.jsonl", status["files"])
+            self.assertNotIn("liblgabench_perturbations.so", status["build"])
+
+    def test_what_there_is_not_is_refused_in_a_line(self):
+        suite = json.loads((case.BUILD / "share/lgabench/suites/perturbations.json").read_text())
+
+        def refusal(axis, levels):
+            self.dir.joinpath("mine.json").write_text(json.dumps({**suite, "id": "mine", "presets": {},
+                                                                  "perturbations": [{"axis": axis, "levels": levels}]}))
+            said = self.call("run", "mine.json", "--dry-run", expect=2).stderr
+            self.assertEqual(said.count("\n"), 1, said)
+            return said
+
+        self.assertIn('no axis "light_color" (did you mean "light_colour"?), expected one of: light_intensity, ',
+                      refusal("light_color", [1]))
+        self.assertIn("expected a level from 1 to 4 (10 %; 20 %; 30 %; 45 %)", refusal("light_colour", [5]))
+        self.assertIn("mine.json", refusal("all", [0]))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,179 @@
+// Perturbation axes: what each changes and leaves alone, nested levels, and that a dead or a leaking axis is caught.
+#include <algorithm>
+#include <map>
+
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/abstraction/selection_errors.hpp>
+#include <lgabench/cell/perturbed.hpp>
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
+#include <lgabench/harness/expand.hpp>
+
+#include "testing.hpp"
+
+namespace lgabench {
+namespace {
+
+constexpr int episodes = 5;
+
+struct Drawn {
+  Scene scene;
+  Observation seen;
+};
+
+// Test scenes of the first arm as they are seen without perturbations: drawn once.
+const std::vector<Drawn>& drawn(const Scenario& scenario) {
+  static std::map<std::string, std::vector<Drawn>> all;
+  std::vector<Drawn>& of = all[scenario.id];
+  for (int i = static_cast<int>(of.size()); i < episodes; ++i) {
+    const Scene scene = test_scene(scenario, layouts_of(scenario).front(), scenario.tests.front().id, 0, i);
+    of.push_back({scene, find_environment(scenario.environment).draw(scene)});
+  }
+  return of;
+}
+
+// Scenes of an arm that has that axis, as a policy sees them; level 0: the control's.
+std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>& axes, int level,
+                                     const std::string& id = "heart") {
+  const Scenario scenario = load_scenario(id);
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  std::vector<PerturbedEpisode> all;
+  for (int i = 0; i < episodes; ++i) {
+    auto [scene, seen] = drawn(scenario)[static_cast<std::size_t>(i)];
+    const Instruction right{"u", scenario.commands.front().truth};
+    Instruction told = right;
+    for (const PerturbationAxis* axis : level > 0 ? axes : std::vector<const PerturbationAxis*>()) {
+      if (axis->perceive) seen = axis->perceive(seen, scenario, level, perturbation_stream(axis->id, scene, {}));
+      if (axis->selection_errors) {
+        const double p = axis->selection_errors(level);
+        told.selection = with_errors(told.selection, scenario, 0, SelectionErrors{p, p},
+                                     perturbation_stream(axis->id, scene, {}), environment.goal_type());
+      }
+    }
+    all.push_back({level > 0 ? "perturbed" : "control", i, level > 0 ? axes.front()->id : "", level,
+                   parts_of(scene, seen, &right, &told)});
+  }
+  return all;
+}
+
+void expect_as_declared(const PerturbationAxis& axis, int level, const std::string& scenario = "heart") {
+  std::vector<PerturbedEpisode> all = played({&axis}, 0, scenario);
+  const auto perturbed = played({&axis}, level, scenario);
+  all.insert(all.end(), perturbed.begin(), perturbed.end());
+  expect_declared(all, {}, false, [&](const PerturbedEpisode& e) {
+    return e.axis.empty() ? std::vector<const PerturbationAxis*>() : std::vector<const PerturbationAxis*>{&axis};
+  });
+}
+
+TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
+  for (const PerturbationAxis& axis : perturbation_axes())
+    for (int level = 1; level <= axis.most(); ++level)
+      for (const char* scenario : {"heart", "fetch_fruit"}) {
+        SCOPED_TRACE(axis.id + " " + std::to_string(level) + " " + scenario);
+        EXPECT_NO_THROW(expect_as_declared(axis, level, scenario));
+      }
+}
+
+TEST(Perturbations, ADeadAxisIsCaught) {
+  const PerturbationAxis dead{
+      "dead", {"nothing"}, {EpisodePart::rgb}, {}, [](Observation seen, const Scenario&, int, RandomStream) {
+        return seen;
+      }};
+  EXPECT_SAYS(message_of<EngineError>([&] { expect_as_declared(dead, 1); }),
+              "perturbation dead at level 1: rgb is the control's in 5 of 5 episodes");
+}
+
+TEST(Perturbations, ALeakingAxisIsCaught) {
+  const PerturbationAxis leaking{
+      "leaking", {"too much"}, {EpisodePart::rgb}, {}, [](Observation seen, const Scenario&, int, RandomStream) {
+        for (auto& value : seen.rgb) value ^= 1;
+        seen.instances.front().texture = "leaked";
+        return seen;
+      }};
+  EXPECT_SAYS(message_of<EngineError>([&] { expect_as_declared(leaking, 1); }),
+              "perturbation leaking at level 1: instances differs from the control's in episode 0");
+}
+
+TEST(Perturbations, APolicyThatActsOtherwiseOnTheSameInputIsCaught) {
+  std::vector<PerturbedEpisode> all = played({}, 0), same = all;
+  for (PerturbedEpisode& e : same) e.arm = "perturbed", e.axis = "none", e.level = 1;
+  all.insert(all.end(), same.begin(), same.end());
+  const PerturbationAxis none{"none", {"nothing"}, {}};
+  const auto axes = [&](const PerturbedEpisode&) { return std::vector<const PerturbationAxis*>{&none}; };
+  std::vector<Episode> acted{{"control", 3, 0, "", failure::none, {1., 2.}},
+                             {"perturbed", 3, 0, "", failure::none, {1., 2.}}};
+  EXPECT_NO_THROW(expect_declared(all, acted, true, axes));
+  acted.back().action.back() += 1e-12;
+  EXPECT_SAYS(message_of<MethodError>([&] { expect_declared(all, acted, true, axes); }), "in episode 3 of perturbed");
+  EXPECT_NO_THROW(expect_declared(all, acted, false, axes)) << "reference rows may look at more than their input";
+}
+
+// How far a picture, and a segmentation, lie from the control's: the size of a change grows with the level.
+TEST(Perturbations, LevelsAreNested) {
+  const Scenario scenario = load_scenario("heart");
+  for (const PerturbationAxis& axis : perturbation_axes()) {
+    if (!axis.perceive) continue;
+    for (const auto& [scene, control] : drawn(scenario)) {
+      double before = 0;
+      std::vector<std::uint8_t> missed_before;
+      for (int level = 1; level <= axis.most(); ++level) {
+        const Observation seen = axis.perceive(control, scenario, level, perturbation_stream(axis.id, scene, {}));
+        EXPECT_EQ(seen.rgb, axis.perceive(control, scenario, level, perturbation_stream(axis.id, scene, {})).rgb);
+        double distance = 0;
+        for (std::size_t p = 0; p < seen.rgb.size(); ++p) distance += std::abs(seen.rgb[p] - control.rgb[p]);
+        if (axis.id == "segmentation") {
+          EXPECT_EQ(seen.rgb, control.rgb);
+          for (const std::uint8_t id : missed_before)
+            EXPECT_TRUE(
+                std::none_of(seen.instances.begin(), seen.instances.end(), [id](auto& o) { return o.id == id; }));
+          missed_before.clear();
+          for (const Instance& one : control.instances)
+            if (std::none_of(seen.instances.begin(), seen.instances.end(), [&](auto& o) { return o.id == one.id; }))
+              missed_before.push_back(one.id);
+        } else {
+          EXPECT_GT(distance, before) << axis.id << " " << level << " " << scene.index;
+        }
+        before = distance;
+      }
+    }
+  }
+}
+
+std::string refusal(const Json& perturbation) {
+  Json json = load_scenario("heart").json;
+  json["tests"].push_back(json["tests"].front());
+  json["tests"].back().update({{"arm", "other"}, {"perturbation", perturbation}});
+  return message_of<InputError>([&] { read_scenario(json, "mine.json"); });
+}
+
+TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
+  EXPECT_SAYS(refusal({{"light_color", 1}}),
+              "/tests/1/perturbation: no axis \"light_color\" (did you mean "
+              "\"light_colour\"?), expected one of: light_intensity, light_colour");
+  EXPECT_SAYS(refusal({{"light_colour", 5}}),
+              "/tests/1/perturbation/light_colour: expected a level from 1 to 4 (10 %; 20 %");
+  EXPECT_SAYS(refusal({{"all", 0}}), "/tests/1/perturbation/all: expected a level from 1 to 4");
+  EXPECT_SAYS(refusal({{"light_colour", 1}, {"sensor_noise", 1}}),
+              "expected an object with one axis and its level (two at once: all)");
+  Json json = load_scenario("heart").json;
+  json["tests"].push_back({{"arm", "other"}, {"distractors", {2, 2}}, {"perturbation", {{"all", 1}}}});
+  EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),
+              "the members of the first arm, its control");
+}
+
+TEST(Perturbations, ASuiteNamesThemInALineEach) {
+  const Suite suite = load_suite("perturbations");
+  const Scenario whole = suite_scenario(suite, "heart", Truth::released);
+  EXPECT_EQ(whole.tests.size(), 1u + 7 * 4);
+  EXPECT_EQ(whole.tests[1].id, "light_intensity_1");
+  const Design smoke = preset_design(suite, "smoke");
+  const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke.perturbations);
+  EXPECT_EQ(small.tests.size(), 1u + 3 * 2);
+  const Scene control = test_scene(whole, "continuous", "control", 0, 5),
+              other = test_scene(whole, "continuous", "all_4", 0, 5);
+  EXPECT_EQ(to_json(control)["objects"], to_json(other)["objects"]);
+  EXPECT_FALSE(to_json(load_suite("q1").design).contains("perturbations")) << "other suites stay as they are";
+}
+
+}  // namespace
+}  // namespace lgabench
