@@ -11,7 +11,7 @@ import unittest
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line
 
 VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
-         "leaderboard", "new-plugin", "check-plugin", "study", "encoder", "cache"]
+         "leaderboard", "new-plugin", "check-plugin", "commands", "study", "encoder", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
 RUN = ["run", "q1", "--scenarios", "heart", "--methods", "fixture_constant", *PLUGIN, "--demos", "10,20", "--seeds", "0:2",

@@ -32,7 +32,7 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "study",
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "study", "drawn",
                        "leaderboard", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
@@ -96,6 +96,9 @@ class IncludeGraph(unittest.TestCase):
 
     def test_the_study_knows_core_abstraction_records_and_reports(self):
         self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|report/|study/)|torch|opencv")
+
+    def test_drawn_commands_know_core_and_abstraction(self):
+        self.forbid("framework/lgabench/drawn", r"lgabench/(?!core/|abstraction/|drawn/)|torch|opencv")
 
     def test_words_of_a_record_stand_in_one_file(self):
         """The grammar of answers, whose test scenes, and names of what a report writes."""

@@ -79,6 +79,16 @@ TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
   }
 }
 
+TEST(Schemas, AcceptTheShippedLexicon) {
+  const Json document = read_json(data_directory() / "lexicons" / "household.json");
+  EXPECT_EQ(complaints("lexicon", document), Complaints());
+  for (const char* where : {"/surprise", "/names/0/surprise", "/looks/0/surprise", "/orders/0/surprise"}) {
+    Json broken = document;
+    broken[Json::json_pointer(where)] = 1;
+    EXPECT_NE(complaints("lexicon", broken), Complaints()) << where;
+  }
+}
+
 TEST(Schemas, AcceptThePapersMethods) {
   const Json document = read_json(data_directory() / "paper" / "methods.json");
   EXPECT_EQ(complaints("paper_methods", document), Complaints());

@@ -53,6 +53,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_new_plugin(app, exit);
   add_check_plugin(app, exit);
   add_new_scenario(app, exit);
+  add_drawn_commands(app, exit);
   add_study(app, exit);
   add_encoder(app, exit);
   add_cache(app, exit);
@@ -64,7 +65,8 @@ void arrange_commands(CLI::App& app) {
       {"To run and to compare", {"run", "report", "compare", "verify", "attribute"}},
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},
-      {"To add a method, an engine or a scenario", {"new-plugin", "check-plugin", "new-scenario", "check-scenario"}},
+      {"To add a method, an engine or a scenario",
+       {"new-plugin", "check-plugin", "new-scenario", "check-scenario", "commands"}},
       {"To run a user study", {"study"}},
       {"To look after an installation", {"encoder", "cache"}}};
   for (const auto& [title, names] : titles)

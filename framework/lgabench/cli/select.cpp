@@ -44,6 +44,19 @@ struct Asked {
   std::optional<Selection> truth;
 };
 
+// Refuses every question: of --score, only what asks nobody has a row.
+class Nobody : public LanguageModel {
+ public:
+  std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override { refuse(); }
+  Meaning mean(const Command&, const FeatureSpace&) override { refuse(); }
+  std::string model() const override { return "none"; }
+  Provenance provenance() const override { return Provenance::none; }
+  SelectionCost cost() const override { return {}; }
+
+ private:
+  [[noreturn]] static void refuse() { throw InputError("--answers none: nobody is asked"); }
+};
+
 // Over all commands: each begins to count anew.
 class Progress {
  public:
@@ -91,6 +104,8 @@ Answerer make_answerer(const SelectArguments& a) {
     throw InputError(fmt::format("--model: expected --answers openai or cassette:FILE with it, not {}", a.answers));
   if (!live && (a.max_queries >= 0 || !a.request.empty() || a.reply_timeout_s != OpenAiOptions().timeout_s))
     throw InputError("--max-queries, --request and --reply-timeout: expected --answers openai with them");
+  if (std::holds_alternative<NoAnswers>(source) && !a.score)
+    throw InputError("--answers none: expected --score with it");
   if (file.empty()) return answerer;
   answerer.cassette = std::make_unique<Cassette>(file);
   if (live && a.model.empty()) throw InputError("--model: expected one with --answers openai");
@@ -230,8 +245,9 @@ void add_select(CLI::App& app, int&) {
   verb->add_option(
           "--answers", arguments->answers,
           "recorded: the scenario's recorded answers; another name from lgabench list sources: only that source; "
-          "openai: ask a server now; cassette:FILE: a server's recorded replies; FILE.json: your own answers")
-      ->check([](const std::string& word) { return answers_complaint(word, false); })
+          "openai: ask a server now; cassette:FILE: a server's recorded replies; FILE.json: your own answers; none "
+          "(with --score): the names in the commands alone")
+      ->check([](const std::string& word) { return answers_complaint(word, true); })
       ->capture_default_str();
   verb->add_option("--truth", arguments->truth,
                    "Which true distribution to compare with where released and printed ones differ")
@@ -310,6 +326,8 @@ void add_select(CLI::App& app, int&) {
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {
         std::optional<RecordedLanguageModel> recorded;
+        Nobody nobody;
+        if (arguments->answers == nobody.model()) return use(nobody);
         use(answerer_of(commands_of(scenario).front(), answerer.model.get(), *arguments, recorded));
       };
       return print_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,

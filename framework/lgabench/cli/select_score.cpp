@@ -193,7 +193,6 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
     try {
       by_asking[asking.name] = scores_of(asking, suite, truth, scenes, with_answers);
     } catch (const InputError& e) {
-      if (&asking == &ways_of_asking().front()) throw;
       by_asking.erase(asking.name);
       left_out += fmt::format("{}: {}\n", asking.name, one_line(e.what()));
     }
@@ -215,7 +214,7 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
       return std::find(list.begin(), list.end(), command.scenario) != list.end();
     });
   bool by_arm = false;
-  for (const ScoredCommand& command : by_asking.at("flat").commands) {
+  for (const ScoredCommand& command : by_asking.at("named").commands) {
     const auto same = [&command](const auto& group) { return group.first == command.arm; };
     if (command.arm.empty() || std::any_of(groups.begin(), groups.end(), same)) continue;
     by_arm = true;
@@ -223,10 +222,13 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
   }
   groups.emplace_back("all", [](const ScoredCommand&) { return true; });
 
+  std::string source = "none";
+  for (const char* asking : {"structured", "flat"})
+    if (by_asking.count(asking) > 0) source = by_asking[asking].source;
   if (!json)
     to_stdout("answers of {}; {} scenes of each arm\n\n{:<14} {:<11} {:>4}  {:<18}  {:>5}  {:>9}  {:>6}  {:>9}{}\n",
-              by_asking.at("flat").source, scenes, "", "asked", "n", "scenes exact", "sets", "precision", "recall",
-              "questions", by_arm ? "  otherwise" : "");
+              source, scenes, "", "asked", "n", "scenes exact", "sets", "precision", "recall", "questions",
+              by_arm ? "  otherwise" : "");
   for (const auto& [group, is_in] : groups)
     for (const Asking& asking : ways_of_asking()) {
       const auto scores = by_asking.find(asking.name);

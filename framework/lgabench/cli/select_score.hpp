@@ -16,7 +16,7 @@ using WithAnswers = std::function<void(const Scenario& scenario, const std::func
 /// Scores the answers to every command of the suite, asked yes or no of each feature, asked what the command means, and
 /// the names in the command, in `scenes` scenes of each arm, and prints a row of each for every group and for all;
 /// beside them, how often hypotheses on what the words leave unsaid hold the truth.
-/// A way of asking to which an answer lacks is left out with its reason. @throws what asking throws, for the first way.
+/// A way of asking to which an answer lacks is left out with its reason.
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers);
 
 /// Writes best_product() of every command of the suite as a file of answers, for --answers FILE.

@@ -44,6 +44,7 @@ void add_check_plugin(CLI::App& app, int& exit);
 void add_cache(CLI::App& app, int& exit);
 void add_encoder(CLI::App& app, int& exit);
 void add_new_scenario(CLI::App& app, int& exit);
+void add_drawn_commands(CLI::App& app, int& exit);
 void add_study(CLI::App& app, int& exit);
 
 // In `lgabench-worker`, which `lgabench` starts for them.
