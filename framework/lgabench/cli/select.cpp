@@ -49,6 +49,7 @@ class Nobody : public LanguageModel {
  public:
   std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override { refuse(); }
   Meaning mean(const Command&, const FeatureSpace&) override { refuse(); }
+  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { refuse(); }
   std::string model() const override { return "none"; }
   Provenance provenance() const override { return Provenance::none; }
   SelectionCost cost() const override { return {}; }
