@@ -15,9 +15,9 @@ namespace lgabench {
 struct PluginDescriptor {
   char magic[16];
   std::uint32_t struct_size, abi;
-  char kind[16];     // "method" or "engine"
-  char asks[16];     // whom a method asks beside the language model: "specify", "edit", "accept", "truth", "network", ""
-  char id[64];       // lower-case letters, digits, underscores; starts with a letter
+  char kind[16];  // "method" or "engine"
+  char asks[16];  // whom a method asks beside the language model: "specify", "edit", "accept", "truth", "network", ""
+  char id[64];    // lower-case letters, digits, underscores; starts with a letter
   char version[32];  // the plugin's own
   char summary[160];
   char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
