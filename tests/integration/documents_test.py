@@ -98,7 +98,9 @@ class DocumentedCommands(Case):
                         if verb == "replay":
                             words[2] = next(key for key, (cell, _) in self.cells("run").items()) + "/0"
                         if verb == "new-scenario":
-                            (self.dir / "round.json").unlink(missing_ok=True)
+                            (self.dir / f"{shown[1]}.json").unlink(missing_ok=True)
+                        if verb == "commands":
+                            shutil.rmtree(self.dir / "drawn", ignore_errors=True)
                         self.call(*words)
                         ran += 1
         self.assertGreater(ran, 12)

@@ -9,4 +9,4 @@ lgabench_unit_test(harness_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/harness_suite_
                    LINK lgabench_cell lgabench_harness lgabench_tabletop)
 target_compile_definitions(harness_test PRIVATE LGABENCH_TEST_REFERENCE="${PROJECT_SOURCE_DIR}/tests/reference")
 # They play on a real engine and read the real plugins, found as the programs find them: beside lib/.
-add_dependencies(harness_test engines gcbc_dart gcbc_seg factorial)
+add_dependencies(harness_test engines lgabench_perturbations lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg factorial plga plga_active)
