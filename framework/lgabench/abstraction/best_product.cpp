@@ -1,7 +1,7 @@
 #include <lgabench/abstraction/best_product.hpp>
 
 #include <algorithm>
-#include <map>
+#include <utility>
 #include <vector>
 
 #include <lgabench/abstraction/scenes.hpp>
@@ -15,7 +15,7 @@ struct Placed {
   std::size_t type, texture;
   bool meant;
 };
-using Seen = std::vector<Placed>;  // what stands on it
+using Seen = std::vector<Placed>;  // a scene's objects, but for places
 
 struct Kept {
   std::vector<char> types, textures;
@@ -33,14 +33,12 @@ std::size_t place_of(const std::string& name, const std::vector<std::string>& na
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-std::vector<Seen> training_scenes(const Scenario& scenario, int command, const std::string& layout, int count) {
-  std::vector<Selection> truths;
-  for (const ScenarioCommand& one : scenario.commands) truths.push_back(one.truth);
-  std::vector<Seen> scenes;
+// By command.
+std::vector<std::vector<Seen>> training_scenes(const Scenario& scenario, const std::string& layout, int count) {
+  std::vector<std::vector<Seen>> scenes(scenario.commands.size());
   for (int i = 0; i < count; ++i) {
-    const Scene drawn = training_scene(scenario, layout, truths, training_seed, i);
-    if (drawn.command != command) continue;
-    Seen& scene = scenes.emplace_back();
+    const Scene drawn = training_scene(scenario, layout, {}, training_seed, i);
+    Seen& scene = scenes.at(static_cast<std::size_t>(drawn.command)).emplace_back();
     for (const SceneObject& object : drawn.objects)
       if (!is_place(object.object_type))
         scene.push_back({place_of(object.object_type, scenario.space.object_types),
@@ -56,13 +54,9 @@ std::vector<std::string> names_of(const std::vector<char>& kept, const std::vect
   return some;
 }
 
-}  // namespace
-
-FeatureSet best_product(const Scenario& scenario, int command, const std::string& layout, int count) {
-  const std::vector<Seen> scenes = training_scenes(scenario, command, layout, count);
-  const FeatureSpace& space = scenario.space;
+FeatureSet best_product(const Meaning& truth, const FeatureSpace& space, const std::vector<Seen>& scenes) {
   Kept kept{std::vector<char>(space.object_types.size()), std::vector<char>(space.textures.size())};
-  for (const FeatureSet& set : scenario.commands[static_cast<std::size_t>(command)].truth.target.sets) {
+  for (const FeatureSet& set : truth.sets) {
     for (const std::string& type : set.object_types) kept.types[place_of(type, space.object_types)] = 1;
     for (const std::string& texture : set.textures) kept.textures[place_of(texture, space.textures)] = 1;
   }
@@ -71,17 +65,27 @@ FeatureSet best_product(const Scenario& scenario, int command, const std::string
     better = false;
     for (std::vector<char>* names : {&kept.types, &kept.textures})
       for (char& name : *names) {
-        name = !name;
+        const char before = std::exchange(name, name == 0 ? 1 : 0);
         const auto changed = kept.won(scenes);
         if (changed > won) {
           won = changed;
           better = true;
         } else {
-          name = !name;
+          name = before;
         }
       }
   }
   return {names_of(kept.types, space.object_types), names_of(kept.textures, space.textures)};
+}
+
+}  // namespace
+
+std::vector<FeatureSet> best_products(const Scenario& scenario, const std::string& layout, int scenes) {
+  const std::vector<std::vector<Seen>> by_command = training_scenes(scenario, layout, scenes);
+  std::vector<FeatureSet> best;
+  for (std::size_t i = 0; i < by_command.size(); ++i)
+    best.push_back(best_product(scenario.commands[i].truth.target, scenario.space, by_command[i]));
+  return best;
 }
 
 }  // namespace lgabench

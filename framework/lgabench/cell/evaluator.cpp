@@ -89,14 +89,9 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   return episode;
 }
 
-}  // namespace
-
-Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
-  return policy_actor(
-      policy, [&](const Scene& scene) { return instructions.at(static_cast<std::size_t>(scene.command)); }, plugin_id);
-}
-
-Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id) {
+// `told(scene)` is an Instruction, or a reference to one.
+template <class Told>
+Actor acting(Policy& policy, Told told, const std::string& plugin_id) {
   return [&policy, told = std::move(told), plugin_id](const Environment&, const Scene& scene,
                                                       const Observation& observation) {
     try {
@@ -109,6 +104,19 @@ Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told
       throw MethodError(e.what());
     }
   };
+}
+
+}  // namespace
+
+Actor policy_actor(Policy& policy, const std::vector<Instruction>& instructions, const std::string& plugin_id) {
+  const auto told = [&instructions](const Scene& scene) -> const Instruction& {
+    return instructions.at(static_cast<std::size_t>(scene.command));
+  };
+  return acting(policy, told, plugin_id);
+}
+
+Actor policy_actor(Policy& policy, std::function<Instruction(const Scene&)> told, const std::string& plugin_id) {
+  return acting(policy, std::move(told), plugin_id);
 }
 
 Actor reference_actor(const std::string& id, const std::vector<Scene>& demonstrated) {

@@ -10,9 +10,6 @@
 
 namespace lgabench {
 
-/// What a policy is told in a scene.
-using InstructionOf = std::function<Instruction(const Scene&)>;
-
 /// The axes that changed an episode; none for the control's.
 using AxesOf = std::function<std::vector<const PerturbationAxis*>(const PerturbedEpisode&)>;
 /// Those that are installed.

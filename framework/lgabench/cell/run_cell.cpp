@@ -363,13 +363,14 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 5 evaluate: the same test scenes for everyone.
   phases.begin("evaluate");
   const std::vector<TestScene> tests = test_scenes(scenario, cell, course, selected);
+  const bool perturbs = cell.perturbs();
   const auto told = [&](const Scene& scene) { return told_in(scene, scenario, cell, selected.instructions); };
-  const Actor actor = policy                        ? policy_actor(*policy, told, id)
+  const Actor actor = policy && perturbs            ? policy_actor(*policy, told, id)
+                      : policy                      ? policy_actor(*policy, selected.instructions, id)
                       : course == Course::reference ? reference_actor(id, demonstrated_to(cell, scenario))
                                                     : Actor();
   std::optional<Showing> showing;
   if (policy) showing.emplace(*policy, id);
-  const bool perturbs = cell.perturbs();
   std::vector<PerturbedEpisode> perturbed;
   const Actor noted = perturbs && actor ? noting(actor, scenario, cell, selected, policy.get(), perturbed) : actor;
   std::vector<Episode> episodes = evaluate(*environment, tests, noted, [&](int n) {

@@ -205,11 +205,10 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
   }
   Groups families;
   for (const auto& [name, scenarios] : suite.groups.items()) families.emplace_back(name, scenarios);
-  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
   // Those of the suite, or the arms where commands name them, then all.
   using InGroup = std::function<bool(const ScoredCommand&)>;
   std::vector<std::pair<std::string, InGroup>> groups;
-  for (const auto& [name, scenarios] : suite.groups.items())
+  for (const auto& [name, scenarios] : families)
     groups.emplace_back(name, [list = scenarios](const ScoredCommand& command) {
       return std::find(list.begin(), list.end(), command.scenario) != list.end();
     });
@@ -221,6 +220,7 @@ void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const 
     groups.emplace_back(command.arm, [arm = command.arm](const ScoredCommand& one) { return one.arm == arm; });
   }
   groups.emplace_back("all", [](const ScoredCommand&) { return true; });
+  families.emplace_back("all", suite_scenario_ids(suite, suite.design));
 
   std::string source = "none";
   for (const char* asking : {"structured", "flat"})
@@ -256,11 +256,12 @@ void write_best_products(const Suite& suite, Truth truth, const std::filesystem:
   Json answers = Json::array();
   for (const std::string& id : suite_scenario_ids(suite, suite.design)) {
     const Scenario scenario = suite_scenario(suite, id, truth);
-    for (int i = 0; i < static_cast<int>(scenario.commands.size()); ++i)
+    const std::vector<FeatureSet> best = best_products(scenario, suite.design.layouts.front(), scenes);
+    for (std::size_t i = 0; i < best.size(); ++i)
       answers.push_back(Json{{"space", scenario.space.id},
                              {"scenario", scenario.answers_of},
-                             {"command", scenario.commands[static_cast<std::size_t>(i)].utterance},
-                             {"target", to_json(best_product(scenario, i, suite.design.layouts.front(), scenes))}});
+                             {"command", scenario.commands[i].utterance},
+                             {"target", to_json(best[i])}});
   }
   const std::string how = fmt::format("coordinate ascent on {} training scenes a command, from the truth", scenes);
   write_file(file, Json{{"model", "best single product"}, {"how", how}, {"answers", answers}}.dump(1) + "\n");

@@ -19,7 +19,7 @@ using WithAnswers = std::function<void(const Scenario& scenario, const std::func
 /// A way of asking to which an answer lacks is left out with its reason.
 void print_scores(const Suite& suite, Truth truth, int scenes, bool json, const WithAnswers& with_answers);
 
-/// Writes best_product() of every command of the suite as a file of answers, for --answers FILE.
+/// Writes best_products() of every command of the suite as a file of answers, for --answers FILE.
 void write_best_products(const Suite& suite, Truth truth, const std::filesystem::path& file);
 
 }  // namespace lgabench::cli
