@@ -2,6 +2,7 @@
 
 #include <ATen/ATen.h>
 #include <ATen/Parallel.h>
+#include <c10/core/GradMode.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -79,7 +80,7 @@ SentenceEncoder::SentenceEncoder(const fs::path& directory)
 SentenceEncoder::~SentenceEncoder() = default;
 
 std::vector<float> SentenceEncoder::encode(const std::string& sentence) const {
-  const at::NoGradGuard no_grad;
+  const c10::NoGradGuard no_grad;
   const Tensor embedding = impl_->embed(impl_->tokenizer.ids(sentence, most_tokens)).contiguous();
   const float* values = embedding.data_ptr<float>();
   return {values, values + embedding.numel()};
