@@ -104,7 +104,7 @@ Json scenario_of(const DrawnCommand& command, const FeatureSpace& space) {
       {"feature_space", space.id},
       {"commands", {{{"utterance", command.utterance}, {"truth", {{"target", meaning_of(command.meaning, space)}}}}}},
       {"train", {{"as_method_asks", false}, {"distractors", {1, 2}}}},
-      {"tests", {{{"arm", "test"}}}},
+      {"tests", {{{"arm", "test"}, {"distractors", {2, 3}}, {"near_miss", true}}}},
       {"note", fmt::format("{}.", fmt::join(command.why, "; "))}};
   if (!command.undecided.empty()) json["undecided"] = sets_of(command.undecided, space);
   if (!command.near_misses.empty()) json["near_miss_sets"] = sets_of(command.near_misses, space);
