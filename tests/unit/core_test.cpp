@@ -349,7 +349,7 @@ TEST(Scenario, RefusesBadInput) {
   json = heart();
   json["answers"] = {{"recorded", "gpt4"}};
   EXPECT_SAYS(refusal(json),
-              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_fetch, "
+              "mine.json: /answers/recorded: expected one of: claude, claude_clutter, claude_drawn, claude_fetch, "
               "claude_paraphrases, claude_words, gpt4_released, gpt4_study");
   json = heart();
   json["printed"] = {{"task", "rotate"}};
