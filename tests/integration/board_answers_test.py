@@ -102,6 +102,28 @@ class AnswersAlone(Board):
         self.assertEqual(list(self.cells("again")), keys[1:], "the page's command plays the entry's cell")
         self.assertIn(",answers as submitted,", (self.dir / "board/leaderboard.csv").read_text())
 
+        # What the answers keep without a policy, beside what the policy makes of it.
+        score = entry["score"]
+        self.assertEqual((score["model"], score["asked"], score["questions"]), ("made-up-1", "flat", 2 * 112))
+        alone = {row["group"]: row for row in map(json.loads, self.call(
+            "select", "--suite", "tiny", "--score", "--json", "--answers", str(kept)).stdout.splitlines()) if row["asked"] == "flat"}
+        self.assertEqual(score["groups"]["all"]["exact_sets"], alone["all"]["exact_sets"])
+        self.assertIn("star", score["wrong"]["letter"]["kept"])
+        self.assertIn("letter A", page)
+        self.assertIn("What the answers keep, without a policy", page)
+        self.assertRegex(page, r"kept: [^<]*star")
+        text = (place / "entry.json").read_text()
+        now = score["groups"]["all"]["exact_scenes"]
+        better = json.loads(text)
+        better["score"]["groups"]["all"]["exact_scenes"] = now + 1
+        (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
+        refused = self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr
+        self.assertRegex(refused, r"^not verified: \S+: score of the answers, scenes exact: 0\.\d+ here, 0\.\d+ in the entry\n")
+        better["score"]["groups"]["all"]["exact_scenes"] = better["score"]["groups"]["all"]["scenes"] + 1
+        (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
+        self.assertIn("/score/groups/all/exact_scenes: expected", self.leaderboard("check", expect=1).stderr)
+        (place / "entry.json").write_text(text)
+
         # The cells follow from these bytes.
         kept.write_text(kept.read_text().replace('"star"', '"moon"'))
         self.assertIn(f"{kept.name} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)

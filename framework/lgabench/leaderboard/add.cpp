@@ -13,6 +13,7 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 
 namespace lgabench::leaderboard {
@@ -206,6 +207,11 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     }
   }
   add_missing(first.method.name, missing, cells.size(), reasons);
+  if (missing.empty()) {
+    const fs::path kept = answers_file(entry.identity).filename();
+    entry.score = score_of_answers(installed, first.method, first.answers,
+                                   kept.empty() ? fs::path() : run.directory / "answers" / kept);
+  }
   entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
   return entry;
 }
