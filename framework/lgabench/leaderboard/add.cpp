@@ -207,10 +207,11 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     }
   }
   add_missing(first.method.name, missing, cells.size(), reasons);
-  if (missing.empty()) {
+  const auto played = [](const PlayedCell& cell) { return cell.failed.empty(); };
+  if (entry.cells.size() == cells.size() && std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
     const fs::path kept = answers_file(entry.identity).filename();
-    entry.score = score_of_answers(installed, first.method, first.answers,
-                                   kept.empty() ? fs::path() : run.directory / "answers" / kept);
+    entry.score = score_of_answers(installed, entry.identity.row, entry.identity.answers,
+                                   kept.empty() ? kept : run.directory / "answers" / kept);
   }
   entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
   return entry;
