@@ -210,8 +210,9 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
   const auto played = [](const PlayedCell& cell) { return cell.failed.empty(); };
   if (entry.cells.size() == cells.size() && std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
     const fs::path kept = answers_file(entry.identity).filename();
-    entry.score = score_of_answers(installed, entry.identity.row, entry.identity.answers,
-                                   kept.empty() ? kept : run.directory / "answers" / kept);
+    const fs::path file = kept.empty() ? kept : run.directory / "answers" / kept;
+    if (file.empty() || fs::exists(file))  // else there is a reason already
+      entry.score = score_of_answers(installed, entry.identity.row, entry.identity.answers, file);
   }
   entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
   return entry;

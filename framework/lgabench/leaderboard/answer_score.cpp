@@ -15,6 +15,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/abstraction/scene_score.hpp>
 #include <lgabench/abstraction/select_features.hpp>
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
 
 namespace lgabench::leaderboard {
@@ -106,6 +107,8 @@ Json scored(const Installed& installed, const std::string& asked, Answerer answe
 Json score_of_answers(const Installed& installed, const Competitor& row, const AnswerSource& answers,
                       const fs::path& file) {
   if (row.is_reference() || row.id != "lga") return nullptr;
+  if (!file.empty() && sha256_file(file) != file.stem())
+    throw InputError(file.string() + ": does not have the bytes that its name says");
   return scored(installed, row.options.value("meaning", "flat"), {answers, file});
 }
 
