@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include <lgabench/abstraction/named.hpp>
 #include <tabletop/alike.hpp>
 #include <tabletop/content.hpp>
 #include <tabletop/sampler.hpp>
@@ -103,6 +104,33 @@ TEST(MeantScenes, InDrawnOnesNothingButTheWordsTellsTheTarget) {
       for (const Features& one : all) EXPECT_EQ(shared(one, all), shared(all.front(), all)) << id << " " << i;
     }
   }
+}
+
+// Expected share of scenes in which any of the objects that the command's names keep is the target.
+double named_tells(const std::string& family, int scenes) {
+  double tells = 0;
+  const std::vector<std::string> ids = scenarios_of("drawn_2026_" + family);
+  for (const std::string& id : ids) {
+    const Scenario scenario = load_scenario(id);
+    const Meaning named = select_named(scenario.command(0), scenario.space).target;
+    for (int i = 0; i < scenes; ++i) {
+      const Scene scene = sample_scene(scenario, request("test"), i);
+      int all = 0, kept = 0;
+      for (const SceneObject& object : scene.objects)
+        if (object.role != role::goal) ++all, kept += named.belongs(object.object_type, object.texture);
+      const bool right = kept == 0 || named.belongs(target_of(scene).object_type, target_of(scene).texture);
+      if (right) tells += 1. / (kept == 0 ? all : kept);
+    }
+  }
+  return tells / (scenes * static_cast<double>(ids.size()));
+}
+
+TEST(MeantScenes, InDrawnOnesNamesTellTheTargetWhereTypeAndTextureAreNamedAlone) {
+  EXPECT_GT(named_tells("lookup", 5), .75) << "the control";
+  for (const char* family : {"category", "negation", "relation", "compound"})
+    EXPECT_LT(named_tells(family, 5), .33) << family;
+  for (const char* family : {"colour", "union", "superlative"})
+    EXPECT_LT(named_tells(family, 5), .6) << family << ": one of two of the type that is named";
 }
 
 TEST(MeantScenes, OfColoursHoldTheTargetsTypeInAnotherTextureAndItsTextureOnAnotherType) {
