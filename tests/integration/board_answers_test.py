@@ -8,6 +8,7 @@ import re
 import shlex
 import unittest
 
+from answers_test import SECRET, Server
 from case import BUILD
 from leaderboard_test import META, SUITE, Board
 
@@ -128,6 +129,26 @@ class AnswersAlone(Board):
         self.assertIn(f"{kept.name} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
         self.assertIn("does not have the bytes that its name says",
                       self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr)
+
+    def test_a_servers_replies_are_scored_with_their_price(self):
+        self.take_run()
+        server = Server({"heart", "red", "letter A"})
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{server.server_port}/v1", OPENAI_API_KEY=SECRET)
+        self.call("select", "--suite", "tiny", "--answers", "openai", "--model", "made-up-3", "--cassette", "tape.jsonl")
+        asked = len(server.asked)
+        self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga", "--answers", "cassette:tape.jsonl",
+                  "--no-reference", "--out", "run/tape")
+        place = self.dir / "board" / self.leaderboard("add", "run/tape", "--entry", "made_up_entry.json").stdout.split()[1]
+        score = json.loads((place / "entry.json").read_text())["score"]
+        self.assertEqual((score["asked"], score["questions"], score["tokens"]), ("flat", 224, 9 * 224))
+        self.assertIn("made-up-3", score["model"])
+        self.assertIn("letter T", score["wrong"]["letter"]["missed"])
+        self.assertIn("agrees", self.leaderboard("verify", "--by", "B. Reader").stdout)
+        said = self.leaderboard("verify", "--fresh", "--by", "B. Reader").stderr
+        self.assertIn("nobody is asked about other commands (docs/language-models.md)", said)
+        self.assertEqual(len(server.asked), asked)
 
     def test_a_copy_of_the_truth_is_taken_and_ranked_in_no_track(self):
         self.take_run()
