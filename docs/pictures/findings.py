@@ -8,7 +8,7 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).parent
-WIDTH, ROW, LABEL, BAR = 250, 18, 110, 100  # pixels: a column of a table
+WIDTH, ROW, LABEL, BAR = 272, 18, 132, 100  # pixels: a column of a table
 METHOD, REFERENCE = "#0b5cad", "#87919c"
 
 # figure -> (label, start of the heading of the table's section, start of its row, column) of each bar; references are grey.

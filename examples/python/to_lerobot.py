@@ -1,17 +1,23 @@
-"""Demonstrations of `lgabench demos` as a dataset of LeRobot's, by its own writer (lerobot 0.4).
+"""Demonstrations of `lgabench demos` as a dataset of LeRobot's, by its own writer, and scenes for LeRobot's own rollout (lerobot 0.4).
 
     lgabench demos heart --layout cells --n 50 --out heart.hdf5
     python to_lerobot.py heart.hdf5 heart_lerobot
 
 A frame holds the picture, an action scaled to [-1, 1] as the Gymnasium environment takes it, and the command as its task. LeRobot
-expects a state, of two numbers at least; a scene has none that a policy sees, so it is 0.
+expects a state, of two numbers at least; a scene has none that a policy sees, so it is 0. environments() makes what lerobot's
+rollout() plays.
 """
+import functools
 import sys
 
+import gymnasium
 import numpy
 from lerobot.datasets.lerobot_dataset import LeRobotDataset
 
+import lgabench  # registers its ids
 from lgabench.data import load_demonstrations
+
+STATE = numpy.zeros(2, numpy.float32)
 
 
 def convert(file, folder):
@@ -27,11 +33,32 @@ def convert(file, folder):
     for one in demonstrations:
         for step in one.steps:
             dataset.add_frame({"observation.images.rgb": step.observation.rgb,
-                               "observation.state": numpy.zeros(2, numpy.float32),
+                               "observation.state": STATE,
                                "action": space.from_metres(step.label), "task": one.instruction.utterance})
         dataset.save_episode()
     dataset.finalize()
     return dataset
+
+
+class ForLeRobot(gymnasium.ObservationWrapper):
+    """Observations under LeRobot's names, and the attributes that it asks an environment for."""
+    _max_episode_steps = 1
+
+    def __init__(self, id, **settings):
+        super().__init__(gymnasium.make(id, **settings))
+        self.observation_space = gymnasium.spaces.Dict({"pixels": self.env.observation_space["rgb"],
+                                                        "agent_pos": gymnasium.spaces.Box(0, 0, STATE.shape)})
+
+    task = task_description = property(lambda self: self.unwrapped.task_description)
+
+    def observation(self, seen):
+        return {"pixels": seen["rgb"], "agent_pos": STATE}
+
+
+def environments(id, count, **settings):
+    """Of lerobot's rollout(), which counts a success only where an episode's end and the next one's begin are one step."""
+    return gymnasium.vector.SyncVectorEnv([functools.partial(ForLeRobot, id, **settings)] * count,
+                                          autoreset_mode=gymnasium.vector.AutoresetMode.SAME_STEP)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,13 @@
-"""robomimic's behaviour cloning on demonstrations of `lgabench demos` (robomimic 0.3).
+"""robomimic's behaviour cloning on demonstrations of `lgabench demos` (robomimic 0.3), and what it is worth on a run's test scenes.
 
     lgabench demos heart --layout cells --n 50 --out heart.hdf5
-    python to_robomimic.py heart.hdf5 heart_scaled.hdf5 trained
+    python to_robomimic.py heart.hdf5 trained            # from the picture
+    python to_robomimic.py heart.hdf5 trained masked     # the same, all painted out but what the command means
 
-robomimic reads the file as it is, but for the actions: its network ends in tanh, so a copy has them scaled to [-1, 1]. An episode is
-one action, hence sequences of 1; nothing is rolled out, as lgabench.evaluate() does that.
+robomimic reads the file as it is, but for two things: its network ends in tanh, so a copy has actions scaled to [-1, 1]; and there the
+pictures are half as high and wide, for a processor's sake. An episode is one action, hence sequences of 1.
 """
+import pathlib
 import shutil
 import sys
 
@@ -13,28 +15,51 @@ import h5py
 import torch
 from robomimic.config import config_factory
 from robomimic.scripts.train import train
+from robomimic.utils import file_utils, obs_utils
 
+import lgabench
 from lgabench.data import load_demonstrations
+from lgabench_method import goal_mask
+
+TABLE = 196, 194, 190
 
 
-def scale(file, to):
-    """A copy whose actions are within [-1, 1]."""
-    space = load_demonstrations(file).action_space
+def shown(observation, selection):
+    """What the network sees; with a Selection, of what it keeps alone."""
+    rgb = observation.rgb.copy()
+    if selection is not None:
+        rgb[goal_mask(observation, selection) == 0] = TABLE
+    return rgb[::2, ::2]
+
+
+def true_selections(scenario):
+    return {words: scenario.truth(number) for number, words in enumerate(scenario.commands)}
+
+
+def prepare(demonstrations, file, to, selections):
+    """A copy whose actions are within [-1, 1], and whose pictures are those that the network sees."""
     shutil.copyfile(file, to)
     with h5py.File(to, "r+") as copy:
-        for name in copy["data"]:
-            actions = copy[f"data/{name}/actions"]
-            actions[...] = space.from_metres(actions[()])
+        for number, one in enumerate(demonstrations):
+            demo = copy[f"data/demo_{number}"]
+            demo["actions"][...] = demonstrations.action_space.from_metres(demo["actions"][()])
+            selection = selections.get(one.instruction.utterance)
+            del demo["obs/rgb"], demo["next_obs/rgb"]
+            demo["obs/rgb"] = demo["next_obs/rgb"] = [shown(step.observation, selection) for step in one.steps]
 
 
-def clone(file, folder, epochs=100):
+def clone(file, folder, epochs=200):
+    """Trains, and returns the checkpoint's file."""
+    folder = pathlib.Path(folder).resolve()  # a relative one would lie among robomimic's own files
     config = config_factory("bc")
     with config.values_unlocked():
-        config.train.data, config.train.output_dir, config.train.num_epochs = file, folder, epochs
+        config.train.data, config.train.output_dir, config.train.num_epochs = file, str(folder), epochs
         config.train.seq_length = config.train.frame_stack = 1
+        config.train.batch_size = 10  # a batch that the data do not fill is dropped
         config.train.num_data_workers = 0
         config.experiment.name = "lgabench"
         config.experiment.rollout.enabled = False
+        config.experiment.save.every_n_epochs = epochs
         config.experiment.epoch_every_n_steps = None  # a pass over the data
         config.observation.modalities.obs.low_dim = []
         config.observation.modalities.obs.rgb = ["rgb"]
@@ -42,8 +67,28 @@ def clone(file, folder, epochs=100):
         config.observation.encoder.rgb.core_kwargs.pool_class = "SpatialSoftmax"
     config.lock()
     train(config, device=torch.device("cuda" if torch.cuda.is_available() else "cpu"))
+    return str(next(folder.rglob(f"model_epoch_{epochs}.pth")))
+
+
+def play(checkpoint, demonstrations, selections, episodes=100):
+    """Success on test scenes of the demonstrations' scenario."""
+    policy, _ = file_utils.policy_from_checkpoint(ckpt_path=checkpoint)
+
+    def act(observation, utterance):
+        picture = shown(observation, selections.get(utterance))
+        policy.start_episode()
+        return demonstrations.action_space.to_metres(policy({"rgb": obs_utils.process_obs(picture, obs_modality="rgb")}))
+
+    return lgabench.evaluate(act, demonstrations.scenario, episodes=episodes, layout=demonstrations.layout)
+
+
+def main(file, folder, inputs="picture", epochs=200):
+    demonstrations = load_demonstrations(file)
+    selections = true_selections(lgabench.Scenario(demonstrations.scenario)) if inputs == "masked" else {}
+    seen = str(pathlib.Path(file).with_suffix(f".{inputs}.hdf5"))
+    prepare(demonstrations, file, seen, selections)
+    return play(clone(seen, folder, epochs), demonstrations, selections)
 
 
 if __name__ == "__main__":
-    scale(*sys.argv[1:3])
-    clone(*sys.argv[2:4])
+    print(main(*sys.argv[1:4]))

@@ -107,13 +107,21 @@ def services(kind: Callable[[], Method], scenario: Scenario = "heart", *, seed: 
 
 def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int = 10, episodes: int = 20, *, engine: str = "mujoco",
             seed: int = 0, **options: Any) -> lgabench.Result:
-    """Calls a method as a cell does (select, learn, act) on `count` demonstrations, and plays the first test scenes."""
+    """Calls a method as a cell does (select, revise, learn, act) on `count` demonstrations, and plays the first test scenes."""
     space, method = as_scenario(scenario), kind()
     lent = services(kind, space, seed=seed, **options)
-    selections = {words: method.select(space.command(index), space.space, lent) for index, words in enumerate(space.commands)}
-    shown = [Demonstration(Instruction(one.instruction.utterance, selections[one.instruction.utterance]), one.steps)
-             for one in demonstrations(space, count, engine=engine, seed=seed)]
-    policy = method.learn(shown, lent)
+    commands = {words: space.command(index) for index, words in enumerate(space.commands)}
+    selections = {words: method.select(command, space.space, lent) for words, command in commands.items()}
+    episodes_shown = demonstrations(space, count, engine=engine, seed=seed)
+
+    def shown() -> list[Demonstration]:
+        return [Demonstration(Instruction(one.instruction.utterance, selections[one.instruction.utterance]), one.steps)
+                for one in episodes_shown]
+
+    if revise := getattr(method, "revise", None):
+        lent.shows_truth = True
+        selections = {words: revise(command, selections[words], shown(), lent) for words, command in commands.items()}
+    policy = method.learn(shown(), lent)
     if not os.listdir(lent.files):
         os.rmdir(lent.files)
     return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), space, episodes,

@@ -232,6 +232,60 @@ class StudySmoke(InBrowser):
         self.assertEqual(tiles(), chosen)
         self.assertEqual(len([box for box in page.boxes() if box.is_selected()]), chosen)
 
+    def test_a_second_kind_and_a_rule(self):
+        words = [{"scenario": "words_relation_cutlery_nearest_to_plate"}]
+        self.start(**dict(SMALL, meanings=True, sets=[words]))
+        page = Browser(self).open(self.server.address)
+        page.agree()
+        page.step()
+        page.step()
+
+        def pick(select, text):
+            page.driver.find_element(By.XPATH, f"//select[@id='{select}']//option[.='{text}']").click()
+
+        def chosen():
+            return [box.get_attribute("value") for box in page.boxes() if box.is_selected()]
+
+        def choose_first(at):
+            lists = page.driver.find_elements(By.XPATH, "//section[@aria-label='Object types' or @aria-label='Colors']")
+            for box in (one.find_element(By.CSS_SELECTOR, "input[type=checkbox]") for one in lists[at:at + 2]):
+                page.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", box)
+                box.click()
+
+        seen = {}
+        while not page.head().startswith("Almost"):
+            page.click("Start").see("Submit")
+            filled = bool(chosen())
+            if not filled:
+                choose_first(0)
+                page.see("Chosen: 1 object type, 1 color").click("Add another kind of object")
+                page.see("Kind 2").see("in each part")
+                choose_first(2)
+                pick("which", "the one that comes first in this order …")
+                page.see("in each part")
+                pick("next", page.boxes()[0].get_attribute("value"))
+                page.see("After these")
+                pick("which", "the one left of …")
+                page.see("Of which object?").see("in each part")
+                choose_first(4)
+                page.see("or 1 object type, 1 color; the one left of (1 object type, 1 color)")
+            page.shot(f"meaning-{'filled' if filled else 'empty'}-{len(seen)}")
+            self.assertEqual(page.driver.execute_script(NAMELESS), [])
+            seen[filled] = page.text()
+            head = page.head()
+            page.click("Submit")
+            page.until(lambda: page.head() != head, "the next page")
+            if page.head() == "The first part is done":
+                page.click("Send").see("Start")
+        self.assertIn("the one nearest to", seen[True])
+        self.assertEqual(page.complaints(), [])
+        page.take_part()
+        self.check_whole(trials=2)
+        answer, = json.loads((self.dir / "data/participants/p01.json").read_text())["answers"]
+        target = answer["specified"]["selection"]["target"]
+        self.assertEqual((len(target["sets"]), target["which"]["rule"]), (2, "left_of"))
+        self.assertEqual(answer["edited"]["selection"], answer["edited"]["proposal"])
+
     def test_who_declines_leaves_nothing(self):
         self.start()
         page = Browser(self).open(self.server.address)

@@ -2,6 +2,7 @@
 import json
 import os
 import re
+import shutil
 import signal
 import socket
 import stat
@@ -321,6 +322,39 @@ class StudyRehearsal(StudyCase):
             self.assertTrue(file.exists())
         self.call("study", "check", "study", "--pin")
         return self.call("study", "serve", "study", "--out", "data", "--port", "0", expect=2).stderr
+
+    def test_people_may_say_several_kinds_and_which_of_several_is_meant(self):
+        near, either, first = "words_relation_cutlery_nearest_to_plate", "words_union_spoon_or_wooden_fork", "words_superlative_rainbow_order_mug"
+        words = dict(SMALL, sets=[[{"scenario": name} for name in (near, either, first)]])
+        self.new(pin=False, meanings=True, **words)
+        self.call("study", "rehearse", "study/protocol.json", "--out", "data", "--people", "2")
+        self.assertEqual(len(self.participants()), 2)
+        for name in self.participants():
+            answers = {a["scenario"]: a for a in json.loads((self.dir / "data/participants" / name).read_text())["answers"]}
+            for way in "specified", "edited":
+                said = {scenario: answer[way]["selection"]["target"] for scenario, answer in answers.items()}
+                self.assertEqual(said[near]["which"]["rule"], "nearest_to")
+                self.assertGreater(len(said[either]["sets"]), 1)
+                self.assertGreater(len(said[first]["which"]["order"]), 2)
+            self.assertEqual(answers[near]["edited"]["proposal"]["target"]["which"]["rule"], "nearest_to")
+        self.call("study", "report", "data")
+        self.assertEqual(json.loads((self.dir / "data/results.json").read_text())["trials"]["clicks_disagree"], 0)
+        self.call("run", "words", "--scenarios", near, "--methods", "human", "--humans", "data/participants", "--rehearsal", "--demos", "5",
+                  "--seeds", "0", "--episodes", "2", "--no-reference", "--out", "out")
+        selected = [file.read_text() for file in (self.dir / "out").glob("cells/*/selection.json")]
+        self.assertEqual(['"nearest_to"' in text for text in selected], [True, True])  # a cell for each participant
+        self.assert_matches_schemas("out")
+
+        shutil.rmtree(self.dir / "study")
+        self.new(pin=False, **words)  # without: the paper's lists
+        person = Person(Server(self, "paper", "--rehearsal"))
+        person.say("familiarised")
+        person.say("example_seen")
+        person.say("start")
+        person.say("shown")
+        status, _, answer = person.server.ask("POST", f"/p/{person.id}/events", {"events": [dict(
+            key="k", page=person.page, page_ms=200, kind="meant", target={"sets": [{"object_types": [], "textures": []}]})]})
+        self.assertEqual(status, 400, answer)
 
     def test_a_crossover_of_eighteen(self):
         self.new("crossover", pin=False)

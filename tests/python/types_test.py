@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import lgabench
-from lgabench_method import testing
+from lgabench_method import Selection, testing
 
 SOURCE = pathlib.Path(__file__).parents[2]
 METHOD = '''
@@ -53,6 +53,18 @@ class Testing(unittest.TestCase):
         self.assertEqual(result.episodes, 20)
         self.assertGreater(result.success, .3)  # a constant has .1
         self.assertLess(testing.try_out(nearest(), "heart", 10, 20, first=9).success, result.success)
+
+    def test_what_it_revises_is_what_it_learns_and_acts_on(self):
+        class Revises(nearest()):
+            def select(self, command, space, services):
+                return Selection()
+
+            def revise(self, command, selected, demonstrations, services):
+                assert services.shows_truth and len(demonstrations) == 10 and not selected.target.object_types
+                return super().select(command, self.space, services)
+
+        Revises.space = lgabench.Scenario("heart").space
+        self.assertEqual(testing.try_out(Revises, "heart", 10, 20), testing.try_out(nearest(), "heart", 10, 20))
 
     def test_what_it_is_lent_is_what_a_cell_lends(self):
         services = testing.services(nearest(), "heart", seed=3, first=1)

@@ -13,6 +13,13 @@ from scenes_test import FULL
 SOURCE = pathlib.Path(__file__).parents[2]
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 DEPENDENCIES = SOURCE / ".deps/python"
+# python -m lgabench with the words behind the first, which is the system's root.
+IN_A_SYSTEM_OF_ITS_OWN = """
+test "$(id -u)" = 0 || user="--user --map-root-user"
+exec unshare $user --mount --pid --fork sh -c '
+  mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" &&
+  root=$0 && exec env HOME=/tmp LGABENCH_CACHE=/tmp/cache /usr/sbin/chroot "$root" /v/bin/python -m lgabench "$@"' "$0" "$@"
+"""
 METHOD = '''
 import lgabench, numpy
 from lgabench_method import Needs, Selection
@@ -55,8 +62,8 @@ class Wheel(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr[-3000:])
         return done.stdout
 
-    def results(self, run):
-        return {f"{cell.name}/{name}": (cell / name).read_bytes() for cell in (self.dir / run / "cells").iterdir()
+    def results(self, run, of=None):
+        return {f"{cell.name}/{name}": (cell / name).read_bytes() for cell in ((of or self.dir) / run / "cells").iterdir()
                 for name in ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")}
 
     def test_smoke_has_the_bytes_of_the_build_tree(self):
@@ -65,6 +72,39 @@ class Wheel(unittest.TestCase):
         self.python(*smoke, "tree", program=[BUILD / "bin/lgabench"])
         self.assertEqual(self.results("wheel"), self.results("tree"))
         self.assertIn("Landlock", (self.dir / "wheel/run.json").read_text())
+        with self.subTest("where only glibc, libstdc++ and Python are"):
+            root = self.bare_system()
+            self.assertEqual([file for file in root.rglob("libX11*") if root / "v" not in file.parents], [])
+            self.python(root, *smoke, "/bare", program=["sh", "-c", IN_A_SYSTEM_OF_ITS_OWN])
+            self.assertEqual(self.results("bare", root), self.results("tree"))
+            self.assertIn("Landlock", (root / "bare/run.json").read_text())
+
+    def bare_system(self):
+        """A root directory with the virtual environment, this Python, and what Python itself loads."""
+        root = self.dir / "root"
+        for name in "proc", "dev", "tmp", "v":
+            (root / name).mkdir(parents=True)
+        version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+        standard = pathlib.Path(os.__file__).parent
+        shutil.copytree(standard, root / f"usr/lib/{version}",
+                        ignore=shutil.ignore_patterns("test", "dist-packages", "__pycache__", "_tkinter*"))
+        program = pathlib.Path(sys.executable).resolve()
+        (root / "usr/bin").mkdir()
+        shutil.copy(program, root / f"usr/bin/{version}")
+        shutil.copytree(self.site, root / f"v/lib/{version}/site-packages", symlinks=True)
+        (root / "v/bin").mkdir()
+        (root / "v/bin/python").symlink_to(f"/usr/bin/{version}")
+        (root / "v/pyvenv.cfg").write_text("home = /usr/bin\ninclude-system-site-packages = false\n")
+        glibc = [file for file in pathlib.Path("/lib/x86_64-linux-gnu").iterdir()
+                 if re.fullmatch(r"lib(c|m|dl|rt|pthread|util|resolv|anl|nss_files)\.so\.\d", file.name)]
+        cxx = subprocess.run(["g++", "-print-file-name=libstdc++.so.6"], capture_output=True, text=True, check=True).stdout.strip()
+        loaded = {file for path in (program, cxx, *(root / f"usr/lib/{version}").glob("lib-dynload/*.so"))
+                  for file in re.findall(r"(/\S+) \(", subprocess.run(["ldd", path], capture_output=True, text=True).stdout)}
+        for file in loaded | {cxx, *map(str, glibc)}:
+            to = root / file[1:]
+            to.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, to)
+        return root
 
     def test_commands_that_are_printed_begin_as_a_shell_finds_the_program(self):
         script = self.dir / "v/bin/lgabench"

@@ -156,6 +156,11 @@ std::vector<bool> RecordedLanguageModel::answer(const Command& command, const Fe
   return answers;
 }
 
+bool RecordedLanguageModel::has_meaning(const Command& command) const {
+  const RecordedAnswer* recorded = find(command.utterance);
+  return recorded && recorded->structured;
+}
+
 Meaning RecordedLanguageModel::mean(const Command& command, const FeatureSpace&) {
   const RecordedAnswer& recorded = expect(command.utterance);
   if (!recorded.structured)

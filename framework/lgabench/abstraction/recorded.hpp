@@ -50,6 +50,8 @@ class RecordedLanguageModel : public LanguageModel {
 
   /// Whether anything is recorded for the command.
   bool knows(const Command& command) const { return find(command.utterance) != nullptr; }
+  /// Whether what it means is recorded, which mean() returns.
+  bool has_meaning(const Command& command) const;
   /// The scenarios, or the commands, that the source answers in this space.
   std::vector<std::string> known() const;
 

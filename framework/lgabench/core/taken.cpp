@@ -34,10 +34,12 @@ const Pixel& nearest_to(Vec2 point, const std::vector<Pixel>& pixels) {
 }  // namespace
 
 std::optional<std::uint8_t> taken(const Demonstration& demonstration, const ActionSpace& actions) {
-  const auto& [seen, label] = demonstration.steps.at(0);
-  const std::vector<Pixel> pixels = takeable(seen);
+  const Step& first = demonstration.steps.at(0);
+  const std::vector<Pixel> pixels = takeable(first.observation);
   if (pixels.empty() || actions.places.empty()) return std::nullopt;
-  const auto place = [&](std::size_t i) { return in_picture(actions, actions.places[i], label, seen.size); };
+  const auto place = [&](std::size_t i) {
+    return in_picture(actions, actions.places[i], first.label, first.observation.size);
+  };
   const Vec2 from = place(0);
   const Pixel& nearest = nearest_to(from, pixels);
   if (norm(nearest.middle - from) <= on_it || actions.places.size() < 2) return nearest.id;

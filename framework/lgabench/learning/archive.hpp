@@ -28,6 +28,13 @@ class Archive {
   std::enable_if_t<std::is_trivially_copyable_v<T>> operator()(T& value) {
     move(&value, sizeof value);
   }
+  /// One byte. @throws InputError for another than 0 or 1, which no bool may hold.
+  void operator()(bool& value) {
+    std::uint8_t byte = value ? 1 : 0;
+    (*this)(byte);
+    if (byte > 1) fail();
+    value = byte == 1;
+  }
   /// Their number, then each.
   template <class T>
   void operator()(std::vector<T>& values) {

@@ -48,11 +48,15 @@ class SeenInputs {
 
 // What a restored policy cannot know from its options.
 struct SavedInputs {
+  static constexpr int longest_side = 4096;  // of a picture, in pixels
+
   PictureSize native{};
   FeatureSpace space{};
 
   void learned(Archive& archive) {
     archive(native);
+    for (const int side : {native.rows, native.columns})
+      if (side < 1 || side > longest_side) Archive::fail();
     archive(space.id);
     archive(space.object_types);
     archive(space.textures);

@@ -21,8 +21,14 @@ std::string words(const JsonReader& reader, const std::string& member) {
   return text;
 }
 
+// With `meanings` what the model said that the command means, where it was asked; else its yes and no of each feature.
+Selection proposal_of(const Item& item, RecordedLanguageModel& lm, bool meanings) {
+  return meanings && lm.has_meaning(item.command) ? select_meaning(item.command, item.space, lm)
+                                                  : select_features(item.command, item.space, lm);
+}
+
 // A scenario's one command, with the proposal that LGA-HILL makes in a run.
-Item scenario_item(const JsonReader& reader) {
+Item scenario_item(const JsonReader& reader, bool meanings) {
   reader.only({"scenario", "asked_as", "hint"});
   Item item;
   item.scenario = reader.at("scenario").string();
@@ -32,15 +38,15 @@ Item scenario_item(const JsonReader& reader) {
   item.space = scenario.space;
   item.truth = scenario.commands.front().truth;
   RecordedLanguageModel lm(scenario, recorded_source(scenario, "recorded", true));
-  item.proposal = select_features(item.command, item.space, lm);
+  item.proposal = proposal_of(item, lm, meanings);
   item.proposed_by = lm.model();
   item.asked_as = reader.has("asked_as") ? words(reader, "asked_as") : item.command.utterance;
   if (reader.has("hint")) item.hint = reader.at("hint").string();
   return item;
 }
 
-Item practice_item(const JsonReader& reader) {
-  if (reader.has("scenario")) return scenario_item(reader);
+Item practice_item(const JsonReader& reader, bool meanings) {
+  if (reader.has("scenario")) return scenario_item(reader, meanings);
   reader.only({"asked_as", "hint", "task", "feature_space", "proposal", "proposed_by"});
   Item item;
   item.asked_as = words(reader, "asked_as");
@@ -52,14 +58,16 @@ Item practice_item(const JsonReader& reader) {
   item.command = {item.asked_as, task.id, task.second};
   item.space = load_feature_space(reader.at("feature_space").string());
   item.proposal = read_distribution(reader.at("proposal"), item.space, task.second);
+  if (!meanings && !item.proposal.target.is_product())
+    reader.at("proposal").fail("one set, or \"meanings\": true in the protocol");
   item.proposed_by = words(reader, "proposed_by");
   if (reader.has("hint")) item.hint = reader.at("hint").string();
   return item;
 }
 
-std::vector<Item> items(const JsonReader& reader) {
+std::vector<Item> items(const JsonReader& reader, bool meanings) {
   std::vector<Item> all;
-  for (const JsonReader& one : reader.elements()) all.push_back(scenario_item(one));
+  for (const JsonReader& one : reader.elements()) all.push_back(scenario_item(one, meanings));
   if (all.size() > most_items) reader.fail(fmt::format("at most {} commands", most_items));
   return all;
 }
@@ -79,21 +87,22 @@ void expect_distinct(const Protocol& protocol, const JsonReader& reader) {
 }
 
 void read_design(const JsonReader& reader, Protocol& protocol) {
-  for (const JsonReader& set : reader.at("sets").elements()) protocol.sets.push_back(items(set));
+  for (const JsonReader& set : reader.at("sets").elements()) protocol.sets.push_back(items(set, protocol.meanings));
   if (protocol.sets.empty() || protocol.sets.size() > 2) reader.at("sets").fail("one set, or two for a crossover");
   for (const auto& set : protocol.sets)
     if (set.empty()) reader.at("sets").fail("commands in every set");
   // A Williams square of an even number is balanced for what comes before what.
   if (protocol.crossover() && (protocol.sets[0].size() != protocol.sets[1].size() || protocol.sets[0].size() % 2 != 0))
     reader.at("sets").fail("two sets of one even size");
-  if (reader.has("spares")) protocol.spares = items(reader.at("spares"));
+  if (reader.has("spares")) protocol.spares = items(reader.at("spares"), protocol.meanings);
   expect_distinct(protocol, reader);
-  protocol.practice = practice_item(reader.at("practice"));
+  protocol.practice = practice_item(reader.at("practice"), protocol.meanings);
   const JsonReader example = reader.at("example");
   example.only({"command", "feature_space", "answer"});
   protocol.example_command = words(example, "command");
   protocol.example_space = load_feature_space(example.at("feature_space").string());
   protocol.example = read_distribution(example.at("answer"), protocol.example_space, std::nullopt);
+  if (!protocol.example.target.is_product()) example.at("answer").fail("one set");
 }
 
 void read_rules(const JsonReader& reader, Protocol& protocol) {
@@ -161,7 +170,7 @@ Protocol read_protocol(const fs::path& file) {
   protocol.json = parse_json(protocol.bytes, file.string());
   const JsonReader reader(protocol.json, file.string());
   reader.only({"study", "title", "note", "researcher", "license", "consent", "seed", "planned_people", "minutes",
-               "instruction", "sets", "spares", "practice", "example", "exclusions", "questionnaire"});
+               "meanings", "instruction", "sets", "spares", "practice", "example", "exclusions", "questionnaire"});
   protocol.id = words(reader, "study");
   protocol.title = words(reader, "title");
   const JsonReader researcher = reader.at("researcher");
@@ -173,6 +182,7 @@ Protocol read_protocol(const fs::path& file) {
   protocol.seed = static_cast<std::uint64_t>(reader.at("seed").integer(0, 1LL << 53));
   protocol.planned = static_cast<int>(reader.at("planned_people").integer(1, 100000));
   protocol.minutes = static_cast<int>(reader.at("minutes").integer(1, 600));
+  if (reader.has("meanings")) protocol.meanings = reader.at("meanings").boolean();
   if (reader.has("instruction")) protocol.instruction = words(reader, "instruction");
   const fs::path consent = reader.at("consent").string();
   if (consent.empty() || consent.has_parent_path()) reader.at("consent").fail("a file's name, beside the protocol");

@@ -43,6 +43,7 @@ struct Protocol {
   /// One set: both conditions ask all of it, in its order. Two: each condition asks one of them, in an order from a
   /// Williams square, and nobody sees a command twice.
   std::vector<std::vector<Item>> sets;
+  bool meanings = false;        // people may name several kinds, and which of several objects is meant
   std::string instruction;      // how to work, shown before practice and before each command; "" for none
   std::vector<Item> spares;     // take the place of a trial that was interrupted
   Item practice;                // once in each condition, before anything is timed

@@ -101,6 +101,12 @@ class Person {
     Json selection;
     for (const Json& set : trial.at("sets")) {
       const std::string role = set.at("role");
+      if (role == "target" && trial.at("meanings").get<bool>()) {
+        ms_ = from + 1000 * seconds * .6;
+        selection[role] = edits && random_.coin() ? set.at("first") : mean(right.target, trial);
+        if (selection[role] != set.at("first")) say("meant", {{"target", selection[role]}});
+        continue;
+      }
       const FeatureSet& truth = role == "target" || !right.second ? right.target.product() : *right.second;
       const bool accepts = edits && random_.coin();
       for (const char* feature : {"object_types", "textures"}) {
@@ -114,6 +120,16 @@ class Person {
     }
     ms_ = from + 1000 * seconds;
     return say("submit", {{"selection", selection}, {"longest_wait_ms", 5}});
+  }
+
+  // What is right, with a slip here and there in its lists.
+  Json mean(const Meaning& right, const Json& trial) {
+    Json meant{{"sets", Json::array()}, {"which", nullptr}};
+    for (const FeatureSet& set : right.sets)
+      meant["sets"].push_back({{"object_types", chosen(set.object_types, trial.at("object_types"))},
+                               {"textures", chosen(set.textures, trial.at("textures"))}});
+    if (right.which) meant["which"] = to_json(right).at("which");
+    return meant;
   }
 
   // The clicks from one list to the other.

@@ -18,6 +18,14 @@ const std::vector<std::string> scales{"mental", "physical", "temporal", "perform
 
 Json names_of(const FeatureSet& set) { return {{"object_types", set.object_types}, {"textures", set.textures}}; }
 
+// {"sets", "which"}, also of one product; which: null where any object will do.
+Json whole(const Meaning& meaning) {
+  Json json{{"sets", Json::array()}, {"which", nullptr}};
+  for (const FeatureSet& set : meaning.sets) json["sets"].push_back(names_of(set));
+  if (meaning.which) json["which"] = to_json(meaning).at("which");
+  return json;
+}
+
 FeatureSet& set_of(Selection& selection, const std::string& role) {
   return role == "target" || !selection.second ? selection.target.product() : *selection.second;
 }
@@ -36,7 +44,7 @@ double without(double from, double to, std::vector<std::pair<double, double>> in
 
 // Whether the page is to show something else; what is sent again must not: the page would begin its trial anew.
 bool turns_the_page(const Json& event) {
-  const auto within = {"shown", "edit", "blur", "focus", "idle", "active"};
+  const auto within = {"shown", "edit", "meant", "blur", "focus", "idle", "active"};
   const Json kind = event.value("kind", Json());
   return std::none_of(within.begin(), within.end(), [&kind](const char* one) { return kind == one; });
 }
@@ -139,6 +147,11 @@ void Session::check(const JsonReader& event, std::int64_t now_ms) const {
     only({"role", "feature", "values", "on"}, in_trial);
     return check_edit(event);
   }
+  if (kind == "meant") {
+    only({"target"}, in_trial && protocol_->meanings);
+    meant(event);
+    return;
+  }
   if (kind == "submit") {
     only({"selection", "longest_wait_ms"}, in_trial);
     if (at <= shown_ms_) event.at("page_ms").fail("a time after the command was shown");
@@ -170,11 +183,16 @@ void Session::check_edit(const JsonReader& event) const {
   event.at("on").boolean();
 }
 
+// The target after a change, which may have empty lists.
+Meaning Session::meant(const JsonReader& event) const { return read_meaning(event.at("target"), now().item->space); }
+
 Selection Session::submitted(const JsonReader& event) const {
   const Item& item = *now().item;
   const Selection selection = read_distribution(event.at("selection"), item.space, item.command.second);
   if (selection.empty() || (item.command.second && !selection.second))
     event.at("selection").fail("at least one object type and one texture in each set");
+  if (!protocol_->meanings && !selection.target.is_product())
+    event.at("selection").fail("one set, as the page asks for");
   return selection;
 }
 
@@ -199,6 +217,8 @@ void Session::apply(const Json& event) {
     shown_at_ = event.at("at").get<std::int64_t>();
   } else if (kind == "edit") {
     edit(event);
+  } else if (kind == "meant") {
+    mean(event);
   } else if (kind == "blur") {
     unfocused_.emplace_back(page_ms(event), never);
   } else if (kind == "idle") {
@@ -224,6 +244,11 @@ void Session::edit(const Json& event) {
     if (!event.at("on").get<bool>() && found != names.end()) names.erase(found);
     if (event.at("on").get<bool>() && found == names.end()) names.push_back(value);
   }
+}
+
+void Session::mean(const Json& event) {
+  ++now().edits;
+  edited_.target = meant(JsonReader(event, log_.file().string()));
 }
 
 void Session::submit(const Json& event) {
@@ -284,8 +309,10 @@ Json Session::trial_state() const {
   json["hint"] = item.hint;
   json["object_types"] = item.space.object_types;
   json["textures"] = item.space.textures;
-  json["sets"] = Json::array(
-      {{{"role", "target"}, {"phrase", "the object to handle"}, {"first", names_of(first.target.product())}}});
+  json["meanings"] = protocol_->meanings;
+  json["sets"] = Json::array({{{"role", "target"},
+                               {"phrase", "the object to handle"},
+                               {"first", protocol_->meanings ? whole(first.target) : to_json(first.target)}}});
   if (item.command.second)
     json["sets"].push_back({{"role", item.command.second->id},
                             {"phrase", item.command.second->phrase},

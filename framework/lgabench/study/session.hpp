@@ -77,10 +77,12 @@ class Session {
   void begin(const Json& event);
   void check(const JsonReader& event, std::int64_t now_ms) const;
   void check_edit(const JsonReader& event) const;
+  Meaning meant(const JsonReader& event) const;
   Selection submitted(const JsonReader& event) const;
   void apply(const Json& event);
   void submit(const Json& event);
   void edit(const Json& event);
+  void mean(const Json& event);
   void interrupt(const std::string& why);
   bool running() const;
   bool between_parts() const;  // the first part is over, and is to be rated

@@ -208,7 +208,8 @@ function ready({condition, practice, number, of, first_of_part, interrupted, pro
   show(practice ? `Practice ${number} of 2` : `Command ${number} of ${of}`, words(...notes, ...paragraphs(...texts), once('Start', 'start')));
 }
 
-function list(set, feature, names, chosen, changed) {
+// `edited(values, on)` says what was chosen, or unchosen.
+function list(feature, names, chosen, edited, changed) {
   const title = featureNames[feature], boxes = [];
   const search = make('input', {type: 'search', placeholder: 'Search', 'aria-label': `Search ${title.toLowerCase()}`,
                                 autocomplete: 'off', spellcheck: 'false'});
@@ -226,7 +227,7 @@ function list(set, feature, names, chosen, changed) {
     if (!values.length) return;
     for (const value of values) on ? chosen.add(value) : chosen.delete(value);
     for (const box of boxes) box.checked = chosen.has(box.value);
-    post('edit', {role: set.role, feature, values, on});
+    edited(values, on);
     refresh();
   }
   function refresh() {
@@ -270,32 +271,96 @@ function list(set, feature, names, chosen, changed) {
   return make('section', {'aria-label': title}, make('h2', {}, title), make('div', {class: 'tools'}, count, search, all, none, only), tiles);
 }
 
+const features = ['object_types', 'textures'];
+const several = (n, one) => `${n} ${one}${n === 1 ? '' : 's'}`;
+const opened = set => ({object_types: new Set(set.object_types), textures: new Set(set.textures)});
+const named = set => ({object_types: [...set.object_types], textures: [...set.textures]});
+const complete = set => set.object_types.size > 0 && set.textures.size > 0;
+const counted = set => `${several(set.object_types.size, 'object type')}, ${several(set.textures.size, 'color')}`;
+
+// The two lists of one set; `edited(feature, values, on)`.
+const lists = (state, set, edited, changed) => make('div', {class: 'lists'}, ...features.map(
+  feature => list(feature, state[feature], set[feature], (values, on) => edited(feature, values, on), changed)));
+
+// A set that is one product: what it is, whether it can be submitted, and its part of the page.
+function product(state, {role, phrase, first}, changed) {
+  const chosen = opened(first);
+  return {role, value: () => named(chosen), complete: () => complete(chosen), counted: () => counted(chosen),
+          element: make('fieldset', {}, state.sets.length > 1 ? make('legend', {}, phrase[0].toUpperCase() + phrase.slice(1)) : '',
+                        lists(state, chosen, (feature, values, on) => post('edit', {role, feature, values, on}), changed))};
+}
+
+const rules = {'': 'any of them', leftmost: 'the one farthest to the left', rightmost: 'the one farthest to the right',
+               left_of: 'the one left of …', right_of: 'the one right of …', nearest_to: 'the one nearest to …',
+               farthest_from: 'the one farthest from …', first_in: 'the one that comes first in this order …'};
+const withReference = ['left_of', 'right_of', 'nearest_to', 'farthest_from'];
+
+// A set that may be several kinds of objects, and say which of several on the table is meant.
+function meaning(state, {role, first}, changed) {
+  const kinds = first.sets.map(opened), which = first.which || {};
+  const of = opened(which.of || {}), order = [...(which.order || [])];
+  let rule = which.rule || '';
+  const told = () => withReference.includes(rule) ? complete(of) : rule !== 'first_in' || order.length > 0;
+  const value = () => ({sets: kinds.map(named), ...(rule && told() && {which: {
+    rule, ...(withReference.includes(rule) && {of: named(of)}), ...(rule === 'first_in' && {order: [...order]})}})});
+  const edited = () => {
+    post('meant', {target: value()});
+    changed();
+  };
+  const all = make('div'), reference = make('div');
+  const drawKinds = () => all.replaceChildren(
+    ...kinds.map((kind, i) => make('fieldset', {}, kinds.length > 1 ? make('legend', {}, `Kind ${i + 1}`) : '', lists(state, kind, edited, changed),
+      kinds.length > 1 ? make('div', {class: 'buttons'}, button(`Remove kind ${i + 1}`, () => (kinds.splice(i, 1), drawKinds(), edited()), '')) : '')),
+    make('div', {class: 'buttons'}, button('Add another kind of object', () => (kinds.push(opened({})), drawKinds(), edited()), '')));
+  const drawOrder = () => {
+    const feature = features.find(one => state[one].includes(order[0]));
+    const next = make('select', {id: 'next'}, make('option', {value: ''}, 'Choose …'),
+      ...features.filter(one => !order.length || one === feature).map(one => make('optgroup', {label: featureNames[one]},
+        ...state[one].filter(name => !order.includes(name)).map(name => make('option', {}, name)))));
+    next.addEventListener('change', () => (order.push(next.value), drawOrder(), edited(), document.getElementById('next').focus()));
+    reference.replaceChildren(
+      make('ol', {class: 'order'}, ...order.map((name, i) => make('li', {}, name, ' ',
+        button(`Remove ${name}`, () => (order.splice(i, 1), drawOrder(), edited()), '')))),
+      make('label', {for: 'next'}, order.length ? 'After these: ' : 'First: '), next);
+  };
+  const drawReference = () => rule === 'first_in' ? drawOrder()
+    : reference.replaceChildren(...(withReference.includes(rule)
+      ? [make('fieldset', {}, make('legend', {}, 'Of which object?'), lists(state, of, edited, changed))] : []));
+  const choice = make('select', {id: 'which'}, ...Object.entries(rules).map(
+    ([one, text]) => make('option', {value: one, selected: one === rule}, text)));
+  choice.addEventListener('change', () => {
+    rule = choice.value;
+    drawReference();
+    edited();
+  });
+  drawKinds();
+  drawReference();
+  return {role, value, complete: () => kinds.every(complete) && told(),
+          counted: () => kinds.map(counted).join(', or ') + (rule ? `; ${rules[rule].replace('…', `(${counted(of)})`).replace(/ in this order .*/, '')}` : ''),
+          element: make('section', {}, all, make('p', {class: 'which'},
+            make('label', {for: 'which'}, 'If several of these are on the table, the robot should take '), choice), reference)};
+}
+
 function running(state) {
-  const chosen = state.sets.map(set => ({object_types: new Set(set.first.object_types), textures: new Set(set.first.textures)}));
   const submit = button('Submit', () => {
-    const selection = {};
-    state.sets.forEach((set, i) => selection[set.role] =
-      {object_types: [...chosen[i].object_types], textures: [...chosen[i].textures]});
+    const selection = Object.fromEntries(sets.map(set => [set.role, set.value()]));
     submit.disabled = true;
     submit.textContent = 'Saving…';
     post('submit', {selection, longest_wait_ms: longestWait()});
     trial = null;
   });
-  const bar = make('p', {class: 'soft', role: 'status'});
+  const bar = make('p', {class: 'soft', role: 'status'}), sets = [];
   const changed = () => {
-    const complete = chosen.every(set => set.object_types.size && set.textures.size);
-    submit.disabled = !complete;
-    const several = (n, one) => `${n} ${one}${n === 1 ? '' : 's'}`;
-    const sizes = chosen.map(set => `${several(set.object_types.size, 'object type')}, ${several(set.textures.size, 'color')}`);
-    bar.textContent = complete ? `Chosen: ${sizes.join('; ')}`
-      : 'Choose at least one object type and one color' + (chosen.length > 1 ? ' in each part.' : '.');
+    if (sets.length < state.sets.length) return;  // the page is being made
+    const whole = sets.every(set => set.complete());
+    submit.disabled = !whole;
+    bar.textContent = whole ? `Chosen: ${sets.map(set => set.counted()).join('; ')}`
+      : 'Choose at least one object type and one color' + (sets.length > 1 || state.meanings ? ' in each part.' : '.');
   };
-  const sets = state.sets.map((set, i) => make('fieldset', {},
-    state.sets.length > 1 ? make('legend', {}, set.phrase[0].toUpperCase() + set.phrase.slice(1)) : '',
-    make('div', {class: 'lists'}, ...['object_types', 'textures'].map(
-      feature => list(set, feature, state[feature], chosen[i][feature], changed)))));
+  for (const set of state.sets) sets.push((state.meanings && set.role === 'target' ? meaning : product)(state, set, changed));
+  changed();
   show('Which objects could this command mean?', make('p', {class: 'command'}, `“${state.command}”`),
-       ...(state.hint ? [make('p', {class: 'soft'}, `(${state.hint})`)] : []), ...sets, make('div', {class: 'bar'}, submit, bar));
+       ...(state.hint ? [make('p', {class: 'soft'}, `(${state.hint})`)] : []), ...sets.map(set => set.element), make('div', {class: 'bar'}, submit, bar));
   longest = 0;
   requestAnimationFrame(() => requestAnimationFrame(() => {  // the command is painted
     trial = {lastInput: performance.now(), idle: false, away: false};
