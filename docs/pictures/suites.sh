@@ -18,6 +18,7 @@ for arm in seen unseen seen_varied; do draw q3_utensil $arm 25% continuous; done
 for arm in same_place moved crowd; do draw bring_fruit $arm 12.5%; done
 for arm in few many near; do draw fetch_ripe_fruit $arm 12.5% table fetch; done
 draw words_relation_heart_left_of_bowl test 25% continuous
+draw drawn_2026_colour_01 test 25% continuous
 draw paraphrase_heart original 25% continuous
 for arm in control {light_intensity,light_colour,texture_noise,segmentation}_4; do draw heart $arm 25% continuous perturbations; done
 for axis in sensor_noise all; do draw heart ${axis}_4 12.5% continuous perturbations; done  # noise makes large files

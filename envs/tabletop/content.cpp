@@ -69,6 +69,8 @@ void read_scenes(const JsonReader& reader, const Scenario& scenario, Content& co
     for (const char* other : {"hard", "later_letters"})
       if (reader.has(other)) reader.at(other).fail("no such member beside \"near_miss\"");
     if (content.distractors.second == 0) reader.at("near_miss").fail("\"distractors\" beside it");
+    if (content.by_meaning && reader.at("near_miss").json() != Json(true))
+      reader.at("near_miss").fail("true or false beside \"near_miss_sets\" or such a meaning");
     content.near_miss = read_near_miss(reader.at("near_miss"), scenario);
   }
   if (reader.has("later_letters")) content.later_letters = reader.at("later_letters").boolean();
@@ -86,7 +88,6 @@ std::vector<FeatureSet> read_sets(const JsonReader& reader, const FeatureSpace& 
 void read_meant(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training,
                 Content& content) {
   const Meaning& truth = scenario.commands.front().truth.target;
-  content.by_meaning = !truth.is_product() || file.has("near_miss_sets");
   if (!content.by_meaning) {
     for (const char* member : {"words", "undecided"})
       if (file.has(member)) file.at(member).fail("\"near_miss_sets\" beside it");
@@ -103,8 +104,7 @@ void read_meant(const Scenario& scenario, const JsonReader& file, const JsonRead
     if (!(command.truth.target == truth)) file.at("commands").fail("commands of one meaning");
   if (training) content.misleading = .5;
   if (!scenes) return;
-  for (const char* other :
-       {"target", "outside_all_commands", "hard", "near_miss", "members", "later_letters", "choice", "decoys"})
+  for (const char* other : {"target", "outside_all_commands", "hard", "members", "later_letters", "choice", "decoys"})
     if (scenes->has(other)) scenes->at(other).fail("no such member beside such a meaning");
   if (scenes->has("misleading")) {
     content.misleading = scenes->at("misleading").number();
@@ -138,6 +138,7 @@ std::vector<std::string> scene_members(const Task& task) {
 Content read_content(const Scenario& scenario, const JsonReader& file, const JsonReader* scenes, bool training) {
   Content content;
   if (training) content.distractors = {1, 1};
+  content.by_meaning = !scenario.commands.front().truth.target.is_product() || file.has("near_miss_sets");
   if (file.has("never_distractor"))
     content.never_distractor = read_feature_set(file.at("never_distractor"), scenario.space);
   std::vector<FeatureSet> decoys;

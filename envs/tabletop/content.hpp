@@ -22,7 +22,7 @@ struct Content : SceneContent {
   bool outside_all_commands = false;      // distractors stay out of what any command means, not the given one's alone
   bool hard = false;  // a distractor shares the target's type or its texture, and still is no target
   std::optional<common::NearMiss>
-      near_miss;  // others share the target's type or texture, and each other's: see near_misses()
+      near_miss;  // others share the target's type or texture, and each other's: near_misses(), or meant_objects()
   /// Training: of how many members of what a command means, pairs of type and texture, targets are; 0: of all. Tests:
   /// of these ("seen"), or of the others ("new"); "": of all. Which they are: see members_of().
   int members = 0;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include <common/objects.hpp>
+#include <tabletop/alike.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/raster.hpp>
 
@@ -15,6 +16,13 @@ namespace {
 
 using Rule = Which::Rule;
 constexpr double column_margin_m = .08, distance_margin_m = .10;
+
+// A second pallet would be a second goal.
+bool fits(const std::string& type, double widest_m) {
+  if (type == goal_type) return false;
+  const Vec2 size = common::object_model(type).size_m;
+  return std::max(size.x, size.y) <= widest_m + 1e-9;
+}
 
 struct Draw {
   const Scenario& scenario;
@@ -30,6 +38,10 @@ struct Draw {
     return truth.which && truth.which->of && truth.which->of->contains(one.type, one.texture);
   }
   bool belongs(const Features& one) const { return truth.belongs(one.type, one.texture); }
+  bool near_miss(const Features& one) const {
+    return std::any_of(content.near_miss_sets.begin(), content.near_miss_sets.end(),
+                       [&one](const FeatureSet& set) { return set.contains(one.type, one.texture); });
+  }
 
   // Of any of the sets, each with equal odds, one that may be; nothing if a thousand draws find none.
   std::optional<Features> of(const std::vector<FeatureSet>& sets, const std::function<bool(const Features&)>& may_be,
@@ -38,9 +50,7 @@ struct Draw {
       const FeatureSet& set = sets[random.below(static_cast<std::uint32_t>(sets.size()))];
       if (set.empty()) continue;
       const Features one{common::any_of(set.object_types, random), common::any_of(set.textures, random)};
-      if (one.type == goal_type) continue;
-      const Vec2 size = common::object_model(one.type).size_m;
-      if (std::max(size.x, size.y) <= widest_m + 1e-9 && may_be(one)) return one;
+      if (fits(one.type, widest_m) && may_be(one)) return one;
     }
     return std::nullopt;
   }
@@ -57,7 +67,8 @@ SceneObject object(const Features& features, const Role& role) {
   return {features.type, features.texture, role, {}, 0, 0};
 }
 
-std::vector<SceneObject> sample(Draw& draw, double widest_m) {
+// Nothing where no further objects share alike with these.
+std::optional<std::vector<SceneObject>> sample(Draw& draw, double widest_m) {
   const Content& content = draw.content;
   const Meaning& truth = draw.truth;
   const auto& which = truth.which;
@@ -91,6 +102,20 @@ std::vector<SceneObject> sample(Draw& draw, double widest_m) {
     return may_be_meant(one) && !draw.belongs(one) && !(content.words && content.words->belongs(one.type, one.texture));
   };
   const FeatureSet all{draw.scenario.space.object_types, draw.scenario.space.textures};
+  if (content.near_miss) {
+    constexpr int fresh = 3;
+    std::vector<Features> there, others;
+    for (const SceneObject& one : objects) there.push_back({one.object_type, one.texture});
+    for (int i = 0; i < fresh; ++i) others.push_back(draw.expect("a distractor", {all}, plain, widest_m));
+    const auto may_be = [&](const Features& one) {
+      const bool another_near_miss = which && draw.near_miss(one);  // of which a rule would have to choose
+      return plain(one) && !another_near_miss && fits(one.type, widest_m);
+    };
+    const auto alike = sharing_alike(there, others, content.distractors, may_be, draw.random);
+    if (!alike) return std::nullopt;
+    for (const Features& one : *alike) objects.push_back(object(one, role::distractor));
+    return objects;
+  }
   const auto [fewest, most] = content.distractors;
   const int count = fewest + static_cast<int>(draw.random.below(static_cast<std::uint32_t>(most - fewest + 1)));
   for (int i = 0; i < count; ++i)
@@ -180,9 +205,10 @@ std::vector<SceneObject> meant_objects(const Scenario& scenario, const Task& tas
     throw InputError(fmt::format("scenario \"{}\": expected the layout continuous, got {}", scenario.id, layout.id));
   Draw draw{scenario, content, truth, stream("meant")};
   for (int i = 0; i < draws; ++i) {
-    const std::vector<SceneObject> sampled = sample(draw, std::min(layout.widest_m, content.widest_m()));
+    const auto sampled = sample(draw, std::min(layout.widest_m, content.widest_m()));
+    if (!sampled) continue;
     for (int j = 0; j < placements; ++j) {
-      std::vector<SceneObject> objects = sampled;
+      std::vector<SceneObject> objects = *sampled;
       try {
         task.place(layout, content, objects,
                    [&](const std::string& purpose) { return stream(fmt::format("{}/{}/{}", purpose, i, j)); });

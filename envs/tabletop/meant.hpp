@@ -11,8 +11,9 @@ namespace lgabench::tabletop {
 
 /// A target of what `truth` means first; then, where a rule names one, its reference; in a share of
 /// `content.misleading` of the scenes another object that belongs (for a rule) and one of `content.near_miss_sets`;
-/// last, `content.distractors` that neither truth nor words nor `undecided` hold. All are placed, and so that
-/// grounded() finds the target alone in the picture, with a margin of .08 m for columns and .10 m for distances.
+/// last, `content.distractors` that neither truth nor words nor `undecided` hold, with `content.near_miss` such with
+/// which all share types and textures alike (alike.hpp). All are placed, and so that grounded() finds the target alone
+/// in the picture, with a margin of .08 m for columns and .10 m for distances.
 /// @throws NothingToShow where no draw is like that.
 std::vector<SceneObject> meant_objects(const Scenario& scenario, const Task& task, const Layout& layout,
                                        const Content& content, const Meaning& truth, const Streams& stream);

@@ -6,9 +6,11 @@ import hashlib
 import json
 import re
 import shlex
+import subprocess
 import unittest
 
-from case import BUILD
+from answers_test import SECRET, Server
+from case import BUILD, command_line
 from leaderboard_test import META, SUITE, Board
 
 PRESET = {"scene_seed": 77, "test_scenes": "per_seed"}
@@ -102,11 +104,53 @@ class AnswersAlone(Board):
         self.assertEqual(list(self.cells("again")), keys[1:], "the page's command plays the entry's cell")
         self.assertIn(",answers as submitted,", (self.dir / "board/leaderboard.csv").read_text())
 
+        # What the answers keep without a policy, beside what the policy makes of it.
+        score = entry["score"]
+        self.assertEqual((score["model"], score["asked"], score["questions"]), ("made-up-1", "flat", 2 * 112))
+        alone = {row["group"]: row for row in map(json.loads, self.call(
+            "select", "--suite", "tiny", "--score", "--json", "--answers", str(kept)).stdout.splitlines()) if row["asked"] == "flat"}
+        self.assertEqual(score["groups"]["all"]["exact_sets"], alone["all"]["exact_sets"])
+        self.assertIn("letter T", score["wrong"]["letter"]["missed"])
+        self.assertIn("What the answers keep, without a policy", page)
+        self.assertRegex(page, r"missed: [^<]*letter T")
+        text = (place / "entry.json").read_text()
+        now = score["groups"]["all"]["exact_scenes"]
+        better = json.loads(text)
+        better["score"]["groups"]["all"]["exact_scenes"] = now + 1
+        (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
+        refused = self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr
+        self.assertRegex(refused, r"^not verified: \S+: score of the answers, scenes exact: 0\.\d+ here, 0\.\d+ in the entry\n")
+        better["score"]["groups"]["all"]["exact_scenes"] = better["score"]["groups"]["all"]["scenes"] + 1
+        (place / "entry.json").write_text(json.dumps(better, indent=1, ensure_ascii=False) + "\n")
+        self.assertIn("/score/groups/all/exact_scenes: expected", self.leaderboard("check", expect=1).stderr)
+        (place / "entry.json").write_text(text)
+
         # The cells follow from these bytes.
         kept.write_text(kept.read_text().replace('"star"', '"moon"'))
         self.assertIn(f"{kept.name} is not there, or not what its name says", self.leaderboard("check", expect=1).stderr)
         self.assertIn("does not have the bytes that its name says",
                       self.leaderboard("verify", "--by", "B. Reader", expect=2).stderr)
+
+    def test_a_servers_replies_are_scored_with_their_price(self):
+        self.take_run()
+        server = Server({"heart", "red", "letter A"})
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        self.environment.update(OPENAI_BASE_URL=f"http://127.0.0.1:{server.server_port}/v1", OPENAI_API_KEY=SECRET)
+        self.call("select", "--suite", "tiny", "--answers", "openai", "--model", "made-up-3", "--cassette", "tape.jsonl")
+        asked = len(server.asked)
+        self.call("run", "tiny", "--preset", "abstraction", "--methods", "selected_by:lga", "--answers", "cassette:tape.jsonl",
+                  "--no-reference", "--out", "run/tape")
+        place = self.dir / "board" / self.leaderboard("add", "run/tape", "--entry", "made_up_entry.json").stdout.split()[1]
+        score = json.loads((place / "entry.json").read_text())["score"]
+        self.assertEqual((score["asked"], score["questions"], score["tokens"]), ("flat", 224, 9 * 224))
+        self.assertIn("made-up-3", score["model"])
+        self.assertIn("letter T", score["wrong"]["letter"]["missed"])
+        self.assertIn("agrees", self.leaderboard("verify", "--by", "B. Reader").stdout)
+        fresh = subprocess.run(command_line("leaderboard", "verify", "--fresh", "--by", "B. Reader", "--board", "board"),
+                               capture_output=True, text=True, env=self.environment, cwd=self.dir, timeout=300)
+        self.assertIn("nobody is asked about other commands (docs/language-models.md)", fresh.stderr)  # whether it agrees is chance
+        self.assertEqual(len(server.asked), asked)
 
     def test_a_copy_of_the_truth_is_taken_and_ranked_in_no_track(self):
         self.take_run()

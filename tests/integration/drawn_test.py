@@ -176,6 +176,16 @@ class DrawnCommands(Case):
         for file in (self.dir / "4").iterdir():
             self.assertEqual(file.read_bytes(), (self.dir / "again" / file.name).read_bytes(), file.name)
 
+    def test_the_shipped_hundred_are_those_of_their_seed(self):
+        self.call("commands", "--seed", "2026", "--out", "out")
+        drawn, shipped = json.loads((self.dir / "out/drawn_2026.json").read_text()), json.loads((SHARE / "suites/drawn.json").read_text())
+        for member in "scenarios", "groups":
+            self.assertEqual(shipped[member], drawn[member])
+        for id in drawn["scenarios"]:
+            scenario = json.loads((SHARE / f"scenarios/{id}.json").read_text())
+            self.assertEqual(scenario.pop("answers"), {"recorded": "claude_drawn"})
+            self.assertEqual(scenario, json.loads((self.dir / f"out/{id}.json").read_text()), id)
+
     def test_there_are_ten_thousand_meanings(self):
         reader = Reader()
         heads = {held for words in ("many",) for held in reader.things[words].values()}

@@ -261,6 +261,7 @@ TEST(RecordedAnswers, AreEachScenariosOwn) {
     const auto other = others.find(id);
     using Sources = std::pair<std::string, std::string>;
     const Sources otherwise = id.rfind("words_", 0) == 0        ? Sources{"claude_words", "claude_words"}
+                              : id.rfind("drawn_", 0) == 0      ? Sources{"claude_drawn", "claude_drawn"}
                               : id.rfind("paraphrase_", 0) == 0 ? Sources{"claude_paraphrases", "claude_paraphrases"}
                                                                 : Sources{"gpt4_released", "gpt4_study"};
     const Sources expected = other == others.end() ? otherwise : other->second;
@@ -317,8 +318,8 @@ TEST(RecordedAnswers, ThatAreMissingAreAnErrorAndNeverANo) {
               "vowel_with_multiple_colors");
   EXPECT_THROW(ask(scenario("x", "Bring me the moon."), "claude"), InputError);
   EXPECT_SAYS(message_of<InputError>([] { ask(scenario("heart", "Bring me the heart."), "gpt4"); }),
-              "expected recorded or one of claude, claude_clutter, claude_fetch, claude_paraphrases, claude_words, "
-              "gpt4_released, gpt4_study, got \"gpt4\"");
+              "expected recorded or one of claude, claude_clutter, claude_drawn, claude_fetch, claude_paraphrases, "
+              "claude_words, gpt4_released, gpt4_study, got \"gpt4\"");
   // Nobody was asked what to avoid when bringing a heart.
   EXPECT_THROW(ask(scenario("heart", "Bring me the heart.", "sweep"), "gpt4_released"), MethodError);
 

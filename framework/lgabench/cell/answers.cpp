@@ -1,8 +1,7 @@
 #include <lgabench/cell/answers.hpp>
 
-#include <fmt/format.h>
-
 #include <lgabench/abstraction/human.hpp>
+#include <lgabench/abstraction/nobody.hpp>
 #include <lgabench/abstraction/participant.hpp>
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/files.hpp>
@@ -46,19 +45,6 @@ class AskedByCells : public ChatLanguageModel {
   Provenance provenance() const override { return Provenance::live; }
 };
 
-// Refuses every question: nobody is asked in this run.
-class NobodyAnswers : public LanguageModel {
- public:
-  std::vector<bool> answer(const Command& command, const FeatureSpace&, const std::vector<Question>&) override {
-    throw InputError(fmt::format("the method asks a language model about \"{}\", and --answers {} has none",
-                                 command.utterance, model()));
-  }
-  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { return {}; }
-  std::string model() const override { return to_string(NoAnswers()); }
-  Provenance provenance() const override { return Provenance::none; }
-  SelectionCost cost() const override { return {}; }
-};
-
 }  // namespace
 
 Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* server,
@@ -86,7 +72,7 @@ Answers answers_for(const CellJob& job, const Scenario& scenario, ChatClient* se
     answers.lm = std::make_unique<RecordedLanguageModel>(
         scenario, recorded_source(scenario, recorded->source, cell.method.asks == "edit"));
   } else {
-    answers.lm = std::make_unique<NobodyAnswers>();
+    answers.lm = std::make_unique<Nobody>();
   }
   std::unique_ptr<HumanAnswers> human;
   if (cell.participant)

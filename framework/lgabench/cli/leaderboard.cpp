@@ -94,6 +94,10 @@ int verify(LeaderboardArguments a) {
     try {
       entry = leaderboard::read_entry(a.board, directory);
       if (!entry.withdrawn.is_null()) continue;
+      if (a.verify.fresh && !entry.score.is_null())
+        to_stderr(
+            "{}: other scenes of the same commands; nobody is asked about other commands (docs/language-models.md)\n",
+            entry.id());
       line = leaderboard::verification(a.board, entry, leaderboard::new_nonce(), catalogue, a.verify);
     } catch (const Error& e) {  // a plugin that is not here, another version, a cell that the host failed
       to_stderr("not verified: {}: {}\n", directory.string(), one_line(e.what()));

@@ -9,6 +9,7 @@
 #include <set>
 
 #include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/nobody.hpp>
 #include <lgabench/abstraction/openai_client.hpp>
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/abstraction/recorded.hpp>
@@ -42,20 +43,6 @@ struct Asked {
   FeatureSpace space;
   Command command;
   std::optional<Selection> truth;
-};
-
-// Refuses every question: of --score, only what asks nobody has a row.
-class Nobody : public LanguageModel {
- public:
-  std::vector<bool> answer(const Command&, const FeatureSpace&, const std::vector<Question>&) override { refuse(); }
-  Meaning mean(const Command&, const FeatureSpace&) override { refuse(); }
-  std::vector<Hypothesis> hypotheses(const Command&, const FeatureSpace&) override { refuse(); }
-  std::string model() const override { return "none"; }
-  Provenance provenance() const override { return Provenance::none; }
-  SelectionCost cost() const override { return {}; }
-
- private:
-  [[noreturn]] static void refuse() { throw InputError("--answers none: nobody is asked"); }
 };
 
 // Over all commands: each begins to count anew.
@@ -327,8 +314,7 @@ void add_select(CLI::App& app, int&) {
     if (arguments->score) {
       const auto with_answers = [&](const Scenario& scenario, const std::function<void(LanguageModel&)>& use) {
         std::optional<RecordedLanguageModel> recorded;
-        Nobody nobody;
-        if (arguments->answers == nobody.model()) return use(nobody);
+        if (Nobody nobody; arguments->answers == nobody.model()) return use(nobody);
         use(answerer_of(commands_of(scenario).front(), answerer.model.get(), *arguments, recorded));
       };
       return print_scores(load_suite(arguments->suite), read_truth(arguments->truth), arguments->scenes,

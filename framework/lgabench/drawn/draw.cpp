@@ -104,7 +104,7 @@ Json scenario_of(const DrawnCommand& command, const FeatureSpace& space) {
       {"feature_space", space.id},
       {"commands", {{{"utterance", command.utterance}, {"truth", {{"target", meaning_of(command.meaning, space)}}}}}},
       {"train", {{"as_method_asks", false}, {"distractors", {1, 2}}}},
-      {"tests", {{{"arm", "test"}}}},
+      {"tests", {{{"arm", "test"}, {"distractors", {2, 3}}, {"near_miss", true}}}},
       {"note", fmt::format("{}.", fmt::join(command.why, "; "))}};
   if (!command.undecided.empty()) json["undecided"] = sets_of(command.undecided, space);
   if (!command.near_misses.empty()) json["near_miss_sets"] = sets_of(command.near_misses, space);
@@ -132,7 +132,7 @@ Json suite_of(const std::string& id, const DrawRequest& request, const std::vect
       "main_arm": "test", "main_demonstrations": 5,
       "arms": {"test": "the target among others, one of which a careless reading would keep"}},
     "environment": "tabletop", "scenarios": [], "groups": {}, "layouts": [], "engines": ["mujoco"],
-    "methods": ["lga+meaning=named", "human", "gcbc_seg"],
+    "methods": ["lga+meaning=named", "human", "gcbc_seg"], "references": ["most_shared", "never_demonstrated"],
     "demonstrations": [5], "seeds": [0, 1, 2], "episodes": 30, "scene_seed": 0,
     "options": {"*": {"policy": "heat_map"}},
     "presets": {"smoke": {"methods": ["lga+meaning=named", "human"], "seeds": [0], "episodes": 10, "smoke": true}}})");

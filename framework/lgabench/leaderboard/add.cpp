@@ -13,6 +13,7 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/run_directory.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 
 namespace lgabench::leaderboard {
@@ -206,6 +207,13 @@ Entry entry_of(const RunResults& run, const Installed& installed, const Catalogu
     }
   }
   add_missing(first.method.name, missing, cells.size(), reasons);
+  const auto played = [](const PlayedCell& cell) { return cell.failed.empty(); };
+  if (entry.cells.size() == cells.size() && std::all_of(entry.cells.begin(), entry.cells.end(), played)) {
+    const fs::path kept = answers_file(entry.identity).filename();
+    const fs::path file = kept.empty() ? kept : run.directory / "answers" / kept;
+    if (file.empty() || fs::exists(file))  // else there is a reason already
+      entry.score = score_of_answers(installed, entry.identity.row, entry.identity.answers, file);
+  }
   entry.evidence.push_back(evidence_of(run, entry.identity, data, about));
   return entry;
 }

@@ -161,6 +161,7 @@ std::string entry_text(const Entry& entry) {
   Json json{{"id", entry.id()},          {"identity", to_json(entry.identity)}, {"preset", to_json(entry.setting)},
             {"about", entry.about},      {"failures", entry.failures},          {"phi", entry.phi},
             {"evidence", entry.evidence}};
+  if (!entry.score.is_null()) json["score"] = entry.score;
   if (!entry.withdrawn.is_null()) json["withdrawn"] = entry.withdrawn;
   return json.dump(1) + "\n";
 }

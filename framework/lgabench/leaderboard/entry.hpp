@@ -63,6 +63,7 @@ struct Entry {
   Json phi = Json::object();           // scenario -> lists of its commands' Selections, distinct ones
   std::vector<std::string> failures;   // what the letters from 'a' on mean
   Json evidence = Json::array();       // who computed it with what
+  Json score;                          // of its answers without a policy, score_of_answers(); null where it has none
   Json withdrawn;                      // {"when", "reason"}, or null
   Json verifications = Json::array();  // lines of verifications.jsonl
   std::set<std::string> vouched;       // hashes of those of its lines that count; see vouched.hpp

@@ -6,6 +6,7 @@
 
 #include <lgabench/abstraction/quality.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/labels.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/record/layout.hpp>
@@ -190,7 +191,7 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
   const std::string bytes = read_bounded(file);
   const Json json = parse_json(bytes, file.string());
   const JsonReader reader(json, file.string());
-  reader.only({"id", "identity", "preset", "about", "failures", "phi", "evidence", "withdrawn"});
+  reader.only({"id", "identity", "preset", "about", "failures", "phi", "score", "evidence", "withdrawn"});
   Entry entry;
   entry.identity = read_identity(reader.at("identity"));
   entry.setting = read_setting(reader.at("preset"));
@@ -206,6 +207,10 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
   entry.failures = read_failures(reader.at("failures"));
   expect_phi(reader.at("phi"), entry.setting);
   entry.phi = reader.at("phi").json();
+  if (reader.has("score")) {
+    expect_score(reader.at("score"), entry.setting);
+    entry.score = reader.at("score").json();
+  }
   expect_evidence(reader.at("evidence"));
   entry.evidence = reader.at("evidence").json();
   if (reader.has("withdrawn")) {

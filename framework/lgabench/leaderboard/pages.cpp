@@ -184,8 +184,8 @@ bool ranks_entries(const NamedTable& table) {
 
 // In the order in which a reader needs them, then by name; suites for diagnosis, without a rank, come last.
 Suites suites_of(const std::vector<Entry>& entries, const Labels& labels, const Tracks& tracks) {
-  constexpr std::array order{"q1",     "clutter", "q2",        "q3", "few_members", "many_commands",
-                             "mobile", "fetch",   "robustness"};
+  constexpr std::array order{"q1",     "clutter", "q2",    "q3",        "few_members", "many_commands",
+                             "mobile", "fetch",   "drawn", "robustness"};
   std::map<std::pair<std::ptrdiff_t, std::string>, std::vector<NamedTable>> by_place;
   for (const auto& table : tables(entries)) {
     const std::string& suite = table.front()->setting.suite;

@@ -10,6 +10,7 @@
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/harness/recompute.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 
@@ -37,6 +38,19 @@ void expect_method(const Competitor& row, const Catalogue& catalogue) {
                 canonical(row.acts->options));
   }
   expect_same("options of " + row.id, canonical(resolve_options(installed, row.options)), canonical(row.options));
+}
+
+// The score of an entry's answers follows from them alone.
+void expect_own_score(const fs::path& board, const Entry& entry, const Installed& installed) {
+  if (entry.score.is_null()) return;
+  const fs::path kept = answers_file(entry.identity);
+  const Json here =
+      score_of_answers(installed, entry.identity.row, entry.identity.answers, kept.empty() ? kept : board / kept);
+  if (here.is_null()) throw InputError("score of the answers: none here, one in the entry");
+  if (here == entry.score) return;
+  expect_same("score of the answers, scenes exact", fmt::format("{:.6f}", scenes_exact(here)),
+              fmt::format("{:.6f}", scenes_exact(entry.score)));
+  throw InputError("score of the answers: other groups, errors or price here than in the entry");
 }
 
 RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cells, const VerifyOptions& options) {
@@ -166,6 +180,7 @@ std::optional<Json> verification(const fs::path& board, const Entry& entry, cons
                                  const Catalogue& catalogue, const VerifyOptions& options) {
   Installed installed = installed_as(entry, catalogue);
   expect_method(entry.identity.row, catalogue);
+  expect_own_score(board, entry, installed);
   const std::vector<std::size_t> chosen =
       options.fresh ? fresh_cells(entry, nonce) : chosen_cells(entry, nonce, options.cells);
   if (options.fresh) installed.design.scene_seed = std::stoull(sha256(nonce).substr(0, 15), nullptr, 16);

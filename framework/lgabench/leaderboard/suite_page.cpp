@@ -9,6 +9,8 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/rounding.hpp>
 #include <lgabench/core/shell.hpp>
+#include <lgabench/leaderboard/answer_score.hpp>
+#include <lgabench/leaderboard/answers_page.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/about_suite.hpp>
@@ -133,7 +135,7 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     for (const char* head : {"where it decides", "gap closed"}) grid.heads.emplace_back(head);
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(arm);
-  for (const char* head : {"φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
+  for (const char* head : {"answers exact", "φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
     grid.heads.emplace_back(head);
   grid.align = "rl" + std::string(grid.heads.size() - 2, 'r');
   const MethodStyles styles(table.names);
@@ -153,6 +155,8 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
         row.cells.emplace_back(Span::number(value ? fixed(*value) : "–"));
     if (arms.size() > 1)
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
+    const Json& score = s.entry->score;
+    row.cells.emplace_back(Span::number(score.is_null() ? "–" : fixed(scenes_exact(score))));
     for (const auto& part : {s.precision, s.recall}) row.cells.emplace_back(Span::number(part ? fixed(*part) : "–"));
     for (const double value : {s.lm_queries, s.lm_tokens, s.learn_s})
       row.cells.emplace_back(Span::number(reference ? "–" : amount(value)));
@@ -392,6 +396,7 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
       section.add<Paragraph>(reading,
                              {{fmt::format("{} entries were withdrawn; their files remain.", table.withdrawn)}});
     document.sections.push_back(std::move(section));
+    if (auto answers = answers_section(table, id + "-answers")) document.sections.push_back(std::move(*answers));
     if (table.standings.empty()) continue;
     if (table.setting.demonstrations.size() > 1) {
       Section curve{id + "-curves", "Demonstrations"};
