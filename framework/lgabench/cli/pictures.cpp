@@ -64,10 +64,11 @@ std::string targets(const Scene& scene, const Observation& seen) {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action},
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "perturbed": PNG, "targets": path, "oracle": action},
   // pictures in base64: the scene, goal masks of the request's Selections, the scene after each of its actions (null
-  // where it could not be carried out, "" where nothing moved), the targets' outline, and what the oracle would do
-  // (null without the cell's engine). @throws InputError where the scene is not the one asked for.
+  // where it could not be carried out, "" where nothing moved), what a perturbation made of it (null where its picture
+  // is the control's), the targets' outline, and what the oracle would do (null without the cell's engine). @throws
+  // InputError where the scene is not the one asked for.
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
@@ -84,6 +85,13 @@ class Pictures {
       masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     const std::string picture = picture_of(seen);
+    Json perturbed;  // what the arm's perturbation made of it
+    if (played.scenario.arm(request.arm).perturbation) {
+      if (perceived.rgb != seen.rgb)
+        perturbed = picture_of(perceived);
+      else if (perceived.ids != seen.ids)
+        perturbed = png(seen.size, [&](std::size_t i) { return id_colour(perceived.ids[i]); });
+    }
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
       const std::optional<std::string> after = after_action(played.scenario, scene, end);
@@ -94,6 +102,7 @@ class Pictures {
     return {{"picture", picture},
             {"masks", masks},
             {"ends", ends},
+            {"perturbed", perturbed},
             {"targets", targets(scene, seen)},
             {"oracle", environment ? Json(environment->expert_action()) : Json()}};
   }

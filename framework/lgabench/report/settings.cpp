@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -77,6 +78,13 @@ std::vector<std::string> settings(const RunResults& run) {
     lines.push_back("beside the plugins' defaults, " + line);
   if (run.record.request.value("test_scenes", Json()) == TestScenes::per_seed)
     lines.emplace_back("each training seed plays test scenes of its own");
+  std::set<std::string> through;
+  for (const CellResult& cell : run.cells)
+    if (const std::optional<TrainOn>& train_on = cell.configuration.train_on)
+      through.insert(
+          fmt::format("methods saw their demonstrations through {}, {}", one_line(train_on->axis),
+                      train_on->level ? fmt::format("level {}", *train_on->level) : "at a level drawn for each"));
+  lines.insert(lines.end(), through.begin(), through.end());
   for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;
 }
