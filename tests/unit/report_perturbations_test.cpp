@@ -182,7 +182,7 @@ TEST(PerturbationSection, ShowsEveryLevelBesideTheControlAndNoMeanOverAxes) {
   EXPECT_SAYS(terminal, "segmentation");
   EXPECT_SILENT(terminal, "segmentation_3");  // levels are no arms of the table of success
   EXPECT_SAYS(report::markdown(section_of(report)),
-              "**LGA** loses significantly along segmentation from level 3; not along light\\_colour");
+              "**LGA** loses significantly along segmentation from level 3; not along light_colour");
 }
 
 TEST(PerturbationSection, HasNoNumberThatIsNotTheSummarys) {

@@ -64,11 +64,12 @@ std::string targets(const Scene& scene, const Observation& seen) {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "perturbed": PNG, "targets": path, "oracle": action},
-  // pictures in base64: the scene, goal masks of the request's Selections, the scene after each of its actions (null
-  // where it could not be carried out, "" where nothing moved), what a perturbation made of it (null where its picture
-  // is the control's), the targets' outline, and what the oracle would do (null without the cell's engine). @throws
-  // InputError where the scene is not the one asked for.
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "perturbed": [PNG, PNG], "targets": path,
+  // "oracle": action}, pictures in base64: the scene, goal masks of the request's Selections, the scene after each of
+  // its actions (null where it could not be carried out, "" where nothing moved), the scene before and after its arm's
+  // perturbation, or where that leaves colours alone its ids (null where it leaves both), the targets' outline, and
+  // what the oracle would do (null without the cell's engine). @throws InputError where the scene is not the one asked
+  // for.
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
@@ -85,12 +86,12 @@ class Pictures {
       masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     const std::string picture = picture_of(seen);
-    Json perturbed;  // what the arm's perturbation made of it
+    Json perturbed;  // before the arm's perturbation, and after it
     if (played.scenario.arm(request.arm).perturbation) {
       if (perceived.rgb != seen.rgb)
-        perturbed = picture_of(perceived);
+        perturbed = {picture, picture_of(perceived)};
       else if (perceived.ids != seen.ids)
-        perturbed = png(seen.size, [&](std::size_t i) { return id_colour(perceived.ids[i]); });
+        perturbed = {ids_of(seen), ids_of(perceived)};
     }
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
@@ -110,6 +111,10 @@ class Pictures {
  private:
   static std::string picture_of(const Observation& seen) {
     return png(seen.size, [&](std::size_t i) { return pixel_colour(seen, i); });
+  }
+
+  static std::string ids_of(const Observation& seen) {
+    return png(seen.size, [&](std::size_t i) { return id_colour(seen.ids[i]); });
   }
 
   // None where the engine is not there, or the action is none of this environment's.

@@ -161,7 +161,7 @@ class Drawing {
                         {'z'}},
                        {Ink::none, Ink::series});
         });
-        coloured(point.y < dark_below ? "#ffffff" : "#1b1f24", [&] {
+        coloured(point.y < dark_below ? "#ffffff" : "#08090a", [&] {
           canvas_.text(fixed(point.y), x + column / 2, y + row / 2 + 4, Anchor::middle, small_text, false, Ink::series);
         });
         canvas_.close();

@@ -194,7 +194,8 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     const std::string& scene = request.scene.scene;
     pictures.scenes[scene] = drawn.at("picture");
     pictures.targets[scene] = drawn.at("targets");
-    if (drawn.at("perturbed").is_string()) pictures.perturbed[scene] = drawn.at("perturbed");
+    if (const Json& perturbed = drawn.at("perturbed"); perturbed.is_array())
+      pictures.perturbed[scene] = {perturbed.at(0), perturbed.at(1)};
     if (drawn.at("oracle").is_array()) pictures.oracle[scene] = {request.environment, drawn.at("oracle").get<Action>()};
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
   }

@@ -18,9 +18,9 @@ constexpr std::size_t most_read_bytes = 4 << 20;  // of pictures that policies r
 struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action
   std::map<std::string, std::string> masks;   // mask_key -> PNG in base64
-  /// The scene's hash -> PNG in base64 of what a perturbation made of it: as it is seen, or where its colours are the
-  /// control's, which pixels are taken for which object. None where neither changed.
-  std::map<std::string, std::string> perturbed;
+  /// The scene's hash -> PNG in base64 of it before and after its arm's perturbation, or where that leaves colours
+  /// alone of its objects' ids. None where it leaves both.
+  std::map<std::string, std::pair<std::string, std::string>> perturbed;
   std::map<std::string, std::string> ends;  // end_key -> PNG in base64; "" where nothing moved
   /// What a policy read, as it said itself: its pictures, as captions and indices of `seen`; texts that it read beside
   /// them; and what of the method's inputs it did not read.

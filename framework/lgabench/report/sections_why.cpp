@@ -2,9 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <map>
 #include <set>
-#include <tuple>
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/report/phi_words.hpp>
@@ -109,12 +110,17 @@ struct Endings {
       grouped->bars = mean.bars;
       grouped->align = "l" + mean.align;
     }
-    // Levels of a method below each other: the rows come arm by arm.
-    std::stable_sort(levels.rows.begin(), levels.rows.end(), [](const Grid::Row& a, const Grid::Row& b) {
-      const auto key = [](const Grid::Row& row) {
-        return std::tuple(row.group.text(), row.cells[0].text(), row.cells[2].text(), row.cells[3].text());
-      };
-      return key(a) < key(b);
+    // Levels of a method below each other, axes and methods as they came: the rows come arm by arm.
+    std::map<std::string, std::size_t> came;
+    const auto words = [](const Grid::Row& row) {
+      return std::array{row.group.text(), row.cells[0].text(), row.cells[2].text(), row.cells[3].text()};
+    };
+    for (const Grid::Row& row : levels.rows)
+      for (const std::string& word : words(row)) came.emplace(word, came.size());
+    std::stable_sort(levels.rows.begin(), levels.rows.end(), [&](const Grid::Row& a, const Grid::Row& b) {
+      const auto [of_a, of_b] = std::pair(words(a), words(b));
+      return std::lexicographical_compare(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                                          [&](const auto& x, const auto& y) { return came.at(x) < came.at(y); });
     });
     section.add(reading, std::move(mean));
     if (!each.rows.empty()) section.add(on_page, std::move(each), "Each scenario");
