@@ -103,7 +103,8 @@ class Perturbations(case.BesideOneRun):
             if cell["method"]["id"] == "lga":  # which learns from masks
                 self.assertNotEqual(*[(self.dir / run / "training.jsonl").read_text()
                                       for run in (f"plain/cells/{before}", f"through/cells/{key}")])
-        self.assertIn('"train_on":{"segmentation":"any"}', (self.dir / "through/run.json").read_text())
+        record = json.loads((self.dir / "through/run.json").read_text())
+        self.assertEqual(record["request"]["train_on"], {"segmentation": "any"})
         self.assertEqual(self.call("verify", "through", "--sample", "2", "--seed", "1").stdout.count("\nbit-identical "), 2)
 
     def test_what_there_is_not_is_refused_in_a_line(self):

@@ -332,7 +332,7 @@ TEST(TrainOn, IsASettingOfMethodsAlone) {
       EXPECT_EQ(key(cells[i]) == key(without[i]), cells[i].method.is_reference());
       EXPECT_EQ(cells[i].needs_axes(), !cells[i].method.is_reference());
       EXPECT_EQ(read_cell(to_json(cells[i]), "test").train_on, cells[i].train_on);
-      if (!cells[i].method.is_reference()) EXPECT_EQ(cells[i].train_on->level, level);
+      EXPECT_EQ(cells[i].train_on ? cells[i].train_on->level : level, level);
     }
   }
   const auto refusal = [&](const Json& through) { return message_of<InputError>([&] { with(through); }); };

@@ -90,11 +90,13 @@ TEST(PerturbationCurves, CorrectOverAllLevelsOfAllAxesOfARow) {
   const Json summary = read_json(run.path / "summary.json");
   std::vector<double> p;
   std::vector<Json> levels;
-  for (const char* axis : {"segmentation", "light_colour"})
-    for (const Json& level : curve_of(summary, "lga", axis)["levels"]) {
+  for (const char* axis : {"segmentation", "light_colour"}) {
+    const Json curve = curve_of(summary, "lga", axis);
+    for (const Json& level : curve["levels"]) {
       p.push_back(level["change"]["p"]);
       levels.push_back(level);
     }
+  }
   ASSERT_EQ(p.size(), 8u);
   const std::vector<double> adjusted = report::holm(p);
   for (std::size_t i = 0; i < p.size(); ++i) EXPECT_EQ(levels[i]["p_holm"], adjusted[i]) << i;
