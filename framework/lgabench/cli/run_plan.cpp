@@ -349,7 +349,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--demos", "N,..."},
            {"--seeds", "N,..."},
            {"--selection-errors", "KIND=P,..."},
-           {"--train-on", "AXIS:LEVEL"},
+           {"--train-on", "AXIS"},
            {"--episodes", "N"},
            {"--set", "M.OPTION=VALUE"},
            {"--answers", "SOURCE"},
