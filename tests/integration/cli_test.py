@@ -303,6 +303,7 @@ class Completion(Case):
                 if option == "--answers" and word != "recorded":
                     words += ["--scenarios", "heart"]
                 self.call("run", suite, *words, "--dry-run")
+        self.assertEqual(self.completed("run", "q1", "--train-on", "sen"), ["sensor_noise"])
         self.assertEqual(self.completed("list", "lay"), ["layouts"])
         self.assertIn('no suite "q9"', self.call("list", "presets", "--of", "q9", expect=2).stderr)
 

@@ -306,6 +306,11 @@ class Refusals(Board):
         self.assertRegex(" ".join(self.refused("wrong")),
                          r"errors were made in what was selected \(selection_errors\): fixture_constant.* and \d+ more cells")
 
+    def test_demonstrations_that_were_seen_otherwise(self):
+        self.play("through", "--train-on", "sensor_noise:1")
+        self.assertRegex(" ".join(self.refused("through")),
+                         r"demonstrations were seen through a perturbation \(train_on\): fixture_constant")
+
     def test_an_edited_file(self):
         file = self.cell() / "episodes.jsonl"
         file.write_text(file.read_text().replace('"success":false', '"success":true').replace('"failure":"missed_object"', '"failure":"none"'))

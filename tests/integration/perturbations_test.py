@@ -69,6 +69,44 @@ class Perturbations(case.BesideOneRun):
             self.assertNotIn("perturbed.jsonl", status["files"])
             self.assertNotIn("liblgabench_perturbations.so", status["build"])
 
+    def test_the_report_has_each_level_of_each_axis(self):
+        summary = json.loads((self.dir / "run/summary.json").read_text())
+        curves = {(c["method"], c["axis"]): c for c in summary["perturbations"]}
+        self.assertEqual(set(curves), {(method, axis) for method in ("lga", "gcbc_dart", "oracle") for axis in CHANGES})
+        for (method, axis), curve in curves.items():
+            self.assertEqual([level["level"] for level in curve["levels"]], [1, 4])
+            unchanged = {level["unchanged_inputs"] for level in curve["levels"]}
+            if method == "gcbc_dart" and axis == "selection_errors":
+                self.assertEqual(unchanged, {EPISODES}, "it selects nothing")
+            elif method != "oracle":
+                self.assertEqual(unchanged, {0})
+            self.assertEqual({level["inputs"] for level in curve["levels"]}, {EPISODES})
+        page = (self.dir / "run/report.html").read_text()
+        for axis in ("light_intensity", "segmentation"):
+            self.assertIn(f"{axis}: scene 0 of heart", page, "one scene at each level")
+        self.assertNotIn("selection_errors: scene", page, "which no picture shows")
+
+    def test_demonstrations_seen_through_an_axis(self):
+        small = ["run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "4", "--seeds", "0",
+                 "--episodes", "1", "--set", "*.epochs=3"]
+        self.call(*small, "--out", "plain")
+        said = self.call(*small, "--train-on", "segmentation:any", "--out", "through").stdout
+        self.assertIn("methods saw their demonstrations through segmentation, at a level drawn for each", said)
+        self.assert_matches_schemas("through")
+        plain = {(cell["method"]["name"], cell["demonstrations"]): key for key, (cell, _) in self.cells("plain").items()}
+        for key, (cell, status) in self.cells("through").items():
+            method = cell["method"]["kind"] == "method"
+            self.assertEqual(cell.get("train_on"), {"segmentation": "any"} if method else None)
+            self.assertEqual("liblgabench_perturbations.so" in status["build"], method)
+            before = plain[cell["method"]["name"], cell["demonstrations"]]
+            self.assertEqual(key == before, not method)
+            if cell["method"]["id"] == "lga":  # which learns from masks
+                self.assertNotEqual(*[(self.dir / run / "training.jsonl").read_text()
+                                      for run in (f"plain/cells/{before}", f"through/cells/{key}")])
+        record = json.loads((self.dir / "through/run.json").read_text())
+        self.assertEqual(record["request"]["train_on"], {"segmentation": "any"})
+        self.assertEqual(self.call("verify", "through", "--sample", "2", "--seed", "1").stdout.count("\nbit-identical "), 2)
+
     def test_what_there_is_not_is_refused_in_a_line(self):
         suite = json.loads((case.BUILD / "share/lgabench/suites/perturbations.json").read_text())
 

@@ -315,6 +315,35 @@ TEST(TestScenes, PerSeedGiveEachTrainingSeedItsOwn) {
   EXPECT_SAYS(message_of<InputError>([&] { read_cell(old, "test"); }), "/test_scenes: expected shared or per_seed");
 }
 
+TEST(TrainOn, IsASettingOfMethodsAlone) {
+  Design design = small_grid();
+  const std::vector<Cell> without = expand(load_suite("q1"), design, {}, catalogue());
+  EXPECT_FALSE(to_json(design).contains("train_on"));
+  const auto with = [&](const Json& through) {
+    const Json json{{"train_on", through}};
+    return apply(JsonReader(json, "mine"), design);
+  };
+  for (const auto& [through, level] :
+       {std::pair(Json{{"sensor_noise", 2}}, std::optional(2)), {Json{{"sensor_noise", "any"}}, std::nullopt}}) {
+    EXPECT_EQ(to_json(with(through))["train_on"], through);
+    const std::vector<Cell> cells = expand(load_suite("q1"), with(through), {}, catalogue());
+    ASSERT_EQ(cells.size(), without.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      EXPECT_EQ(key(cells[i]) == key(without[i]), cells[i].method.is_reference());
+      EXPECT_EQ(cells[i].needs_axes(), !cells[i].method.is_reference());
+      EXPECT_EQ(read_cell(to_json(cells[i]), "test").train_on, cells[i].train_on);
+      EXPECT_EQ(cells[i].train_on ? cells[i].train_on->level : level, level);
+    }
+  }
+  const auto refusal = [&](const Json& through) { return message_of<InputError>([&] { with(through); }); };
+  EXPECT_SAYS(refusal({{"selection_errors", 1}}),
+              "mine: /train_on: expected an axis that changes what is perceived and nothing else (light_intensity, ");
+  EXPECT_SAYS(refusal({{"all", 1}}), ", got all");
+  EXPECT_SAYS(refusal({{"sensor", 1}}), "no axis \"sensor\" (did you mean \"sensor_noise\"?), expected one of: ");
+  EXPECT_SAYS(refusal({{"sensor_noise", 5}}), "/train_on/sensor_noise: expected a level from 1 to 4 (");
+  EXPECT_SAYS(refusal({{"sensor_noise", "every"}}), "/train_on/sensor_noise: expected a level, or \"any\"");
+}
+
 TEST(Variants, RefuseOneRowTwiceAndWhatIsNoVariant) {
   const auto refusal = [](const std::vector<std::string>& methods) {
     return message_of<InputError>([&] { rows(methods); });

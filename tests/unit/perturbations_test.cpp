@@ -1,10 +1,12 @@
 // Perturbation axes: what each changes and leaves alone, nested levels, and that a dead or a leaking axis is caught.
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/cell/perturbed.hpp>
+#include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/harness/expand.hpp>
@@ -108,6 +110,16 @@ TEST(Perturbations, APolicyThatActsOtherwiseOnTheSameInputIsCaught) {
   EXPECT_NO_THROW(expect_declared(all, acted, false, axes)) << "reference rows may look at more than their input";
 }
 
+TEST(Perturbations, AreComparedWithTheFirstArmAndNoOtherWithout) {
+  const PerturbationAxis none{"none", {"nothing"}, {}};
+  std::vector<PerturbedEpisode> all = played({}, 0), other = all, same = all;
+  for (PerturbedEpisode& e : other) e.arm = "hard", e.hashes.fill("0");
+  for (PerturbedEpisode& e : same) e.arm = "perturbed", e.axis = "none", e.level = 1;
+  for (const auto& more : {other, same}) all.insert(all.end(), more.begin(), more.end());
+  EXPECT_NO_THROW(expect_declared(
+      all, {}, true, [&](const PerturbedEpisode&) { return std::vector<const PerturbationAxis*>{&none}; }));
+}
+
 // How far a picture, and a segmentation, lie from the control's: the size of a change grows with the level.
 TEST(Perturbations, LevelsAreNested) {
   const Scenario scenario = load_scenario("heart");
@@ -137,6 +149,39 @@ TEST(Perturbations, LevelsAreNested) {
       }
     }
   }
+}
+
+// Which level each demonstration was seen at, by the speckle that it has.
+TEST(TrainOn, DrawsOnceForEachDemonstrationAndNotAsTestsDo) {
+  const Scenario scenario = load_scenario("heart");
+  std::vector<Scene> scenes;
+  std::vector<Demonstration> shown;
+  for (const auto& [scene, seen] : drawn(scenario)) {
+    scenes.push_back(scene);
+    shown.push_back({{}, {{seen, {}}, {seen, {}}}});
+  }
+  const auto through = [&](std::optional<int> level) {
+    return perceived(shown, scenes, scenario, {"sensor_noise", level});
+  };
+  const auto any = through({}), again = through({});
+  std::vector<std::vector<Demonstration>> at{shown};
+  for (int level = 1; level <= 4; ++level) at.push_back(through(level));
+  std::set<int> levels;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto rgb = [i](const std::vector<Demonstration>& all, std::size_t step = 0) {
+      return all[i].steps[step].observation.rgb;
+    };
+    EXPECT_EQ(rgb(any), rgb(again));
+    EXPECT_EQ(rgb(any), rgb(any, 1)) << "a demonstration's steps";
+    for (int level = 1; level <= 4; ++level)
+      if (rgb(any) == rgb(at[static_cast<std::size_t>(level)])) levels.insert(level);
+    const PerturbationAxis& axis = *axes_named("sensor_noise").front();
+    EXPECT_NE(
+        rgb(at[2]),
+        axis.perceive(shown[i].steps[0].observation, scenario, 2, perturbation_stream(axis.id, scenes[i], {})).rgb);
+    EXPECT_NE(rgb(at[2]), rgb(at[0]));
+  }
+  EXPECT_GT(levels.size(), 1u) << "of " << shown.size() << " demonstrations";
 }
 
 std::string refusal(const Json& perturbation) {

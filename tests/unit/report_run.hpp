@@ -9,6 +9,7 @@
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/json.hpp>
+#include <lgabench/record/perturbed.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -38,6 +39,8 @@ class FabricatedRun : public TemporaryDirectory {
     int won = 0;                   // of 20: the first
     std::vector<int> commands{0};  // given in turn
     double action = 0.5;           // each of the 12 numbers; NaN: gave none
+    Json perturbation{};           // as in a scenario; null: none
+    int unchanged = 0;             // of 20: the first, whose input is the control's
   };
 
   struct Spec {
@@ -60,6 +63,7 @@ class FabricatedRun : public TemporaryDirectory {
     Json selection_errors{};                               // as in cell.json; null: none
     std::map<std::size_t, Json> of_commands{};             // members of the scenario's commands, beside or instead
     std::map<std::size_t, Json> selected{};                // targets, instead of the usual one
+    Json train_on{};                                       // as in cell.json; null: none
     Json options = Json::object();                         // of the method, beside those in its row's name
 
     std::vector<Arm> all_arms() const { return arms.empty() ? std::vector<Arm>{{"test", won, {0}, 0.5}} : arms; }
@@ -87,7 +91,10 @@ class FabricatedRun : public TemporaryDirectory {
                           {"seen", seen},
                           {"truth", {{"target", {{"object_types", {"heart"}}, {"textures", "ALL"}}}}}});
     for (const auto& [command, members] : s.of_commands) commands.at(command).update(members);
-    for (const Arm& arm : s.all_arms()) tests.push_back({{"arm", arm.name}});
+    for (const Arm& arm : s.all_arms()) {
+      tests.push_back({{"arm", arm.name}});
+      if (!arm.perturbation.is_null()) tests.back()["perturbation"] = arm.perturbation;
+    }
     Json cell{{"suite", "q1"},
               {"environment", "tabletop"},
               {"layout", s.layout},
@@ -115,6 +122,7 @@ class FabricatedRun : public TemporaryDirectory {
     if (const auto whom = asks.find(s.method); whom != asks.end()) cell["method"]["asks"] = whom->second;
     if (!s.participant.empty()) cell["participant"] = {{"id", s.participant}, {"sha256", std::string(64, 'd')}};
     if (!s.selection_errors.is_null()) cell["selection_errors"] = s.selection_errors;
+    if (!s.train_on.is_null()) cell["train_on"] = s.train_on;
     if (s.rehearsal) cell["participant"]["rehearsal"] = true;
     return cell;
   }
@@ -153,6 +161,22 @@ class FabricatedRun : public TemporaryDirectory {
          selects ? Json{{"target", {{"object_types", quality}, {"textures", quality}}}, {"avoid", nullptr}} : Json()}};
   }
 
+  static std::string perturbed_text(const Spec& s) {
+    std::string lines;
+    for (const Arm& arm : s.all_arms())
+      for (int i = 0; i < 20; ++i) {
+        const bool control = arm.perturbation.is_null();
+        PerturbedEpisode episode{arm.name,
+                                 i,
+                                 control ? "" : arm.perturbation.begin().key(),
+                                 control ? 0 : arm.perturbation.begin().value().get<int>(),
+                                 {}};
+        episode.hashes.fill(hex(static_cast<std::uint64_t>(control || i < arm.unchanged ? i : 100 + i)));
+        lines += canonical(to_json(episode)) + '\n';
+      }
+    return lines;
+  }
+
   /// A cell that finished; returns its directory.
   fs::path add(const Spec& s) {
     std::string episodes, training;
@@ -178,13 +202,14 @@ class FabricatedRun : public TemporaryDirectory {
     const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},
                       {"learn_s", s.learn_s}, {"evaluate_s", 2.0}, {"total_s", 7.75}};
     const fs::path cell = new_cell(s);
+    std::vector<std::pair<std::string, std::string>> written{{"cell.json", canonical(cell_json(s)) + '\n'},
+                                                             {"selection.json", canonical(selection_json(s)) + '\n'},
+                                                             {"training.jsonl", training},
+                                                             {"episodes.jsonl", episodes},
+                                                             {"timing.json", canonical(timing) + '\n'}};
+    if (!s.all_arms().back().perturbation.is_null()) written.emplace_back("perturbed.jsonl", perturbed_text(s));
     Json files;
-    for (const auto& [name, text] :
-         std::vector<std::pair<std::string, std::string>>{{"cell.json", canonical(cell_json(s)) + '\n'},
-                                                          {"selection.json", canonical(selection_json(s)) + '\n'},
-                                                          {"training.jsonl", training},
-                                                          {"episodes.jsonl", episodes},
-                                                          {"timing.json", canonical(timing) + '\n'}}) {
+    for (const auto& [name, text] : written) {
       write_file(cell / name, text);
       files[name] = sha256(text);
     }

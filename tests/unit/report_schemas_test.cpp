@@ -21,6 +21,11 @@ std::vector<std::pair<std::string, Json>> run_documents() {
   FabricatedRun::Spec elsewhere{"lga", 12};
   elsewhere.engine = "bullet";
   run.add(elsewhere);
+  FabricatedRun::Spec perturbed{"lga", 0, "letter", 10};
+  perturbed.arms = {{"test", 15}, {"sensor_noise_2", 5}};
+  perturbed.arms.back().perturbation = {{"sensor_noise", 2}};
+  perturbed.train_on = {{"sensor_noise", "any"}};
+  run.add(perturbed);
   run.add_failed({"gcbc_dart", 0}, "plugin");
   run.add({"gcbc_dart", 5, "heart", 10});  // a claim's difference that is tested, and others that are not
   run.add({"lga", 15, "heart", 10});
@@ -62,7 +67,7 @@ TEST(Schemas, DescribeTheShiftOfAnArm) {
   for (const auto& [schema, document] : run_documents())
     if (schema == "summary")
       for (const Json& row : document.at("rows")) shifts += row.at("shift").is_object() ? 1 : 0;
-  EXPECT_EQ(shifts, 2);  // the scenario's and the mean's: AcceptTheFilesOfARun has seen one
+  EXPECT_EQ(shifts, 4);  // of two arms the scenario's and the mean's: AcceptTheFilesOfARun has seen one
 }
 
 TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
@@ -148,7 +153,12 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"summary", "/rows/0/phi", {{"quality", nullptr}}},
       {"summary", "/rows/0/failures", {{"bad_luck", 0}}},
       {"summary", "/rows/0/attribution", {{"policy", 1}}},
+      {"cell", "/train_on", {{"sensor_noise", 0}}},
       {"summary", "/failed_cells/0/fault", nullptr},
+      {"summary", "/perturbations/0/levels/0/p_holm", 2},
+      {"summary", "/perturbations/0/levels/0/lost", nullptr},
+      {"summary", "/perturbations/0/area", {{"relative", 1}}},
+      {"perturbed", "/axis", 1},
       {"claims", "/claims/0/verdict", "maybe"},
       {"claims", "/claims/0/claim", ""},
       {"claims", "/claims/0/scenarios_like_these/verdict", "maybe"},

@@ -13,6 +13,17 @@ Rgb pixel_colour(const Observation& seen, std::size_t i) {
   return {seen.rgb[3 * i], seen.rgb[3 * i + 1], seen.rgb[3 * i + 2]};
 }
 
+// Steps of the golden section around the colour circle.
+Rgb id_colour(std::uint8_t id) {
+  if (id == 0) return mask_colour(false);
+  const double hue = 6 * std::fmod(0.618034 * id, 1.0);
+  const auto channel = [hue](double peak) {
+    const double distance = std::abs(std::remainder(hue - peak, 6.0));
+    return static_cast<std::uint8_t>(60 + 180 * std::clamp(2 - distance, 0.0, 1.0));
+  };
+  return {channel(0), channel(2), channel(4)};
+}
+
 Picture::Picture(int width, int height)
     : width_(width), height_(height), rgb_(3 * static_cast<std::size_t>(width * height), 255) {}
 

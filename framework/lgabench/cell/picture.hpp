@@ -12,6 +12,8 @@ namespace lgabench {
 
 /// How pixel `i` of a picture is shown.
 Rgb pixel_colour(const Observation& seen, std::size_t i);
+/// How an object's id is shown: far hues for near ids, black for none.
+Rgb id_colour(std::uint8_t id);
 
 class Picture {
  public:

@@ -342,6 +342,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
                                                          selected.needs, scenario.utterances(), count),
                                    scenes, selected);
+  if (cell.train_on) demonstrations = perceived(std::move(demonstrations), scenes, scenario, *cell.train_on);
 
   // 4 learn: from observations and labels to a policy.
   phases.begin("learn");

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/guarded.hpp>
 #include <lgabench/record/layout.hpp>
@@ -100,6 +101,23 @@ std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const s
   for (std::size_t i = 0; i < showed.size(); ++i)
     showed[i].instruction = selected.instructions.at(static_cast<std::size_t>(scenes[i].command));
   return showed;
+}
+
+std::vector<Demonstration> perceived(std::vector<Demonstration> demonstrations, const std::vector<Scene>& scenes,
+                                     const Scenario& scenario, const TrainOn& through) {
+  const PerturbationAxis& axis = *axes_named(through.axis).front();
+  for (std::size_t i = 0; i < demonstrations.size(); ++i) {
+    const Scene& scene = scenes.at(i);
+    const auto stream = [&](const char* of) {
+      return RandomStream(fmt::format("train_on/{}/{}/{}/{}/{}/{}", of, axis.id, scene.scenario, scene.layout,
+                                      scene.seed, scene.index));
+    };
+    const int drawn = 1 + static_cast<int>(stream("level").below(static_cast<std::uint32_t>(axis.most())));
+    for (Step& step : demonstrations[i].steps)
+      step.observation =
+          axis.perceive(std::move(step.observation), scenario, through.level.value_or(drawn), stream("direction"));
+  }
+  return demonstrations;
 }
 
 void revise(Method& method, const std::string& id, const Scenario& scenario, std::vector<Demonstration>& demonstrations,

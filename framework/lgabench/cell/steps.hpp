@@ -9,6 +9,7 @@
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/record/train_on.hpp>
 
 namespace lgabench {
 
@@ -54,6 +55,11 @@ std::vector<Scene> sample(const Scenario& scenario, const std::string& layout, c
 /// 3 demonstrate: what the oracle `showed` in these scenes (demonstrations.hpp), with the method's own instructions.
 std::vector<Demonstration> instructed(std::vector<Demonstration> showed, const std::vector<Scene>& scenes,
                                       const Selected& selected);
+
+/// 3 demonstrate: what they show in these scenes as it is perceived through an axis. Its direction, and where none is
+/// given its level, are drawn for each demonstration, from other streams than those of test scenes.
+std::vector<Demonstration> perceived(std::vector<Demonstration> demonstrations, const std::vector<Scene>& scenes,
+                                     const Scenario& scenario, const TrainOn& through);
 
 /// 4 learn, first part: asks the method, where it needs to, for each command's Selection with what was shown; then the
 /// demonstrations' instructions have it too. @throws as select(), and as expect_usable().

@@ -82,8 +82,8 @@ void print_list(const Json& all) {
     to_stderr("refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
 }
 
-constexpr std::array kinds{"methods",   "rows",    "engines", "environments", "suites",
-                           "scenarios", "layouts", "presets", "sources",      "kinds"};
+constexpr std::array kinds{"methods", "rows",    "engines", "environments", "suites", "scenarios",
+                           "layouts", "presets", "sources", "axes",         "kinds"};
 
 std::vector<std::string> layouts_of_all(const Suite& suite) {
   std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
@@ -123,6 +123,7 @@ std::vector<std::string> words(const std::string& kind, const std::string& of, c
   const bool of_suite =
       std::any_of(shipped.begin(), shipped.end(), [&of](const Json& suite) { return suite.at("id") == of; });
   if (kind == "kinds") return {kinds.begin(), kinds.end()};
+  if (kind == "axes") return train_on_axes();
   if (kind == "sources" && of.empty()) return answer_words(false);
   if (kind == "sources") return sources_of(of_suite ? load_suite(of).design.scenarios : std::vector{of});
   if (kind == "layouts" && of.empty()) return installed_layouts();

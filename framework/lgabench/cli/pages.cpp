@@ -81,6 +81,7 @@ constexpr const char* word_functions =
     "    LAYOUT*) _lgabench_list layouts --of \"$2\" || _lgabench_list layouts ;;\n"
     "    SOURCE) _lgabench_list sources --of \"$2\" || _lgabench_list sources ;;\n"
     "    KIND) _lgabench_list kinds ;;\n"
+    "    AXIS) _lgabench_list axes ;;\n"
     "    PRESET) _lgabench_list presets --of \"$2\" || _lgabench_list presets ;;\n"
     "  esac\n"
     "}\n"

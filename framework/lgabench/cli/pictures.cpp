@@ -64,10 +64,12 @@ std::string targets(const Scene& scene, const Observation& seen) {
 
 class Pictures {
  public:
-  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "targets": path, "oracle": action},
-  // pictures in base64: the scene, goal masks of the request's Selections, the scene after each of its actions (null
-  // where it could not be carried out, "" where nothing moved), the targets' outline, and what the oracle would do
-  // (null without the cell's engine). @throws InputError where the scene is not the one asked for.
+  // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "perturbed": [PNG, PNG], "targets": path,
+  // "oracle": action}, pictures in base64: the scene, goal masks of the request's Selections, the scene after each of
+  // its actions (null where it could not be carried out, "" where nothing moved), the scene before and after its arm's
+  // perturbation, or where that leaves colours alone its ids (null where it leaves both), the targets' outline, and
+  // what the oracle would do (null without the cell's engine). @throws InputError where the scene is not the one asked
+  // for.
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
@@ -84,6 +86,13 @@ class Pictures {
       masks.push_back(png(seen.size, [&](std::size_t i) { return mask_colour(mask[i] != 0); }));
     }
     const std::string picture = picture_of(seen);
+    Json perturbed;  // before the arm's perturbation, and after it
+    if (played.scenario.arm(request.arm).perturbation) {
+      if (perceived.rgb != seen.rgb)
+        perturbed = {picture, picture_of(perceived)};
+      else if (perceived.ids != seen.ids)
+        perturbed = {ids_of(seen), ids_of(perceived)};
+    }
     Json ends = Json::array();
     for (const PictureRequest::End& end : request.ends) {
       const std::optional<std::string> after = after_action(played.scenario, scene, end);
@@ -94,6 +103,7 @@ class Pictures {
     return {{"picture", picture},
             {"masks", masks},
             {"ends", ends},
+            {"perturbed", perturbed},
             {"targets", targets(scene, seen)},
             {"oracle", environment ? Json(environment->expert_action()) : Json()}};
   }
@@ -101,6 +111,10 @@ class Pictures {
  private:
   static std::string picture_of(const Observation& seen) {
     return png(seen.size, [&](std::size_t i) { return pixel_colour(seen, i); });
+  }
+
+  static std::string ids_of(const Observation& seen) {
+    return png(seen.size, [&](std::size_t i) { return id_colour(seen.ids[i]); });
   }
 
   // None where the engine is not there, or the action is none of this environment's.

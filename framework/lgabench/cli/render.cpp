@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -26,17 +24,6 @@ struct RenderArguments {
   std::uint64_t seed = 0;
   int index = 0;
 };
-
-// Far hues for near ids (steps of the golden section around the colour circle).
-Rgb colour_of(std::uint8_t id) {
-  if (id == 0) return mask_colour(false);
-  const double hue = 6 * std::fmod(0.618034 * id, 1.0);
-  const auto channel = [hue](double peak) {
-    const double distance = std::abs(std::remainder(hue - peak, 6.0));
-    return static_cast<std::uint8_t>(60 + 180 * std::clamp(2 - distance, 0.0, 1.0));
-  };
-  return {channel(0), channel(2), channel(4)};
-}
 
 // Pictures of one size side by side, enlarged.
 struct Panels {
@@ -84,7 +71,7 @@ void render(const RenderArguments& arguments) {
 
   Panels panels(3, seen.size);
   panels.fill(0, [&](std::size_t i) { return pixel_colour(seen, i); });
-  panels.fill(1, [&](std::size_t i) { return colour_of(seen.ids[i]); });
+  panels.fill(1, [&](std::size_t i) { return id_colour(seen.ids[i]); });
   panels.fill(2, [&](std::size_t i) { return mask_colour(mask[i] != 0); });
   const fs::path file = arguments.out.empty() ? fmt::format("{}-{}.png", scenario.id, arguments.index) : arguments.out;
   write_file(file, panels.picture.png());

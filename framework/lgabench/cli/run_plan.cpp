@@ -64,6 +64,17 @@ Json selection_errors(const std::string& words) {
   return errors;
 }
 
+// "AXIS:LEVEL" or "AXIS:any", as an object.
+Json train_on(const std::string& words) {
+  const std::size_t colon = words.find(':');
+  const std::string level = colon == std::string::npos ? "" : words.substr(colon + 1);
+  const Json number = option_value(level);
+  if (colon == 0 || (level != "any" && !number.is_number_integer()))
+    throw InputError(
+        fmt::format("--train-on: expected AXIS:LEVEL or AXIS:any, such as sensor_noise:2; got \"{}\"", words));
+  return {{words.substr(0, colon), level == "any" ? Json(level) : number}};
+}
+
 constexpr const char* command_line_place = "command line";
 
 // "--demos: expected each value once" for "command line: /demonstrations/1: expected each value once".
@@ -75,6 +86,7 @@ std::string by_option(const std::string& complaint) {
                                        {"demonstrations", "--demos"},
                                        {"seeds", "--seeds"},
                                        {"selection_errors", "--selection-errors"},
+                                       {"train_on", "--train-on"},
                                        {"episodes", "--episodes"}})
     if (complaint.rfind(fmt::format("{}: /{}", command_line_place, member), 0) == 0)
       return option + complaint.substr(complaint.find(": ", complaint.find('/')));
@@ -106,6 +118,7 @@ Design design_of(const RunArguments& a, const Suite& suite) {
   if (!a.demonstrations.empty()) overrides["demonstrations"] = numbers("--demos", a.demonstrations);
   if (!a.seeds.empty()) overrides["seeds"] = numbers("--seeds", a.seeds);
   for (const std::string& words : a.selection_errors) overrides["selection_errors"].push_back(selection_errors(words));
+  if (!a.train_on.empty()) overrides["train_on"] = train_on(a.train_on);
   if (a.episodes) overrides["episodes"] = *a.episodes;
   Design design = preset_design(suite, a.preset);
   try {
@@ -247,6 +260,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   list("--selection-errors", a.selection_errors,
        "Errors to make in what methods select: missing=P drops each true feature with probability P, added=P adds each "
        "wrong one, added=P+missing=P does both; none");
+  verb.add_option("--train-on", a.train_on,
+                  "Show methods their demonstrations through a perturbation axis: AXIS:LEVEL, or AXIS:any for a level "
+                  "drawn for each demonstration; not for the leaderboard");
   verb.add_option("--episodes", a.episodes, "Test scenes per arm");
   verb.add_option("--jobs", a.jobs, "Cells to compute at once (default: one per core)")->check(CLI::Range(1, 4096));
   verb.add_option("--timeout", a.timeout_s, "Seconds after which a cell is stopped and counts as failed")
@@ -324,17 +340,29 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_flag("--dry-run", a.dry_run,
                 "Compute nothing; print the number of cells, and the time and disk space that they would take");
   arrange(verb, "", {{"suite", "SUITE"}});
-  arrange(verb, "What is computed", {{"--preset", "PRESET"},      {"--methods", "METHOD,..."},
-                                     {"--engines", "ENGINE,..."}, {"--scenarios", "SCENARIO,..."},
-                                     {"--layout", "LAYOUT,..."},  {"--demos", "N,..."},
-                                     {"--seeds", "N,..."},        {"--selection-errors", "KIND=P,..."},
-                                     {"--episodes", "N"},         {"--set", "M.OPTION=VALUE"},
-                                     {"--answers", "SOURCE"},     {"--model", "MODEL"},
-                                     {"--cassette", "FILE"},      {"--max-queries", "N"},
-                                     {"--request", "JSON"},       {"--reply-timeout", "SECONDS"},
-                                     {"--concurrency", "N"},      {"--truth", "released|printed"},
-                                     {"--humans", "DIR"},         {"--rehearsal", ""},
-                                     {"--no-reference", ""}});
+  arrange(verb, "What is computed",
+          {{"--preset", "PRESET"},
+           {"--methods", "METHOD,..."},
+           {"--engines", "ENGINE,..."},
+           {"--scenarios", "SCENARIO,..."},
+           {"--layout", "LAYOUT,..."},
+           {"--demos", "N,..."},
+           {"--seeds", "N,..."},
+           {"--selection-errors", "KIND=P,..."},
+           {"--train-on", "AXIS"},
+           {"--episodes", "N"},
+           {"--set", "M.OPTION=VALUE"},
+           {"--answers", "SOURCE"},
+           {"--model", "MODEL"},
+           {"--cassette", "FILE"},
+           {"--max-queries", "N"},
+           {"--request", "JSON"},
+           {"--reply-timeout", "SECONDS"},
+           {"--concurrency", "N"},
+           {"--truth", "released|printed"},
+           {"--humans", "DIR"},
+           {"--rehearsal", ""},
+           {"--no-reference", ""}});
   arrange(
       verb, "How much is computed",
       {{"--dry-run", ""}, {"--limit", "N"}, {"--shard", "I/N"}, {"--resume", ""}, {"--fresh", ""}, {"--debug", "KEY"}});

@@ -31,6 +31,7 @@ struct PerturbationAxis {
   std::function<Observation(Observation, const Scenario&, int level, RandomStream)> perceive = nullptr;
   /// How likely each true feature is missing from what was selected, and each wrong one added. Null: as it is.
   std::function<double(int level)> selection_errors = nullptr;
+  bool named = false;  // its levels are kinds without an order: no curve, no area
 
   int most() const { return static_cast<int>(levels.size()); }
   /// Whether the part may differ from the control's. The policy's input may wherever a part of it may.

@@ -159,6 +159,7 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
       cell.method = method;
       cell.method.name += errors.suffix();
       cell.selection_errors = errors;
+      cell.train_on = method.is_reference() ? std::nullopt : design.train_on;
       cell.demonstrations = demonstrations;
       cell.training_seed = seed;
       for (const auto& participant : participants(method, scenario, variation.participants)) {

@@ -110,7 +110,7 @@ void unite(RunRecord& all, const Part& first, const Part& part) {
 // What status.json says of a cell that the run's own programs computed.
 Json build_of(const Part& part, const Cell& cell) {
   Json build = part.record().build;
-  if (!cell.perturbs()) build.erase(perturbation_library);
+  if (!cell.needs_axes()) build.erase(perturbation_library);
   const auto plugin = [&](const std::string& kind, const std::string& id) {
     const auto found = part.programs().find(kind + " " + id);
     if (found != part.programs().end()) build[kind] = *found;

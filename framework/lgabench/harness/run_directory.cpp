@@ -39,7 +39,7 @@ bool has_content(const fs::path& directory) {
 
 }  // namespace
 
-Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool perturbs) {
+Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes) {
   static const Json programs = [] {
     const fs::path bin = program_directory();
     Json hashes;
@@ -51,7 +51,7 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool pertu
   }();
   static const fs::path perturbations = program_directory().parent_path() / "lib" / perturbation_library;
   Json build = programs;
-  if (perturbs) {
+  if (axes) {
     static const std::string hash = sha256_file(perturbations);
     build[perturbation_library] = hash;
   }

@@ -15,8 +15,8 @@
 namespace lgabench {
 
 /// SHA-256 of what computes a cell: the worker, the framework's libraries, "engine" and "method" (the plugins' files;
-/// no "method" for a reference row); the library of perturbations where the cell `perturbs`.
-Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool perturbs);
+/// no "method" for a reference row); the library of perturbations where the cell needs its `axes`.
+Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes);
 
 /// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
 /// before `suffix` alone: another build's. "" if there is none.

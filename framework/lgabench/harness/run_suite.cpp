@@ -34,7 +34,7 @@ const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
 }
 
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
-  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.perturbs());
+  Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
   return build;
 }

@@ -42,9 +42,10 @@ std::vector<std::string> names(const JsonReader& list, const char* what = "",
 }
 
 const std::vector<std::string> grid_members{
-    "scenarios",  "layouts",     "engines", "methods", "demonstrations",   "seeds",        "episodes",
-    "scene_seed", "test_scenes", "smoke",   "options", "selection_errors", "perturbations"};
-const std::vector<std::string> may_be_absent{"test_scenes", "smoke", "options", "selection_errors", "perturbations"};
+    "scenarios",  "layouts",     "engines", "methods", "demonstrations",   "seeds",         "episodes",
+    "scene_seed", "test_scenes", "smoke",   "options", "selection_errors", "perturbations", "train_on"};
+const std::vector<std::string> may_be_absent{"test_scenes",      "smoke",         "options",
+                                             "selection_errors", "perturbations", "train_on"};
 
 // Method id or "*" -> option -> value, as far as it can be checked without plugins.
 Json options_of(const JsonReader& options, const std::vector<std::string>& methods) {
@@ -79,6 +80,20 @@ Json perturbations_of(const JsonReader& list) {
   return all;
 }
 
+// An axis that changes what is perceived: what else one changes is no part of a demonstration.
+TrainOn train_on_of(const JsonReader& reader) {
+  const TrainOn through = read_train_on(reader);
+  const std::vector<std::string> some = train_on_axes(), all = perturbation_ids();
+  if (std::find(all.begin(), all.end(), through.axis) == all.end())
+    throw InputError(fmt::format("{}: {}: {}", reader.file(), reader.place(), none_named("axis", through.axis, some)));
+  if (std::find(some.begin(), some.end(), through.axis) == some.end())
+    throw InputError(
+        fmt::format("{}: {}: expected an axis that changes what is perceived and nothing else ({}), got {}",
+                    reader.file(), reader.place(), fmt::join(some, ", "), through.axis));
+  if (through.level) read_perturbation(reader);  // which refuses a level that the axis lacks
+  return through;
+}
+
 // What pages say of the suite (report/about_suite.hpp).
 void expect_about(const JsonReader& about) {
   about.only({"question", "main_arm", "main_demonstrations", "arms"});
@@ -92,6 +107,13 @@ void expect_about(const JsonReader& about) {
 
 }  // namespace
 
+std::vector<std::string> train_on_axes() {
+  std::vector<std::string> ids;
+  for (const PerturbationAxis& axis : perturbation_axes())
+    if (axis.perceive) ids.push_back(axis.id);
+  return ids;
+}
+
 Json to_json(const Design& design) {
   Json json{
       {"scenarios", design.scenarios}, {"layouts", design.layouts},       {"engines", design.engines},
@@ -100,6 +122,7 @@ Json to_json(const Design& design) {
       {"smoke", design.smoke},         {"options", design.options}};
   for (const SelectionErrors& errors : design.selection_errors) json["selection_errors"].push_back(to_json(errors));
   if (!design.perturbations.empty()) json["perturbations"] = design.perturbations;
+  if (design.train_on) json["train_on"] = to_json(*design.train_on);
   return json;
 }
 
@@ -127,6 +150,7 @@ Design apply(const JsonReader& overrides, Design design) {
   if (overrides.has("selection_errors"))
     design.selection_errors = distinct<SelectionErrors>(overrides.at("selection_errors"), read_selection_errors);
   if (overrides.has("perturbations")) design.perturbations = perturbations_of(overrides.at("perturbations"));
+  if (overrides.has("train_on")) design.train_on = train_on_of(overrides.at("train_on"));
   if (overrides.has("smoke")) design.smoke = overrides.at("smoke").boolean();
   return design;
 }

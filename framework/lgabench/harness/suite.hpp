@@ -1,6 +1,7 @@
 // A suite: the scenarios, methods and seeds that make one table. Read without an engine or a plugin.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include <lgabench/core/json.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/test_scenes.hpp>
+#include <lgabench/record/train_on.hpp>
 
 namespace lgabench {
 
@@ -27,6 +29,7 @@ struct Design {
   std::vector<SelectionErrors> selection_errors{};  // made in what methods select; none: cells without
   /// [{"axis", "levels"}, ...]: arms of every scenario beside its others, its first arm with that perturbation.
   Json perturbations = Json::array();
+  std::optional<TrainOn> train_on{};       // what demonstrations are perceived through
   std::string options_place = "/options";  // in the suite's file, for messages; no member
 };
 
@@ -36,6 +39,9 @@ Json to_json(const Design& design);
 /// @throws InputError for an unknown member, scenario or layout, a list that is empty or names something twice, a
 /// number out of range, options of what is no method of the design. Options themselves are checked by expand().
 Design apply(const JsonReader& overrides, Design base);
+
+/// Ids of the axes that `train_on` may name.
+std::vector<std::string> train_on_axes();
 
 struct Suite {
   std::string id, environment;

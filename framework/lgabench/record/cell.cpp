@@ -78,6 +78,7 @@ Json to_json(const Cell& cell) {
   if (cell.method.acts) json["method"]["acts"] = to_json(*cell.method.acts);
   if (cell.participant) json["participant"] = {{"id", cell.participant->id}, {"sha256", cell.participant->sha256}};
   if (!cell.selection_errors.none()) json["selection_errors"] = to_json(cell.selection_errors);
+  if (cell.train_on) json["train_on"] = to_json(*cell.train_on);
   if (cell.participant && cell.participant->rehearsal) json["participant"]["rehearsal"] = true;
   return json;
 }
@@ -85,7 +86,8 @@ Json to_json(const Cell& cell) {
 Cell read_cell(const Json& json, const std::string& file) {
   const JsonReader reader(json, file);
   reader.only({"suite", "environment", "layout", "scenario", "engine", "method", "demonstrations", "training_seed",
-               "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "data", "smoke"});
+               "scene_seed", "test_scenes", "episodes", "answers", "participant", "selection_errors", "train_on",
+               "data", "smoke"});
   const JsonReader method = reader.at("method");
   method.only({"kind", "id", "name", "version", "options", "asks", "acts"});
   constexpr long long most = std::numeric_limits<int>::max();
@@ -116,6 +118,7 @@ Cell read_cell(const Json& json, const std::string& file) {
                                        participant.has("rehearsal") && participant.at("rehearsal").boolean()};
   }
   if (reader.has("selection_errors")) cell.selection_errors = read_selection_errors(reader.at("selection_errors"));
+  if (reader.has("train_on")) cell.train_on = read_train_on(reader.at("train_on"));
   cell.data = reader.at("data").json();
   cell.smoke = reader.at("smoke").boolean();
   return cell;

@@ -12,6 +12,7 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/record/answer_source.hpp>
 #include <lgabench/record/test_scenes.hpp>
+#include <lgabench/record/train_on.hpp>
 
 namespace lgabench {
 
@@ -54,12 +55,15 @@ struct Cell {
   AnswerSource answers;
   std::optional<CellParticipant> participant;  // of a method that asks people, where there are any
   SelectionErrors selection_errors;            // made in what the method selects
+  std::optional<TrainOn> train_on;             // what the method's demonstrations are perceived through
   Json data;                                   // sha256 of the shipped data that the cell reads
   bool smoke = false;
 
   std::string scenario_id() const { return scenario->at("id"); }
   /// Whether an arm of its scenario has a perturbation.
   bool perturbs() const;
+  /// Whether its results depend on the perturbation axes.
+  bool needs_axes() const { return train_on || perturbs(); }
   /// For people: "lga heart cells n=20 seed=0".
   std::string title() const;
   /// The training seed where the test scenes are its own.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -121,6 +122,7 @@ void add_to(std::vector<float>& sums, const std::vector<float>& values, float ti
 // Adds the mean of one scenario in one resample, for every row: as crossed_mean() and nested_mean().
 void add_resampled(const std::vector<std::vector<std::vector<float>>>& units, bool shared, RandomStream& random,
                    std::vector<float>& sums) {
+  shared = shared || units.size() == 1;
   const auto count = static_cast<std::uint32_t>(units.size()), scenes = static_cast<std::uint32_t>(units[0].size());
   const std::uint32_t drawn_units = shared ? count : count - 1;
   const float weight = 1 / static_cast<float>(drawn_units * scenes);
@@ -238,6 +240,18 @@ Interval SharedResamples::interval(std::size_t row) const {
   }
   std::sort(means.begin(), means.end());
   return percentile_interval(means);
+}
+
+std::optional<Interval> SharedResamples::ratio(std::size_t row, std::size_t to) const {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < imagined_.size(); ++k) {
+    const auto [one, other] = imagined_[k];
+    const double of = means_[row][k] * scenes_ + one, whole = means_[to][k] * scenes_ + other;
+    ratios.push_back(whole > 0 ? of / whole : std::numeric_limits<double>::infinity());
+  }
+  std::sort(ratios.begin(), ratios.end());
+  const Interval interval = percentile_interval(ratios);
+  return std::isfinite(interval.high) ? std::optional(interval) : std::nullopt;
 }
 
 double SharedResamples::p(std::size_t one, std::size_t other) const {

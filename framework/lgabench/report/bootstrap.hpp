@@ -1,5 +1,6 @@
 // How far chance may have moved a mean over scenarios: their test scenes and training seeds drawn again.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -66,8 +67,8 @@ Change paired_change(const Samples& scenarios, std::string_view name, int resamp
 /// of every pair, for little more than the cost of one. 10,000 resamples.
 class SharedResamples {
  public:
-  /// `rows`: of each row, scenario, policy and scene the success, or a mean of it. `shared`: as Sample::shared.
-  /// @pre all rows have as many scenarios, policies and scenes; none is empty
+  /// `rows`: of each row, scenario, policy and scene the success, or a mean of it. `shared`: as Sample::shared;
+  /// of a single policy it says nothing. @pre all rows have as many scenarios, policies and scenes; none is empty
   SharedResamples(const std::vector<std::vector<std::vector<std::vector<double>>>>& rows, bool shared,
                   std::string_view name);
   /// As success_interval(), of a row's mean.
@@ -76,6 +77,9 @@ class SharedResamples {
   /// tail is a normal distribution's with the resamples' mean and variance, if that is smaller: Holm's correction over
   /// more than 250 rows would otherwise find no difference.
   double p(std::size_t one, std::size_t other) const;
+  /// 95 % percentile interval of a row's mean as a share of another row's; none where in more than 2.5 % of the
+  /// resamples that other one is 0.
+  std::optional<Interval> ratio(std::size_t row, std::size_t to) const;
 
  private:
   double scenes_ = 0;

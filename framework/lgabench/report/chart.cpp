@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include <lgabench/core/rounding.hpp>
 #include <lgabench/report/canvas.hpp>
 
 namespace lgabench::report {
@@ -12,6 +14,22 @@ namespace {
 constexpr double left = 40, right = 14, small_text = 11, radius = 4.2;
 constexpr double spare_width = 1.12;  // a browser without Helvetica sets a wider font
 const Pen grid{Ink::rule};
+
+// From 0, dark, to 1, pale: steps of a single-hue scale (ColorBrewer's OrRd), between which colours are mixed.
+constexpr std::array<std::array<double, 3>, 5> heat_steps{
+    {{127, 0, 0}, {215, 48, 31}, {252, 141, 89}, {253, 212, 158}, {255, 247, 236}}};
+constexpr double dark_below = .4;  // a value whose colour bears white text
+
+std::string heat_colour(double value) {
+  const double at = std::clamp(value, 0., 1.) * (heat_steps.size() - 1);
+  const std::size_t step = std::min(static_cast<std::size_t>(at), heat_steps.size() - 2);
+  std::string colour = "#";
+  for (std::size_t c = 0; c < 3; ++c)
+    colour +=
+        fmt::format("{:02x}", std::lround(heat_steps[step][c] + (at - static_cast<double>(step)) *
+                                                                    (heat_steps[step + 1][c] - heat_steps[step][c])));
+  return colour;
+}
 
 // One chart on one canvas: where values lie.
 class Drawing {
@@ -24,6 +42,7 @@ class Drawing {
     canvas_.text(chart_.title, 8, 18, Anchor::start, std::min(13., fits), true, Ink::ink);
     if (!chart_.subtitle.empty()) canvas_.text(chart_.subtitle, 8, 33, Anchor::start, small_text, false, Ink::soft);
     if (chart_.rows) return rows();
+    if (chart_.heat) return heat();
     axes();
     for (const Series::Kind kind : {Series::reference, Series::published, Series::curve, Series::measured})
       draw_all(kind);
@@ -109,6 +128,52 @@ class Drawing {
         y += row;
       }
     return foot + 42;
+  }
+
+  // Numbers on their colours, columns' names slanted below them. Returns the height.
+  double heat() {
+    constexpr double row = 26, between = 12, turned = 35, degree = 3.14159265358979 / 180;
+    double names = 0, heads = 0;
+    for (const Series& series : chart_.series)
+      names = std::max(names, spare_width * text_width(series.name, small_text) + 2 * between);
+    for (const Chart::Tick& tick : chart_.ticks)
+      heads = std::max(heads, spare_width * text_width(tick.label, small_text));
+    const double begin = std::max(names, heads * std::cos(turned * degree) - 2 * between), end = chart_.width - right,
+                 column = (end - begin) / static_cast<double>(chart_.ticks.size());
+    const auto coloured = [&](const std::string& colour, const auto& draws) {
+      Series shade;
+      shade.style.colour = colour;
+      canvas_.open(shade);
+      draws();
+      canvas_.close();
+    };
+    double y = top_;
+    for (const Series& series : chart_.series) {
+      canvas_.text(series.name, begin - between, y + row / 2 + 4, Anchor::end, small_text, false, Ink::ink);
+      for (const ChartPoint& point : series.points) {
+        const double x = begin + point.x * column;
+        canvas_.open(point, series.kind);
+        coloured(heat_colour(point.y), [&] {
+          canvas_.path({{'m', {x + 1, y + 1}},
+                        {'l', {x + column - 1, y + 1}},
+                        {'l', {x + column - 1, y + row - 1}},
+                        {'l', {x + 1, y + row - 1}},
+                        {'z'}},
+                       {Ink::none, Ink::series});
+        });
+        coloured(point.y < dark_below ? "#ffffff" : "#08090a", [&] {
+          canvas_.text(fixed(point.y), x + column / 2, y + row / 2 + 4, Anchor::middle, small_text, false, Ink::series);
+        });
+        canvas_.close();
+      }
+      y += row;
+    }
+    for (const Chart::Tick& tick : chart_.ticks)
+      canvas_.text(tick.label, begin + (tick.at + .5) * column + 4, y + 16, Anchor::end, small_text, false, Ink::soft,
+                   -turned);
+    y += 20 + heads * std::sin(turned * degree);
+    canvas_.text(chart_.axis, (begin + end) / 2, y + 12, Anchor::middle, small_text, false, Ink::soft);
+    return y + 22;
   }
 
   void draw_all(Series::Kind kind) {

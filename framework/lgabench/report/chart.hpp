@@ -43,6 +43,7 @@ struct Chart {
   std::vector<Series> series{};
   bool legend = true;
   bool rows = false;  // a row for each series, named beside it, its first point along the width: no ticks, no legend
+  bool heat = false;  // a row for each series, a column for each tick, values from 0 to 1 as colours: no legend
 };
 
 /// The chart as an SVG element. `standalone`: as a file, with the name space that a page must not have.

@@ -139,7 +139,9 @@ std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about
   std::vector<ArmLine> lines;
   for (const Table& table : material.summary.tables)
     for (const std::string& arm : table.arms) {
-      if (std::any_of(lines.begin(), lines.end(), [&arm](const ArmLine& line) { return line.name == arm; })) continue;
+      if (table.perturbs(arm) ||
+          std::any_of(lines.begin(), lines.end(), [&arm](const ArmLine& line) { return line.name == arm; }))
+        continue;
       ArmLine& line = lines.emplace_back(ArmLine{arm, about.arm(arm), ""});
       for (const CellResult& cell : material.run.cells) {
         if (cell.failed || !has_arm(cell, arm) || !line.png.empty()) continue;

@@ -9,6 +9,7 @@
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
+#include <lgabench/report/settings.hpp>
 #include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
@@ -45,8 +46,10 @@ Grid runs_grid(const std::vector<Report>& reports, const fs::path& place) {
 // What rows must share to be compared, in words.
 std::string setting(const Report& report, const Table& table, const std::string& arm) {
   const std::vector<std::string> scenarios = table.scenarios_with(arm);
-  return fmt::format("{}, {}, arm {}, {}: {}", report.run.suite, table.title(), arm,
-                     table.demonstrations_text(table.demonstrations().back()), fmt::join(scenarios, ", "));
+  const std::string through = seen_through(report.run);
+  return fmt::format("{}, {}, arm {}, {}{}: {}", report.run.suite, table.title(), arm,
+                     table.demonstrations_text(table.demonstrations().back()),
+                     through.empty() ? "" : " seen through " + through, fmt::join(scenarios, ", "));
 }
 
 Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
@@ -60,7 +63,7 @@ Grid success_grid(const std::vector<Report>& reports, const fs::path& place) {
       for (const std::string& arm : table.arms)
         for (const std::string& method : table.methods(mean_scenario))
           if (const Row* row = table.find(arm, mean_scenario, method, table.demonstrations().back());
-              row && row->success)
+              row && row->success && !row->perturbation)
             settings[setting(report, table, arm)].push_back({&report, row});
   std::vector<std::string> methods;
   for (const auto& item : settings)

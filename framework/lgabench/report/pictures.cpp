@@ -23,6 +23,7 @@ struct Request {
   std::vector<std::string> ends{};  // end_key of each of its ends
   std::string before{};             // end_key of the scene itself, where engines disagree about its end
   bool failed = false;              // a method in it
+  bool of_levels = false;           // the first scene of a run with perturbations, in one of its arms
   std::string environment{};        // whose actions these are
 };
 
@@ -39,8 +40,8 @@ bool is_new_in(std::vector<std::string>& names, const std::string& scene, const 
   return true;
 }
 
-// A request for each scene that a method played: those in which one failed first, then by index, then as the cells are
-// ordered.
+// A request for each scene that a method played: one that shows each level of each perturbation, then those in which
+// one failed, then by index, then as the cells are ordered.
 std::vector<Request> requests_of(const fs::path& run, const RunResults& results) {
   std::map<std::string, std::size_t> place;  // of a scene's request
   std::vector<Request> all;
@@ -58,6 +59,7 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
               {{run / "cells" / cell.key / cell_file::configuration, arm, static_cast<int>(i), episode.scene}, {}});
         all[known->second].environment = cell.environment;
         Request& request = all[known->second];
+        request.of_levels = i == 0 && !cell.perturbations.empty() && cell.scenario == results.cells.front().scenario;
         request.failed = request.failed || !episode.success();
         const CommandResult& command = cell.commands[episode.command];
         if (is_new_in(request.masks, episode.scene, masks[episode.command]))
@@ -65,7 +67,7 @@ std::vector<Request> requests_of(const fs::path& run, const RunResults& results)
       }
   }
   std::stable_sort(all.begin(), all.end(), [](const Request& a, const Request& b) {
-    return std::tuple(!a.failed, a.scene.index) < std::tuple(!b.failed, b.scene.index);
+    return std::tuple(!a.of_levels, !a.failed, a.scene.index) < std::tuple(!b.of_levels, !b.failed, b.scene.index);
   });
   return all;
 }
@@ -192,6 +194,8 @@ Pictures draw_pictures(const fs::path& run, const RunResults& results, const std
     const std::string& scene = request.scene.scene;
     pictures.scenes[scene] = drawn.at("picture");
     pictures.targets[scene] = drawn.at("targets");
+    if (const Json& perturbed = drawn.at("perturbed"); perturbed.is_array())
+      pictures.perturbed[scene] = {perturbed.at(0), perturbed.at(1)};
     if (drawn.at("oracle").is_array()) pictures.oracle[scene] = {request.environment, drawn.at("oracle").get<Action>()};
     for (std::size_t i = 0; i < request.masks.size(); ++i) pictures.masks[request.masks[i]] = drawn.at("masks").at(i);
   }

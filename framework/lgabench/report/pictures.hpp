@@ -18,7 +18,10 @@ constexpr std::size_t most_read_bytes = 4 << 20;  // of pictures that policies r
 struct Pictures {
   std::map<std::string, std::string> scenes;  // the scene's hash -> PNG in base64, of the scene before the action
   std::map<std::string, std::string> masks;   // mask_key -> PNG in base64
-  std::map<std::string, std::string> ends;    // end_key -> PNG in base64; "" where nothing moved
+  /// The scene's hash -> PNG in base64 of it before and after its arm's perturbation, or where that leaves colours
+  /// alone of its objects' ids. None where it leaves both.
+  std::map<std::string, std::pair<std::string, std::string>> perturbed;
+  std::map<std::string, std::string> ends;  // end_key -> PNG in base64; "" where nothing moved
   /// What a policy read, as it said itself: its pictures, as captions and indices of `seen`; texts that it read beside
   /// them; and what of the method's inputs it did not read.
   struct Input {
@@ -43,12 +46,12 @@ std::string episode_key(const CellResult& cell, const std::string& arm, std::siz
 /// Names the picture of an episode's scene after its action on `engine`; "": before it.
 std::string end_key(const CellResult& cell, const std::string& arm, std::size_t index, const std::string& engine);
 
-/// Draws the first most_pictures scenes, those in which a method failed first, then by index, so that each scenario has
-/// its share; goal masks in these; and what policies read of them, as the cells' shown.json has it. A worker that is
-/// missing or fails is the Pictures' problem, not an error. Plays most_ends of the episodes in them again, so that each
-/// row has its share: the first failure and the first success of every row, then the second ones, the most
-/// demonstrations first. And the ends of the first most_disagreements on both engines; one that cannot be loaded leaves
-/// no picture.
+/// Draws the first most_pictures scenes: one at each level of each perturbation, then those in which a method failed,
+/// then by index, so that each scenario has its share; goal masks in these; and what policies read of them, as the
+/// cells' shown.json has it. A worker that is missing or fails is the Pictures' problem, not an error. Plays most_ends
+/// of the episodes in them again, so that each row has its share: the first failure and the first success of every row,
+/// then the second ones, the most demonstrations first. And the ends of the first most_disagreements on both engines;
+/// one that cannot be loaded leaves no picture.
 Pictures draw_pictures(const fs::path& run, const RunResults& results, const std::vector<EngineAgreement>& agreements);
 
 }  // namespace lgabench::report

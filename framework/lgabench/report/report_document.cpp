@@ -124,6 +124,7 @@ Document report_document(const Material& material) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   for (Section& section : success(material)) add(std::move(section));
+  add(perturbations(material));
   add(claims_section(material.claims, material.styles, "The paper's claims"));
   add(phi(material));
   add(selection_errors(material));

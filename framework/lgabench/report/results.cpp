@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -16,6 +17,7 @@
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
+#include <lgabench/record/perturbed.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -46,6 +48,22 @@ void read_episodes(const fs::path& file, CellResult& cell) {
     if (cell.episodes[arm].size() != static_cast<std::size_t>(cell.episodes_per_arm))
       throw InputError(fmt::format("{}: line {}: expected {} episodes of arm \"{}\", got {}", file.string(), line,
                                    cell.episodes_per_arm, arm, cell.episodes[arm].size()));
+  }
+}
+
+void read_perturbed(const fs::path& file, CellResult& cell) {
+  constexpr auto input = static_cast<std::size_t>(EpisodePart::input);
+  std::map<int, std::string> control;  // by index
+  int line = 0;
+  for (const Json& json : parse_json_lines(read_file(file, Links::refused), file.string())) {
+    const JsonReader reader(json, fmt::format("{}: line {}", file.string(), ++line));
+    const PerturbedEpisode episode = read_perturbed_episode(reader);
+    if (one_line(episode.arm) == cell.arms.front()) control[episode.index] = episode.hashes[input];
+    const auto same = control.find(episode.index);
+    if (cell.perturbations.count(one_line(episode.arm)) == 0 || same == control.end()) continue;
+    UnchangedInputs& inputs = cell.inputs[one_line(episode.arm)];
+    ++inputs.of;
+    inputs.unchanged += same->second == episode.hashes[input];
   }
 }
 
@@ -86,6 +104,13 @@ void read_selections(const fs::path& file, CellResult& cell) {
   }
 }
 
+// Of an axis that need not be installed.
+Perturbation perturbation_of(const JsonReader& reader) {
+  if (!reader.json().is_object() || reader.json().size() != 1) reader.fail("an object with one axis and its level");
+  const std::string axis = reader.json().begin().key();
+  return {one_line(axis), static_cast<int>(reader.at(axis).integer(1, std::numeric_limits<int>::max()))};
+}
+
 void read_configuration(const fs::path& directory, CellResult& result) {
   const lgabench::Cell& cell = result.configuration = recorded_cell(directory);
   const JsonReader scenario(*cell.scenario, (directory / cell_file::configuration).string(), "/scenario");
@@ -103,7 +128,10 @@ void read_configuration(const fs::path& directory, CellResult& result) {
   }
   result.demonstrated_commands = static_cast<int>(
       std::count_if(result.commands.begin(), result.commands.end(), [](const CommandResult& c) { return c.seen; }));
-  for (const JsonReader& arm : scenario.at("tests").elements()) result.arms.push_back(shown(arm.at("arm")));
+  for (const JsonReader& arm : scenario.at("tests").elements()) {
+    result.arms.push_back(shown(arm.at("arm")));
+    if (arm.has("perturbation")) result.perturbations[result.arms.back()] = perturbation_of(arm.at("perturbation"));
+  }
   result.environment = one_line(cell.environment);
   result.layout = one_line(cell.layout);
   result.engine = one_line(cell.engine);
@@ -155,6 +183,7 @@ CellResult read_cell(const fs::path& directory) {
   read_selections(directory / cell_file::selections, cell);
   read_training(directory / cell_file::training, cell);
   read_episodes(directory / cell_file::episodes, cell);
+  if (!cell.perturbations.empty()) read_perturbed(directory / cell_file::perturbed, cell);
   const fs::path timing_file = directory / cell_file::timing;
   cell.timing = read_json(timing_file, Links::refused);
   for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();

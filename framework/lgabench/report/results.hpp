@@ -29,6 +29,11 @@ struct CommandResult {
   bool ambiguous = false;  // as the scenario says
 };
 
+/// Of a perturbed arm's episodes that were played, those in which the policy's whole input was the control's.
+struct UnchangedInputs {
+  int unchanged = 0, of = 0;
+};
+
 /// One cell's outcome. A cell that failed keeps its configuration and its reason, and has no episodes.
 struct CellResult {
   lgabench::Cell configuration;                             // whole; below, its texts in one line
@@ -43,7 +48,9 @@ struct CellResult {
   bool rehearsal = false;   // that was no person
   std::string asks;         // whom its method asks beside the language model, as cell.json says; else empty
   std::vector<std::string> arms;
-  std::set<std::string> ambiguous;  // arms that give an ambiguous command: shown, in no mean
+  std::set<std::string> ambiguous;                    // arms that give an ambiguous command: shown, in no mean
+  std::map<std::string, Perturbation> perturbations;  // of the arms that have one; their control is the first arm
+  std::map<std::string, UnchangedInputs> inputs;      // of these, as perturbed.jsonl says
   std::vector<CommandResult> commands;
   int demonstrated_commands = 1;  // each had `demonstrations`; 1 where they were divided among the commands (0.1.0)
   bool failed = false;

@@ -161,8 +161,9 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
   if (joined)
     for (const int n : demonstrations) places.push_back({static_cast<double>(n), std::to_string(n), arm, n});
   else
-    for (std::size_t i = 0; i < table.arms.size(); ++i)
-      places.push_back({static_cast<double>(i), table.arm_title(table.arms[i]), table.arms[i], demonstrations.front()});
+    for (const std::string& each : table.arms)
+      if (!table.perturbs(each))
+        places.push_back({static_cast<double>(places.size()), table.arm_title(each), each, demonstrations.front()});
   const double pad = joined ? .08 * (places.back().x - places.front().x) : .6;
   chart.left = places.front().x - pad;
   chart.right = places.back().x + pad;
@@ -217,6 +218,7 @@ Charts figures(const Material& material, const Table& table) {
   const bool curves = table.demonstrations().size() > 1;
   Charts all;
   for (const std::string& arm : table.arms) {
+    if (table.perturbs(arm)) continue;
     Chart chart = chart_of(material, table, arm, mean_scenario);
     if (chart.series.empty()) continue;
     chart.file = curves && table.arms.size() > 1 ? file + "_" + slug(arm) : file;
@@ -257,15 +259,17 @@ void add_view(const Material& material, const Table& table, const View& view, co
   const auto own = [&](TableCell (*cell_of)(const Row*), const std::vector<Column>& shown,
                        const std::vector<std::string>& scenarios,
                        bool plain_names) { return own_grid(material, table, shown, cell_of, scenarios, plain_names); };
+  const std::vector<Column> plain = View::unperturbed(table, view.columns),
+                            shifted = View::unperturbed(table, view.shifted);
   if (arms) section.add(reading, Heading{view.corner});
   section.add(
       reading,
       Paragraph{{fmt::format("Columns: {}. Brackets: 95 % interval over test scenes and training seeds of these "
                              "scenarios.",
                              arms ? "arms of the test" : "number of demonstrations")}});
-  add(reading, success_grid(material, table, view.columns, {mean_scenario}), "mean",
+  add(reading, success_grid(material, table, plain, {mean_scenario}), "mean",
       fmt::format("Success, {}, {}; {}", table.title(mean_scenario), table.title(), columns));
-  add(in_terminal, own(success_cell, view.columns, all, true), "",
+  add(in_terminal, own(success_cell, plain, all, true), "",
       field + ": success [95 % interval over test scenes and training seeds]");
   section.add(in_markdown, Paragraph{{"Each scenario:"}});
   if (Charts small = scenario_charts(material, table, each); first && !small.charts.empty())
@@ -278,8 +282,9 @@ void add_view(const Material& material, const Table& table, const View& view, co
     add(reading, told(own(shift_cell, view.shifted, all, false)), "change",
         fmt::format("Change against {}, scene by scene, {}; {}", control, table.title(), columns),
         "Change against " + control);
-    add(in_terminal, told(own(shift_cell, view.shifted, all, true)), "",
-        fmt::format("{}: change against {} [95 % interval]", field, control));
+    if (!shifted.empty())
+      add(in_terminal, told(own(shift_cell, shifted, all, true)), "",
+          fmt::format("{}: change against {} [95 % interval]", field, control));
   }
   if (const Grid otherwise = told(own(otherwise_cell, view.shifted, {mean_scenario}, true)); !otherwise.rows.empty()) {
     const std::string what =
@@ -298,7 +303,7 @@ void add_view(const Material& material, const Table& table, const View& view, co
   add(reading, told(own(seen_cell, view.columns, all, false)), "seen",
       fmt::format("Test inputs that occurred in training, share, {}; {}", table.title(), columns),
       "Test inputs that occurred in training");
-  add(in_terminal, told(own(seen_cell, view.columns, {mean_scenario}, true)), "",
+  add(in_terminal, told(own(seen_cell, plain, {mean_scenario}, true)), "",
       field + ": test inputs that occurred in training, share");
 }
 

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <map>
 #include <set>
 
 #include <lgabench/core/environments.hpp>
@@ -64,9 +66,10 @@ TableCell bar(const std::vector<BarPart>& parts, int of) {
   return cell;
 }
 
-// How episodes ended, a bar beside its numbers: over all scenarios, and in groups of one scenario each.
+// How episodes ended, a bar beside its numbers: over all scenarios, and in groups of one scenario each; of perturbed
+// arms those of methods over all scenarios, in groups of one axis each.
 struct Endings {
-  Grid mean, each;
+  Grid mean, each, levels;
 
   Endings(const std::string& name, const char* bars, std::string caption, std::string each_caption) {
     mean.heads = {"table", "arm", "method", "demonstrations", bars};
@@ -77,6 +80,9 @@ struct Endings {
     each.name = name + "_scenarios";
     each.caption = std::move(each_caption);
     each.group_head = "scenario";
+    levels.name = name + "_levels";
+    levels.caption = mean.caption + ", at each level";
+    levels.group_head = "axis";
   }
 
   // A column of numbers; the bars' parts of that `kind`, if any, are what it counts.
@@ -89,19 +95,36 @@ struct Endings {
   // Adds a row with its bar and the columns' numbers.
   void add(const Material& material, const Table& table, const Row& row, TableCell bar,
            std::vector<TableCell> numbers) {
+    if (row.perturbation && (!row.is_mean() || row.is_reference())) return;
     std::vector<TableCell> cells{table.title(), row.arm, named(material, row.method),
                                  count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};
     std::move(numbers.begin(), numbers.end(), std::back_inserter(cells));
+    if (row.perturbation) return levels.rows.push_back({row.perturbation->axis, std::move(cells)});
     Grid& grid = row.is_mean() ? mean : each;
     grid.rows.push_back({row.is_mean() ? TableCell() : TableCell(row.scenario), std::move(cells)});
   }
 
   void put_into(Section& section) {
-    each.heads = mean.heads;
-    each.bars = mean.bars;
-    each.align = "l" + mean.align;
+    for (Grid* grouped : {&each, &levels}) {
+      grouped->heads = mean.heads;
+      grouped->bars = mean.bars;
+      grouped->align = "l" + mean.align;
+    }
+    // Levels of a method below each other, axes and methods as they came: the rows come arm by arm.
+    std::map<std::string, std::size_t> came;
+    const auto words = [](const Grid::Row& row) {
+      return std::array{row.group.text(), row.cells[0].text(), row.cells[2].text(), row.cells[3].text()};
+    };
+    for (const Grid::Row& row : levels.rows)
+      for (const std::string& word : words(row)) came.emplace(word, came.size());
+    std::stable_sort(levels.rows.begin(), levels.rows.end(), [&](const Grid::Row& a, const Grid::Row& b) {
+      const auto [of_a, of_b] = std::pair(words(a), words(b));
+      return std::lexicographical_compare(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                                          [&](const auto& x, const auto& y) { return came.at(x) < came.at(y); });
+    });
     section.add(reading, std::move(mean));
-    section.add(on_page, std::move(each), "Each scenario");
+    if (!each.rows.empty()) section.add(on_page, std::move(each), "Each scenario");
+    if (!levels.rows.empty()) section.add(reading, std::move(levels), "Each level of each axis");
   }
 };
 
@@ -228,7 +251,7 @@ Section attribution(const Material& material) {
       }
       endings.add(material, table, row, bar(parts, row.attributed()), std::move(numbers));
     }
-  if (endings.mean.rows.empty()) return section;
+  if (endings.mean.rows.empty() && endings.levels.rows.empty()) return section;
   const char* seen = "Perception, where the same policy succeeds in the same scene seen without error; else the";
   section.add(reading, Paragraph{{fmt::format("{} abstraction, where the same policy succeeds in the same scene with "
                                               "the true mask; else the policy. Episodes over all scenarios, of methods "

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/names.hpp>
 
@@ -70,6 +71,14 @@ bool fits(const CellResult& cell, const JsonReader& description) {
   return all;
 }
 
+std::string seen_through(const RunResults& run) {
+  for (const CellResult& cell : run.cells)
+    if (const std::optional<TrainOn>& train_on = cell.configuration.train_on)
+      return fmt::format("{}, {}", one_line(train_on->axis),
+                         train_on->level ? fmt::format("level {}", *train_on->level) : "at a level drawn for each");
+  return "";
+}
+
 std::vector<std::string> settings(const RunResults& run) {
   std::vector<std::string> lines;
   if (!run.record.preset.empty()) lines.push_back("preset " + run.record.preset);
@@ -77,6 +86,8 @@ std::vector<std::string> settings(const RunResults& run) {
     lines.push_back("beside the plugins' defaults, " + line);
   if (run.record.request.value("test_scenes", Json()) == TestScenes::per_seed)
     lines.emplace_back("each training seed plays test scenes of its own");
+  if (const std::string through = seen_through(run); !through.empty())
+    lines.push_back("methods saw their demonstrations through " + through);
   for (const std::string& line : remarks(run)) lines.push_back(line);
   return lines;
 }

@@ -12,6 +12,7 @@
 #include <lgabench/report/error_curves.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/pairs.hpp>
+#include <lgabench/report/perturbation_curves.hpp>
 
 namespace lgabench::report {
 namespace {
@@ -125,11 +126,13 @@ std::string stream_name(const char* what, const Row& row) {
 // Success, its change against the first arm, and their intervals, from the seeds.
 void estimate(Draft& draft, const std::string& first_arm) {
   Samples rates, differences;
+  EpisodePairs pairs;
   bool all_paired = true, same_actions = true;
   for (const auto& seeds : draft.scenarios)
     for (const SeedResult& seed : seeds) {
       all_paired = all_paired && seed.paired;
       same_actions = same_actions && seed.paired && seed.paired->same_actions;
+      if (seed.paired) pairs.add(*seed.paired);
     }
   Row& row = draft.row;
   const bool shifts = row.arm != first_arm && all_paired;
@@ -148,14 +151,17 @@ void estimate(Draft& draft, const std::string& first_arm) {
   row.success = mean_outcome(rates);
   row.interval = success_interval(rates, stream_name("report", row));
   if (!shifts) return;
-  const Change change = paired_change(differences, stream_name("report/shift", row), 2000);
+  // Of a perturbed arm p counts as well, corrected for as many tests as there are levels.
+  const int resamples = row.is_mean() && row.perturbation ? 10000 : 2000;
+  const Change change = paired_change(differences, stream_name("report/shift", row), resamples);
   std::vector<std::optional<double>> otherwise;
   for (const auto& seeds : draft.scenarios) {
     std::vector<std::optional<double>> of_seeds;
     for (const SeedResult& seed : seeds) of_seeds.push_back(seed.selected_otherwise);
     otherwise.push_back(mean_of(of_seeds));
   }
-  row.shift = Shift{first_arm, change.difference, change.interval, same_actions, mean_of(otherwise)};
+  row.shift = Shift{first_arm, change.difference, change.interval,   same_actions,
+                    change.p,  pairs.only_first,  pairs.only_second, mean_of(otherwise)};
 }
 
 // The row of `cells`: all seeds and participants of one (scenario, method, demonstrations).
@@ -168,6 +174,7 @@ Draft scenario_draft(const std::vector<const CellResult*>& cells, const std::str
   row.layout = first.layout;
   row.engine = first.engine;
   row.arm = arm;
+  if (const auto of = first.perturbations.find(arm); of != first.perturbations.end()) row.perturbation = of->second;
   row.method = first.method;
   row.kind = first.kind;
   row.demonstrations = first.demonstrations;
@@ -350,6 +357,10 @@ std::vector<std::string> Table::scenarios_with(const std::string& arm) const {
   return all;
 }
 
+bool Table::perturbs(const std::string& arm) const {
+  return std::any_of(rows.begin(), rows.end(), [&arm](const Row& row) { return row.arm == arm && row.perturbation; });
+}
+
 std::vector<int> Table::demonstrations() const {
   std::set<int> learned, any;
   for (const Row& row : rows) {
@@ -411,6 +422,7 @@ Summary summarize(const RunResults& run) {
   for (Table& table : summary.tables)
     for (Row& row : table.rows) row.index = index++;
   summary.error_curves = error_curves(run, summary.tables);
+  summary.perturbations = perturbation_curves(run, summary.tables);
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <lgabench/core/json.hpp>
+#include <lgabench/core/scenario.hpp>
 #include <lgabench/report/paper.hpp>
 #include <lgabench/report/results.hpp>
 #include <lgabench/report/statistics.hpp>
@@ -20,6 +21,8 @@ struct Shift {
   double difference = 0;
   Interval interval;          // 95 %
   bool same_actions = false;  // every policy acted in every scene exactly as in its pair
+  double p = 1;               // two-sided, that the difference is 0
+  int lost = 0, gained = 0;   // episodes that failed, or succeeded, in this arm alone
   /// Where the arm says the same in other words: the share of episodes for whose words something else was selected than
   /// for the first arm's, as a mean like success. None for a method that selects nothing.
   std::optional<double> selected_otherwise;
@@ -40,6 +43,7 @@ Json to_json(const PhiOfCommand& phi);
 struct Row {
   std::size_t index = 0;  // among summary.json's rows
   std::string scenario, layout, engine, arm, method, kind;
+  std::optional<Perturbation> perturbation;  // of its arm
   int demonstrations = 0;
   int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
   int participants = 0;           // whose answers the row is based on; 0 where nobody was asked
@@ -95,6 +99,8 @@ struct Table {
   std::vector<std::string> scenarios_with(const std::string& arm) const;
   /// "mean over 3 scenarios" for the mean, else the scenario's own id.
   std::string title(const std::string& scenario) const;
+  /// Whether the arm's scenes are perturbed ones of the first arm.
+  bool perturbs(const std::string& arm) const;
   /// The arm's own name, or "hard (1 of 3)" for an arm of one of three scenarios.
   std::string arm_title(const std::string& arm) const;
   /// "layout cells, engine mujoco"
@@ -117,11 +123,49 @@ struct ErrorCurve {
   double slope = 0;           // of the line of least squares through them, for each .1 of p
 };
 
+/// Success on the mean over scenarios against the levels of one axis (core/perturbations.hpp). Rows are paired with the
+/// control scene by scene.
+struct PerturbationCurve {
+  struct Level {
+    int level = 0;
+    std::string name;    // in a few words; "" where the axis is not installed
+    double success = 0;  // with its interval as its row has it
+    Interval interval;
+    Change change;                 // against the control
+    std::optional<double> p_holm;  // among all levels of all axes of the row; none of a reference row
+    int lost = 0, gained = 0;      // episodes that failed here alone, and in the control alone
+    double p_mcnemar = 1;          // exact, of these episodes
+    UnchangedInputs inputs;
+    std::size_t row = 0;  // of summary.json
+
+    bool is_loss() const { return p_holm && *p_holm <= alpha && change.difference < 0; }
+  };
+  /// Area under the curve from the control to the last level, levels as far apart as their numbers, as a share of what
+  /// the control's success without any loss would have.
+  struct Area {
+    double relative = 1;
+    Interval interval;  // 95 %
+  };
+  std::string layout, engine, method, kind, axis;
+  int demonstrations = 0;
+  bool named = false;                      // levels without an order
+  double control = 0;                      // success, in the scenarios that have the axis
+  std::optional<std::size_t> control_row;  // of summary.json; none where other scenarios lack the axis
+  std::vector<Level> levels;               // ascending
+  std::optional<Area> area;  // none of a named axis or a reference row, nor where the control hardly ever succeeds
+  int tests = 0;             // among which p_holm is
+
+  /// The lowest level with a significant loss.
+  const Level* first_loss() const;
+  const Level* find(int level) const;
+};
+
 struct Summary {
   std::string suite;
   std::vector<Table> tables;
   std::vector<ErrorCurve> error_curves;
-  std::vector<CellResult> failed;  // cells
+  std::vector<PerturbationCurve> perturbations;  // by table, method, demonstrations, axis
+  std::vector<CellResult> failed;                // cells
 };
 
 /// Aggregates the cells. Deterministic: the bootstrap's random stream is named after the row.

@@ -2,6 +2,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/report/error_curves.hpp>
+#include <lgabench/report/perturbation_curves.hpp>
 #include <lgabench/report/summary.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -76,6 +77,7 @@ Json to_json(const Summary& summary) {
                           {"mean_distance", near->mean_distance}});
   Json json{{"suite", summary.suite}, {"rows", rows}, {"failed_cells", failed}, {"near_paper", nearness}};
   for (const ErrorCurve& curve : summary.error_curves) json["error_curves"].push_back(to_json(curve));
+  for (const PerturbationCurve& curve : summary.perturbations) json["perturbations"].push_back(to_json(curve));
   return json;
 }
 

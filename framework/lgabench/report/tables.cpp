@@ -59,6 +59,13 @@ std::vector<View> views(const Table& table) {
   return all;
 }
 
+std::vector<Column> View::unperturbed(const Table& table, std::vector<Column> columns) {
+  columns.erase(std::remove_if(columns.begin(), columns.end(),
+                               [&table](const Column& column) { return table.perturbs(column.arm); }),
+                columns.end());
+  return columns;
+}
+
 std::string marks_text(const Row& row) {
   std::string text;
   for (const Mark& mark : table_marks)

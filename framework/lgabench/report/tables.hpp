@@ -21,6 +21,9 @@ struct View {
   std::string corner;  // what the columns are: "demonstrations", or e.g. "50 demonstrations"
   std::vector<Column> columns;
   std::vector<Column> shifted;  // those with a change against the first arm
+
+  /// Columns without the levels of perturbations, which have a section of their own.
+  static std::vector<Column> unperturbed(const Table& table, std::vector<Column> columns);
 };
 std::vector<View> views(const Table& table);
 

@@ -1,0 +1,298 @@
+// How a policy breaks: success against the levels of perturbations, beside the control.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <set>
+
+#include <lgabench/report/perturbation_parts.hpp>
+#include <lgabench/report/sections.hpp>
+#include <lgabench/report/tables.hpp>
+
+namespace lgabench::report {
+namespace {
+
+using Curve = PerturbationCurve;
+using Part = PerturbationPart;
+
+const Row& row_at(const Material& material, std::size_t index) {
+  for (const Table& table : material.summary.tables)
+    if (index < table.rows.back().index + 1) return table.rows[index - table.rows.front().index];
+  throw Error(fmt::format("no row {}", index));
+}
+
+std::string place_of(const Material& material, const Curve& curve, const std::string& member) {
+  return fmt::format("/perturbations/{}/{}", &curve - material.summary.perturbations.data(), member);
+}
+std::string place_of(const Material& material, const Curve& curve, const Curve::Level& level,
+                     const std::string& member) {
+  return place_of(material, curve, fmt::format("levels/{}/{}", &level - curve.levels.data(), member));
+}
+
+// Cells.
+
+Spans interval_spans(const Interval& interval, const std::string& low, const std::string& high,
+                     std::string (*text)(double)) {
+  const auto aside = [](const std::string& words, const std::string& place) {
+    return Span::number(words, place, Emphasis::detail);
+  };
+  return {aside(" [", ""), aside(text(interval.low), low), aside(", ", ""), aside(text(interval.high), high),
+          aside("]", "")};
+}
+
+std::string rate(double x) { return fixed(x); }
+std::string change(double x) { return signed_text(x); }
+
+TableCell p_cell(double p, const std::string& place) {
+  return p < .001 ? Span::number("< 0.001") : Span::number(fixed(p, 3), place);
+}
+
+TableCell control_cell(const Material& material, const Curve& curve) {
+  TableCell cell(Span::number(fixed(curve.control), place_of(material, curve, "control/success")));
+  if (!curve.control_row) return cell;
+  cell.episodes = *curve.control_row;
+  cell.rate = curve.control;
+  return cell;
+}
+
+// Success at a level, "*" where it is less, or more, beyond chance.
+TableCell level_cell(const Material& material, const Curve& curve, int number) {
+  const Curve::Level* level = curve.find(number);
+  if (!level) return {};
+  const bool beyond_chance = level->p_holm && *level->p_holm <= alpha && level->change.difference != 0;
+  TableCell cell(Span::number(fixed(level->success), place_of(material, curve, *level, "success"),
+                              !beyond_chance     ? Emphasis::none
+                              : level->is_loss() ? Emphasis::worse
+                                                 : Emphasis::better));
+  if (beyond_chance) {
+    cell.spans.push_back(Span::number("*"));
+    cell.spans.back().title = level->is_loss() ? "a significant loss" : "a significant gain";
+  }
+  const Spans marks = marks_spans(row_at(material, level->row));
+  cell.spans.insert(cell.spans.end(), marks.begin(), marks.end());
+  cell.episodes = level->row;
+  cell.rate = level->success;
+  return cell;
+}
+
+TableCell area_cell(const Material& material, const Curve& curve) {
+  if (!curve.area) return Span::number("–");
+  TableCell cell(Span::number(fixed(curve.area->relative), place_of(material, curve, "area/relative")));
+  for (Span& span : interval_spans(curve.area->interval, place_of(material, curve, "area/low"),
+                                   place_of(material, curve, "area/high"), rate))
+    cell.spans.push_back(std::move(span));
+  return cell;
+}
+
+std::vector<const Curve::Level*> losses(const Curve& curve) {
+  std::vector<const Curve::Level*> all;
+  for (const Curve::Level& level : curve.levels)
+    if (level.is_loss()) all.push_back(&level);
+  return all;
+}
+
+// The level, or of levels without an order each one's name.
+std::string loss_text(const Curve& curve) {
+  const std::vector<const Curve::Level*> all = losses(curve);
+  if (all.empty()) return "none";
+  if (!curve.named) return std::to_string(all.front()->level);
+  std::vector<std::string> names;
+  for (const Curve::Level* level : all)
+    names.push_back(level->name.empty() ? std::to_string(level->level) : level->name);
+  return fmt::format("{}", fmt::join(names, "; "));
+}
+
+TableCell loss_cell(const Material& material, const Curve& curve) {
+  if (curve.kind == "reference") return {};
+  const std::string text = loss_text(curve);
+  if (curve.named || text == "none") return text;
+  return Span::number(text, place_of(material, curve, "first_loss"));
+}
+
+TableCell inputs_cell(int unchanged, int of) {
+  return of == 0 ? Span::number("–") : Span::number(fmt::format("{} of {}", unchanged, of));
+}
+
+TableCell inputs_cell(const Curve& curve) {
+  if (curve.kind == "reference") return {};
+  UnchangedInputs all;
+  for (const Curve::Level& level : curve.levels) all.unchanged += level.inputs.unchanged, all.of += level.inputs.of;
+  return inputs_cell(all.unchanged, all.of);
+}
+
+// Tables.
+
+// `by_row`: grouped by the row, which a narrow terminal needs; else by the part, the row's name in a column.
+Grid curves_grid(const Material& material, const std::vector<Part>& all, bool by_row) {
+  std::set<int> levels;
+  for (const Part& part : all)
+    for (const Curve* curve : part.curves)
+      for (const Curve::Level& level : curve->levels) levels.insert(level.level);
+  Grid grid;
+  grid.name = by_row ? "" : "perturbations";
+  grid.caption =
+      "Success in the control and at each level, mean over scenarios; area under the curve relative to the "
+      "control [95 % interval]";
+  grid.group_head = by_row ? "row" : "table";
+  grid.align = "l";
+  const auto head = [&grid](const std::string& text, char align) {
+    grid.heads.emplace_back(text);
+    grid.align += align;
+  };
+  if (!by_row) head("method", 'l');
+  head("axis", 'l');
+  head("control", 'r');
+  for (const int level : levels) head(std::to_string(level), 'r');
+  for (const char* text : {"area", "first significant loss", "unchanged input"}) head(text, 'r');
+  for (const Part& part : all)
+    for (const Curve* curve : part.curves) {
+      const std::string group = part.title();
+      Grid::Row row{
+          by_row ? material.styles.name(curve->method) + ", " + group : group, {}, curve->kind == "reference"};
+      if (!by_row) row.cells.push_back(named(material, curve->method));
+      row.cells.emplace_back(curve->axis);
+      row.cells.push_back(control_cell(material, *curve));
+      for (const int level : levels) row.cells.push_back(level_cell(material, *curve, level));
+      row.cells.push_back(area_cell(material, *curve));
+      row.cells.push_back(loss_cell(material, *curve));
+      row.cells.push_back(inputs_cell(*curve));
+      grid.rows.push_back(std::move(row));
+    }
+  return grid;
+}
+
+// A column for each axis, none for their mean.
+Grid areas_grid(const Material& material, const Part& part) {
+  const std::vector<std::string> axes = part.axes();
+  Grid grid;
+  grid.name = "perturbations_areas_" + part.file();
+  grid.caption = fmt::format("Area under the curve relative to the control [95 % interval], {}", part.title());
+  grid.heads = {"method", "control"};
+  grid.align = "lr";
+  for (const std::string& axis : axes) grid.heads.emplace_back(axis);
+  grid.align += std::string(axes.size(), 'r');
+  for (const std::string& method : part.methods()) {
+    Grid::Row row{{}, {named(material, method), {}}};
+    for (const std::string& axis : axes) {
+      const Curve* curve = part.find(method, axis);
+      row.cells.push_back(curve ? area_cell(material, *curve) : TableCell());
+      if (curve && (curve->control_row || row.cells[1].spans.empty())) row.cells[1] = control_cell(material, *curve);
+    }
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
+}
+
+Grid levels_grid(const Material& material, const std::vector<Part>& all) {
+  Grid grid;
+  grid.name = "perturbations_levels";
+  grid.caption =
+      "Each level against the control, scene by scene; lost, gained: episodes that failed at the level alone, "
+      "or in the control alone";
+  grid.group_head = "table";
+  grid.heads = {"method", "axis",   "level",       "which is",     "success",        "change",
+                "lost",   "gained", "McNemar’s p", "p after Holm", "unchanged input"};
+  grid.align = "llllrrrrrrrr";
+  for (const Part& part : all)
+    for (const Curve* curve : part.curves)
+      for (const Curve::Level& level : curve->levels) {
+        const auto place = [&](const char* member) { return place_of(material, *curve, level, member); };
+        const auto count = [&](const char* member, int n) { return Span::number(std::to_string(n), place(member)); };
+        TableCell success = level_cell(material, *curve, level.level);
+        const Row& row = row_at(material, level.row);
+        for (Span& span :
+             interval_spans(level.interval, report::place_of(row, "low"), report::place_of(row, "high"), rate))
+          success.spans.push_back(std::move(span));
+        TableCell differs(Span::number(change(level.change.difference), place("change/difference")));
+        for (Span& span : interval_spans(level.change.interval, place("change/low"), place("change/high"), change))
+          differs.spans.push_back(std::move(span));
+        grid.rows.push_back(
+            {part.title(),
+             {named(material, curve->method), curve->axis, count("level", level.level), level.name, std::move(success),
+              std::move(differs), count("lost", level.lost), count("gained", level.gained),
+              p_cell(level.p_mcnemar, place("p_mcnemar")),
+              level.p_holm ? p_cell(*level.p_holm, place("p_holm")) : TableCell(),
+              curve->kind == "reference" ? TableCell() : inputs_cell(level.inputs.unchanged, level.inputs.of)},
+             curve->kind == "reference"});
+      }
+  return grid;
+}
+
+// "LGA: from level 3 of light_colour, level 2 of all; at no level of sensor_noise": of each method.
+List losses_list(const Material& material, const std::vector<Part>& all) {
+  List list;
+  for (const Part& part : all)
+    for (const std::string& method : part.methods()) {
+      std::vector<std::string> some, none;
+      for (const Curve* curve : part.curves) {
+        if (curve->method != method || curve->kind == "reference") continue;
+        if (losses(*curve).empty())
+          none.push_back(curve->axis);
+        else
+          some.push_back(curve->named ? fmt::format("{} ({})", curve->axis, loss_text(*curve))
+                                      : fmt::format("{} from level {}", curve->axis, loss_text(*curve)));
+      }
+      if (some.empty() && none.empty()) continue;
+      const std::string where = all.size() > 1 ? ", " + part.title() : "";
+      Spans line{Span(material.styles.name(method), Emphasis::strong), Span(where + " loses significantly along ")};
+      line.emplace_back(some.empty() ? "no axis" : fmt::format("{}", fmt::join(some, ", ")));
+      if (!none.empty() && !some.empty()) line.emplace_back(fmt::format("; not along {}", fmt::join(none, ", ")));
+      line.emplace_back(".");
+      list.items.push_back(std::move(line));
+    }
+  return list;
+}
+
+}  // namespace
+
+Section perturbations(const Material& material) {
+  Section section{"perturbations", "How a policy breaks"};
+  const std::vector<Part> all = perturbation_parts(material);
+  if (all.empty()) return section;
+  int tests = 0;
+  bool any_named = false;
+  for (const Part& part : all)
+    for (const Curve* curve : part.curves) {
+      tests = std::max(tests, curve->tests);
+      any_named = any_named || curve->named;
+    }
+  section.add(reading, losses_list(material, all));
+  section.add(reading,
+              Paragraph{{fmt::format(
+                  "Each level plays the control’s scenes, and is compared with it scene by scene. * marks a "
+                  "difference beyond chance after Holm’s correction over the {} levels of all axes of its row. "
+                  "Whiskers in the figures: the control’s success and the 95 % interval of the change. The area "
+                  "is that under the curve from the control to the last level, as a share of what it would be "
+                  "had nothing been lost{}; there is no mean over axes, which differ in what a level is. "
+                  "Unchanged input: episodes in which all that the policy was given is the control’s, to the "
+                  "bit.",
+                  tests, any_named ? " (levels that are kinds have none)" : "")}});
+  std::vector<Part> with_areas;
+  for (const Part& part : all)
+    if (Part some = part.with_areas(); !some.curves.empty()) with_areas.push_back(std::move(some));
+  Charts maps;
+  for (const Part& part : with_areas) maps.charts.push_back(perturbation_heat_map(material, part));
+  if (!maps.charts.empty()) section.add(reading, std::move(maps));
+  for (const Part& part : all) {
+    if (all.size() > 1) section.add(reading, Heading{part.title()});
+    section.add(reading, perturbation_charts(material, part));
+  }
+  section.add(in_terminal, curves_grid(material, all, true));
+  section.add(in_terminal, Paragraph{{fmt::format("* beyond chance, after Holm’s correction over the {} levels of all "
+                                                  "axes of a row.",
+                                                  tests)}});
+  section.add(reading, curves_grid(material, all, false));
+  for (const Part& part : with_areas) {
+    Grid areas = areas_grid(material, part);
+    section.add(in_markdown, Paragraph{{areas.caption + ":"}});
+    section.add(reading, std::move(areas));
+  }
+  section.add(in_markdown, Paragraph{{"Each level against the control:"}});
+  section.add(reading, levels_grid(material, all), "Each level against the control");
+  for (const std::string& axis : all.front().axes())
+    if (PictureRow row = perturbation_pictures(material, axis); !row.pictures.empty())
+      section.add(on_page, std::move(row));
+  return section;
+}
+
+}  // namespace lgabench::report
