@@ -73,6 +73,15 @@ class Mobile final : public Environment {
     scene_ = scene;
     objects_ = std::move(objects);
     before_ = poses();
+    seen_by_ = &renderer_;
+    return observe();
+  }
+
+  // Of another renderer: plans are carried out by what the usual camera shows.
+  Observation look(const View& view) override {
+    if (!in_view_) in_view_ = std::make_unique<Renderer>(front_camera());
+    in_view_->look(view);
+    seen_by_ = in_view_.get();
     return observe();
   }
 
@@ -87,8 +96,8 @@ class Mobile final : public Environment {
   }
 
   Observation observe() override {
-    look();
-    return renderer_.render(objects_);
+    find_objects();
+    return seen_by_->render(objects_);
   }
 
   Action expert_action() const override {
@@ -106,10 +115,10 @@ class Mobile final : public Environment {
     const ObjectModel& model = model_of(found->object_type);
     const Pose now = world_->pose(first_ + static_cast<int>(index));
     const Vec3 grasp = now.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, now.rotation);
-    const Camera& camera = front_camera();
+    const Camera& camera = seen_by_->camera();
     const Vec2 at = camera.depth(grasp) > 0 ? camera.at(grasp) : Vec2{};
-    look();
-    const std::vector<std::uint8_t> ids = renderer_.ids(objects_);
+    find_objects();
+    const std::vector<std::uint8_t> ids = seen_by_->ids(objects_);
     double least = std::numeric_limits<double>::infinity();
     Vec2 nearest = at;
     for (int row = 0; row < camera.size.rows; ++row)
@@ -140,7 +149,7 @@ class Mobile final : public Environment {
     return all;
   }
 
-  void look() const {
+  void find_objects() const {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
   }
@@ -156,7 +165,7 @@ class Mobile final : public Environment {
   // What the ray through the plan's place in the picture meets first.
   Surface aimed_at(const Plan& plan) const {
     const PictureSize size = front_camera().size;
-    look();
+    find_objects();
     renderer_.ids(objects_);
     return renderer_.surface(std::min(static_cast<int>(plan.v * size.rows), size.rows - 1),
                              std::min(static_cast<int>(plan.u * size.columns), size.columns - 1));
@@ -188,6 +197,8 @@ class Mobile final : public Environment {
 
   std::unique_ptr<PhysicsWorld> world_;
   mutable Renderer renderer_;
+  std::unique_ptr<Renderer> in_view_;
+  Renderer* seen_by_ = &renderer_;
   std::map<std::string, int> models_;  // by type
   Task task_;                          // the scene's
   Scene scene_;
@@ -246,10 +257,12 @@ class MobileType final : public EnvironmentType {
     const auto model = fetched ? perceive_in_bad_light : perceive;
     return [e = *error, model](Observation seen, RandomStream stream) { return model(std::move(seen), e, stream); };
   }
-  Observation draw(const Scene& scene) const override {
+  Observation draw(const Scene& scene, const View& view) const override {
     static Renderer& renderer = *new Renderer(front_camera());
+    renderer.look(view);
     return renderer.render(visible_objects(scene));
   }
+  bool has_views() const override { return true; }
   std::string world_of(const Scenario& scenario) const override { return scenario.task == fetch ? fetch : ""; }
   std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
     return make_environment(std::move(engine), scenario.task == fetch);

@@ -52,6 +52,11 @@ class Tabletop final : public Environment {
     objects_ = std::move(objects);
     fixed_ = std::move(fixed);
     went_wrong_ = failure::none;
+    return look({});
+  }
+
+  Observation look(const View& view) override {
+    view_ = view;
     return observe();
   }
 
@@ -73,7 +78,7 @@ class Tabletop final : public Environment {
   Observation observe() override {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
-    return renderer_.render(objects_, task_->ground());
+    return renderer_.render(objects_, task_->ground(), view_);
   }
 
   Action expert_action() const override { return expert_action_for(expect(scene_, role::target).instance_id); }
@@ -83,10 +88,21 @@ class Tabletop final : public Environment {
     const auto found = std::find_if(objects.begin(), objects.end(),
                                     [instance_id](const SceneObject& o) { return o.instance_id == instance_id; });
     if (found == objects.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
-    return task_->expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin()));
+    return misread(task_->expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin())));
   }
 
  private:
+  // Both places as if the picture were the usual view's; an object's height does not show from straight above.
+  TwoPoses misread(TwoPoses action) const {
+    if (view_ == View()) return action;  // to the bit
+    const Camera usual, camera(view_);
+    for (PlanarPose* const pose : {&action.pose0, &action.pose1}) {
+      const Vec2 seen = camera.at(pose->position_m);
+      pose->position_m = usual.point(seen.x, seen.y);
+    }
+    return action;
+  }
+
   std::vector<Pose> poses() const {
     std::vector<Pose> all;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) all.push_back(world_->pose(static_cast<int>(i)));
@@ -100,6 +116,7 @@ class Tabletop final : public Environment {
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;
+  View view_;
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
 
@@ -164,7 +181,8 @@ class TabletopType final : public EnvironmentType {
       distance.turn_rad = std::abs(std::remainder(yaw_of(a.pose1.rotation) - yaw_of(b.pose1.rotation), 2 * pi));
     return distance;
   }
-  Observation draw(const Scene& scene) const override { return drawn(scene); }
+  Observation draw(const Scene& scene, const View& view) const override { return drawn(scene, view); }
+  bool has_views() const override { return true; }
   Json shown_members(const Scenario& scenario, const SceneRequest& request) const override {
     const int shown = content_of(*scenario.train).members;
     if (shown == 0) return nullptr;

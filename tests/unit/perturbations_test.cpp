@@ -42,6 +42,10 @@ std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>&
     auto [scene, seen] = drawn(scenario)[static_cast<std::size_t>(i)];
     const Instruction right{"u", scenario.commands.front().truth};
     Instruction told = right;
+    View view;
+    for (const PerturbationAxis* axis : level > 0 ? axes : std::vector<const PerturbationAxis*>())
+      if (axis->look) axis->look(view, scene, level, perturbation_stream(axis->id, scene, {}));
+    if (view != View()) seen = environment.draw(scene, view);
     for (const PerturbationAxis* axis : level > 0 ? axes : std::vector<const PerturbationAxis*>()) {
       if (axis->perceive) seen = axis->perceive(seen, scenario, level, perturbation_stream(axis->id, scene, {}));
       if (axis->selection_errors) {
@@ -149,7 +153,7 @@ std::string refusal(const Json& perturbation) {
 TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
   EXPECT_SAYS(refusal({{"light_color", 1}}),
               "/tests/1/perturbation: no axis \"light_color\" (did you mean "
-              "\"light_colour\"?), expected one of: light_intensity, light_colour");
+              "\"light_colour\"?), expected one of: light_intensity, light_direction");
   EXPECT_SAYS(refusal({{"light_colour", 5}}),
               "/tests/1/perturbation/light_colour: expected a level from 1 to 4 (10 %; 20 %");
   EXPECT_SAYS(refusal({{"all", 0}}), "/tests/1/perturbation/all: expected a level from 1 to 4");
@@ -164,7 +168,7 @@ TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
 TEST(Perturbations, ASuiteNamesThemInALineEach) {
   const Suite suite = load_suite("perturbations");
   const Scenario whole = suite_scenario(suite, "heart", Truth::released);
-  EXPECT_EQ(whole.tests.size(), 1u + 7 * 4);
+  EXPECT_EQ(whole.tests.size(), 1u + 12 * 4);
   EXPECT_EQ(whole.tests[1].id, "light_intensity_1");
   const Design smoke = preset_design(suite, "smoke");
   const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke.perturbations);

@@ -25,6 +25,7 @@ class InOrder final : public Environment {
     has_scene_ = true;
     return seen;
   }
+  Observation look(const View& view) override { return after_reset("look()").look(view); }
   StepResult step(const Action& action) override { return after_reset("step()").step(action); }
   Observation observe() override { return after_reset("observe()").observe(); }
   Action expert_action() const override { return after_reset("expert_action()").expert_action(); }
@@ -82,6 +83,16 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
           axis->perceive(std::move(perceived), scenario, level, perturbation_stream(axis->id, scene, training_seed));
     return perceived;
   };
+}
+
+View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed) {
+  View view;
+  if (scene.arm == "train") return view;
+  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
+  if (!perturbation) return view;
+  for (const PerturbationAxis* axis : axes_named(perturbation->axis))
+    if (axis->look) axis->look(view, scene, perturbation->level, perturbation_stream(axis->id, scene, training_seed));
+  return view;
 }
 
 }  // namespace lgabench

@@ -34,6 +34,7 @@ struct TestScene {
   Scene scene;
   Perception perception = nullptr;  // null: as it is
   bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
+  View view = {};
 };
 
 /// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
@@ -41,5 +42,8 @@ struct TestScene {
 /// as in SceneRequest. @pre the scenario outlives it.
 Perception perception_of(const Scenario& scenario, const Arm& arm,
                          std::optional<std::uint64_t> training_seed = std::nullopt);
+
+/// How the scene's arm is looked at: the usual view, but for a perturbation. `training_seed`: likewise.
+View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed = std::nullopt);
 
 }  // namespace lgabench

@@ -147,7 +147,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, C
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
       const bool empty = course == Course::nothing_selected || selected.nothing_for(scene.command);
-      scenes.push_back({std::move(scene), perception, empty});
+      const View view = view_of(scenario, scene, cell.scenes_of_seed());
+      scenes.push_back({std::move(scene), perception, empty, view});
     }
   }
   return scenes;

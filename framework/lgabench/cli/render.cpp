@@ -77,9 +77,9 @@ void render(const RenderArguments& arguments) {
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
-  Observation seen = environment.draw(scene);
+  Observation seen = environment.draw(scene, view_of(scenario, scene));
   if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
-    seen = perception_of(scenario, scenario.arm(scene.arm))(seen, scene);
+    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3, seen.size);

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/scene.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench {
 
@@ -40,6 +42,11 @@ class Environment {
   /// Builds the scene anew. Pure: the same scene gives the same bytes, whatever was played before.
   /// @throws EngineError if the engine fails, InputError for an object type or texture that is not known.
   virtual Observation reset(const Scene& scene) = 0;
+
+  /// What is seen in that view, as by observe() and step() until the next reset(). The oracle then reads its places off
+  /// that picture as if it were the usual one: a camera that moved leads it astray as far as the picture moved. Actions
+  /// are carried out as ever. @throws InputError unless EnvironmentType::has_views().
+  virtual Observation look(const View& /*view*/) { throw InputError("environment: it has its usual view alone"); }
 
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.

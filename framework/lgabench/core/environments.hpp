@@ -110,7 +110,10 @@ class EnvironmentType {
   /// Of the task's layouts, those that can show the scenario's scenes: all, unless an environment says otherwise.
   virtual std::vector<std::string> layouts_of(const Scenario& scenario) const;
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
-  virtual Observation draw(const Scene& scene) const = 0;
+  virtual Observation draw(const Scene& scene, const View& view) const = 0;
+  Observation draw(const Scene& scene) const { return draw(scene, View()); }
+  /// Whether draw() and Environment::look() show other views than the usual one.
+  virtual bool has_views() const { return false; }
   /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what
   /// demonstrations in it depend on.
   virtual std::string world_of(const Scenario& /*scenario*/) const { return ""; }

@@ -74,6 +74,13 @@ Perturbation read_perturbation(const JsonReader& reader) {
   return {id, level.json().get<int>()};
 }
 
+void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views) {
+  for (const PerturbationAxis* axis : axes_named(perturbation.json().begin().key()))
+    if (axis->look && !has_views)
+      perturbation.fail(fmt::format("an axis that leaves the view as it is ({} does not): environment {} has one alone",
+                                    axis->id, environment));
+}
+
 std::string arm_of(const Perturbation& perturbation) {
   return fmt::format("{}_{}", perturbation.axis, perturbation.level);
 }

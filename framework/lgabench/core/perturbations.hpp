@@ -10,6 +10,7 @@
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench {
 
@@ -31,6 +32,8 @@ struct PerturbationAxis {
   std::function<Observation(Observation, const Scenario&, int level, RandomStream)> perceive = nullptr;
   /// How likely each true feature is missing from what was selected, and each wrong one added. Null: as it is.
   std::function<double(int level)> selection_errors = nullptr;
+  /// Changes how the scene is looked at. Null: not at all.
+  std::function<void(View&, const Scene&, int level, RandomStream)> look = nullptr;
 
   int most() const { return static_cast<int>(levels.size()); }
   /// Whether the part may differ from the control's. The policy's input may wherever a part of it may.
@@ -54,6 +57,8 @@ std::vector<const PerturbationAxis*> axes_named(const std::string& id);
 /// {"AXIS": LEVEL}, an axis or `all`. @throws InputError with file and place for an unknown axis, a level that it
 /// lacks, two axes.
 Perturbation read_perturbation(const JsonReader& reader);
+/// @throws InputError with file and place where an axis changes views, and the environment has its usual one alone.
+void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views);
 /// "AXIS_LEVEL": an arm's name.
 std::string arm_of(const Perturbation& perturbation);
 

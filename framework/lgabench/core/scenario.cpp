@@ -161,7 +161,10 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     s.tests.push_back(read_arm(arm, of_scenes, [&] { return environment.read_content(s, reader, &arm, false); }));
     const auto same = [&](const Arm& other) { return other.id == s.tests.back().id; };
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
-    if (s.tests.back().perturbation) expect_control(reader, arm);
+    if (s.tests.back().perturbation) {
+      expect_control(reader, arm);
+      expect_shown(arm.at("perturbation"), s.environment, environment.has_views());
+    }
     if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
   }
   expect_arms(reader.at("commands"), s);

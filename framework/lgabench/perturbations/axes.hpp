@@ -5,7 +5,12 @@
 namespace lgabench::perturbations {
 
 PerturbationAxis light_intensity();
+PerturbationAxis light_direction();
 PerturbationAxis light_colour();
+PerturbationAxis camera_shift();
+PerturbationAxis camera_turn();
+PerturbationAxis field_of_view();
+PerturbationAxis table();
 PerturbationAxis texture_noise();
 PerturbationAxis sensor_noise();
 PerturbationAxis segmentation();

@@ -112,9 +112,12 @@ class Player {
     Scene scene = type_->sample(
         *scenario_, {layout_, which.split, test ? which.arm : "train", which.seed, {}, which.own_scenes}, which.index);
     Observation seen = environment_->reset(scene);
-    if (test)
+    if (test) {
+      if (const View view = view_of(*scenario_, scene, which.own_scenes); view != View())
+        seen = environment_->look(view);
       if (const Perception perception = perception_of(*scenario_, scenario_->arm(which.arm), which.own_scenes))
         seen = perception(seen, scene);
+    }
     scene_ = std::move(scene);
     return seen;
   }
