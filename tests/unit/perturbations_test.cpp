@@ -78,6 +78,17 @@ TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
       }
 }
 
+TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
+  const PerturbationAxis& axis = perturbation_axes().front();
+  std::vector<PerturbedEpisode> all = played({&axis}, 0);
+  for (PerturbedEpisode e : played({}, 0, "red_heart")) {
+    e.arm = "other";
+    all.push_back(e);
+  }
+  for (const PerturbedEpisode& e : played({&axis}, 1)) all.push_back(e);
+  EXPECT_NO_THROW(expect_declared(all, {}, false));
+}
+
 TEST(Perturbations, ADeadAxisIsCaught) {
   const PerturbationAxis dead{
       "dead", {"nothing"}, {EpisodePart::rgb}, {}, [](Observation seen, const Scenario&, int, RandomStream) {

@@ -67,7 +67,7 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
       changed;  // of how many, by axis, level, part
   for (const PerturbedEpisode& e : all) {
     if (e.axis.empty()) {
-      control[e.index] = &e;
+      control.emplace(e.index, &e);  // of the first arm
       continue;
     }
     const auto found = control.find(e.index);
