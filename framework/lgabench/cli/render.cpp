@@ -7,7 +7,6 @@
 #include <optional>
 
 #include <lgabench/abstraction/goal_mask.hpp>
-#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
@@ -77,9 +76,7 @@ void render(const RenderArguments& arguments) {
       arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
-  Observation seen = environment.draw(scene, view_of(scenario, scene));
-  if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
-    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
+  const Observation seen = drawn_in_arm(scenario, scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3, seen.size);
@@ -100,12 +97,12 @@ void render(const RenderArguments& arguments) {
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
-  std::vector<std::string> galleries{"objects", "textures", "scenes", "words"};
+  std::vector<std::string> galleries{"objects", "textures", "scenes", "words", "perturbations"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
   verb->add_option("--gallery", arguments->gallery,
                    "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
-                   "suite words; or of those of one environment)")
+                   "suite words; perturbations: one along each axis; or of those of one environment)")
       ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
@@ -134,7 +131,7 @@ void add_render(CLI::App& app, int&) {
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes|words|ENVIRONMENT"},
+          {{"--gallery", "objects|textures|scenes|words|perturbations|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", "LAYOUT"},
