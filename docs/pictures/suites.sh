@@ -19,7 +19,7 @@ for arm in same_place moved crowd; do draw bring_fruit $arm 12.5%; done
 for arm in few many near; do draw fetch_ripe_fruit $arm 12.5% table fetch; done
 draw words_relation_heart_left_of_bowl test 25% continuous
 draw paraphrase_heart original 25% continuous
-for arm in control {light_intensity,light_colour,texture_noise,segmentation}_4; do draw heart $arm 25% continuous perturbations; done
+for arm in control distractors_4 object_size_4 {light_intensity,light_colour,texture_noise,segmentation}_4; do draw heart $arm 25% continuous perturbations; done
 for axis in sensor_noise all; do draw heart ${axis}_4 12.5% continuous perturbations; done  # noise makes large files
 for others in 1 2 4 6; do for kind in others near; do draw something_to_drink_water_out_of ${kind}_$others 25% continuous clutter; done; done
 for arm in seen new seen_near new_near; do

@@ -4,6 +4,7 @@ lgabench_unit_test(harness_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/harness_suite_
                                         ${CMAKE_CURRENT_LIST_DIR}/forecast_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/job_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/perturbations_test.cpp
+                                        ${CMAKE_CURRENT_LIST_DIR}/perturbed_scenes_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/engine_contract_test.cpp
                                         ${CMAKE_CURRENT_LIST_DIR}/taken_test.cpp
                    LINK lgabench_cell lgabench_harness lgabench_tabletop)

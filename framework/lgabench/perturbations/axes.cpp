@@ -2,8 +2,10 @@
 
 const std::vector<lgabench::PerturbationAxis>* lgabench_perturbations() {
   using namespace lgabench::perturbations;
-  // In the order in which `all` applies them: the light, the surfaces, the sensor, what is made of its picture.
-  static const std::vector<lgabench::PerturbationAxis> axes{light_intensity(), light_colour(), texture_noise(),
-                                                            sensor_noise(),    segmentation(), selection_errors()};
+  // In the order in which `all` applies them: the things, the words; the light, the surfaces, the sensor, what is made
+  // of its picture.
+  static const std::vector<lgabench::PerturbationAxis> axes{
+      distractors(),   object_size(),   friction_mass(), paraphrase(),
+      light_intensity(), light_colour(), texture_noise(), sensor_noise(), segmentation(), selection_errors()};
   return &axes;
 }
