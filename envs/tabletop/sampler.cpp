@@ -337,7 +337,10 @@ Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, 
     }
   };
   const auto draw = [&](const std::vector<SceneObject>& objects, int n) -> std::optional<SceneObject> {
-    if (n == draws_of_any) layout.widest_m = narrow_m;
+    if (n == draws_of_any) {
+      layout.widest_m = narrow_m;
+      content.near_miss.reset();
+    }
     const std::vector<Features> drawn = one(objects.front());
     if (drawn.empty()) return std::nullopt;
     const auto& [type, texture] = drawn.front();
