@@ -27,8 +27,8 @@ constexpr double room_left_m = .005;
 /// A perturbation adds so many distractors at most.
 constexpr int most_added = 4;
 
-/// How one is added to a scene's objects, the target first: `draw` gives one without a place, none where that draw gives
-/// none (`draw`: which it is, from 0); `place` places the last among the others, false where there is no room.
+/// How one is added to a scene's objects, the target first: `draw` gives one without a place, none where that draw
+/// gives none (`draw`: which it is, from 0); `place` places the last among the others, false where there is no room.
 struct Adding {
   std::function<std::optional<SceneObject>(const std::vector<SceneObject>& objects, int draw)> draw;
   std::function<bool(std::vector<SceneObject>& objects)> place;

@@ -94,7 +94,8 @@ class Models {
     if (scale == 1) return &found->second;
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto known = scaled_.find({type, scale});
-    return &(known != scaled_.end() ? known : scaled_.emplace(std::pair(type, scale), scaled(found->second, scale)).first)
+    return &(known != scaled_.end() ? known
+                                    : scaled_.emplace(std::pair(type, scale), scaled(found->second, scale)).first)
                 ->second;
   }
 

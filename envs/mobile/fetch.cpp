@@ -41,9 +41,7 @@ std::vector<Features> wrong(const std::vector<Features>& all, const FeatureSet& 
   return kept;
 }
 
-std::vector<Polygon> outline_at(const SceneObject& o) {
-  return placed_outline(model_of(o), o.position_m, o.yaw_rad);
-}
+std::vector<Polygon> outline_at(const SceneObject& o) { return placed_outline(model_of(o), o.position_m, o.yaw_rad); }
 
 bool within_room(const std::vector<Polygon>& outline) {
   return std::all_of(outline.begin(), outline.end(), [](const Polygon& p) {

@@ -38,6 +38,7 @@ Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int in
 constexpr int most_fetch_others = 7;
 
 /// EnvironmentType::with_distractors(), in scenes of the task.
-Scene fetch_with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random);
+Scene fetch_with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss,
+                             RandomStream random);
 
 }  // namespace lgabench::mobile

@@ -143,10 +143,10 @@ class Mobile final : public Environment {
     if (const auto found = receivers_.find(object.object_type); found != receivers_.end()) return found->second;
     const auto found = models_.find({object.object_type, object.scale, scene.friction, scene.mass});
     if (found != models_.end()) return found->second;
-    throw InputError(fmt::format("scene {} {}: object type \"{}\" of size {:g}, friction {:g}, mass {:g} is not one "
-                                 "that this environment shows",
-                                 scene.scenario, scene.index, object.object_type, object.scale, scene.friction,
-                                 scene.mass));
+    throw InputError(
+        fmt::format("scene {} {}: object type \"{}\" of size {:g}, friction {:g}, mass {:g} is not one "
+                    "that this environment shows",
+                    scene.scenario, scene.index, object.object_type, object.scale, scene.friction, scene.mass));
   }
 
   std::vector<Pose> poses() const {
@@ -203,9 +203,9 @@ class Mobile final : public Environment {
 
   std::unique_ptr<PhysicsWorld> world_;
   mutable Renderer renderer_;
-  std::map<std::string, int> receivers_;                                    // by type
+  std::map<std::string, int> receivers_;                                   // by type
   std::map<std::tuple<std::string, double, double, double>, int> models_;  // by type, size, friction and mass
-  Task task_;                          // the scene's
+  Task task_;                                                              // the scene's
   Scene scene_;
   mutable std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<Pose> before_;
@@ -262,9 +262,8 @@ class MobileType final : public EnvironmentType {
   }
   Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
                          RandomStream random) const override {
-    return scenario.task == fetch
-               ? fetch_with_distractors(scenario, scene, count, near_miss, random)
-               : mobile::with_distractors(scenario, scene, count, near_miss, random);
+    return scenario.task == fetch ? fetch_with_distractors(scenario, scene, count, near_miss, random)
+                                  : mobile::with_distractors(scenario, scene, count, near_miss, random);
   }
   Scene resized(Scene scene, double scale) const override {
     return common::resized(std::move(scene), scale, [](const SceneObject& o) { return !is_receiver(o.object_type); });

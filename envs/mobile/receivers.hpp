@@ -14,7 +14,8 @@ namespace lgabench::mobile {
 const std::vector<std::string>& receiver_types();
 bool is_receiver(const std::string& type);
 
-/// The model of a receiver, which has one size, or of an object as it stands in life. @throws InputError for an unknown type.
+/// The model of a receiver, which has one size, or of an object as it stands in life. @throws InputError for an unknown
+/// type.
 const ObjectModel& model_of(const std::string& type, double scale = 1);
 inline const ObjectModel& model_of(const SceneObject& object) { return model_of(object.object_type, object.scale); }
 

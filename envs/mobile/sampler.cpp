@@ -78,9 +78,7 @@ std::vector<SceneObject> sample_others(const Content& content, const FeatureSet&
   return others;
 }
 
-std::vector<Polygon> outline_of(const SceneObject& o) {
-  return placed_outline(model_of(o), o.position_m, o.yaw_rad);
-}
+std::vector<Polygon> outline_of(const SceneObject& o) { return placed_outline(model_of(o), o.position_m, o.yaw_rad); }
 
 void place_anywhere(SceneObject& object, RandomStream& random) {
   object.position_m.x = random.uniform(zone.low.x, zone.high.x);
@@ -163,8 +161,7 @@ bool has_room(const std::vector<SceneObject>& objects, std::size_t i, double mar
 
 Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random) {
   const Content& content = content_of(scenario, scene.arm);
-  const FeatureSet& truth =
-      scenario.commands[static_cast<std::size_t>(scene.command)].truth.target.product();
+  const FeatureSet& truth = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target.product();
   const auto draw = [&](const std::vector<SceneObject>& objects, int) -> std::optional<SceneObject> {
     const SceneObject& target = objects.front();
     std::vector<std::pair<std::string, std::string>> near;

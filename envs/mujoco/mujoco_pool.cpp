@@ -138,9 +138,11 @@ constexpr Column of_body[] = {{&mjModel::body_ipos, 3},    {&mjModel::body_iquat
                               {&mjModel::body_mass, 1},    {&mjModel::body_subtreemass, 1},
                               {&mjModel::body_inertia, 3}, {&mjModel::body_invweight0, 2}};
 constexpr Column of_dof[] = {{&mjModel::dof_length, 1}};
-constexpr Column of_geom[] = {
-    {&mjModel::geom_aabb, 6}, {&mjModel::geom_rbound, 1},  {&mjModel::geom_pos, 3},
-    {&mjModel::geom_quat, 4}, {&mjModel::geom_friction, 3}};
+constexpr Column of_geom[] = {{&mjModel::geom_aabb, 6},
+                              {&mjModel::geom_rbound, 1},
+                              {&mjModel::geom_pos, 3},
+                              {&mjModel::geom_quat, 4},
+                              {&mjModel::geom_friction, 3}};
 
 template <std::size_t n>
 void copy_rows(const Column (&columns)[n], const mjModel* from, int first, mjModel* to, int to_first, int count) {

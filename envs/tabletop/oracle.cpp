@@ -28,8 +28,7 @@ Vec2 reachable_grasp(const SceneObject& object, const Pose& pose, const PhysicsW
 }  // namespace
 
 Vec2 centre_of(const SceneObject& object, const Pose& pose) {
-  const Vec3 centre =
-      pose.position_m + rotated(Vec3{0, 0, model_of(object).height_m / 2}, pose.rotation);
+  const Vec3 centre = pose.position_m + rotated(Vec3{0, 0, model_of(object).height_m / 2}, pose.rotation);
   return {centre.x, centre.y};
 }
 

@@ -46,9 +46,9 @@ class Tabletop final : public Environment {
     std::vector<bool> fixed;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       fixed.push_back(scene.objects[i].role == role::goal);
-      const auto model = fixed[i] ? models_.find({objects[i].object_type, true, 1, 1, 1})
-                                  : models_.find({objects[i].object_type, false, objects[i].scale, scene.friction,
-                                                  scene.mass});
+      const auto model =
+          fixed[i] ? models_.find({objects[i].object_type, true, 1, 1, 1})
+                   : models_.find({objects[i].object_type, false, objects[i].scale, scene.friction, scene.mass});
       if (model == models_.end())
         throw InputError(
             fmt::format("scene {} {}: object type \"{}\" with role {}, size {:g}, friction {:g}, mass {:g} is not "
@@ -115,7 +115,7 @@ class Tabletop final : public Environment {
   Renderer renderer_;
   // By type, whether it is fixed, size, friction and mass.
   std::map<std::tuple<std::string, bool, double, double, double>, int> models_;
-  const Task* task_ = nullptr;                          // the scene's
+  const Task* task_ = nullptr;  // the scene's
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;

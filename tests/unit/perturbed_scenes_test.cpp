@@ -60,8 +60,8 @@ std::vector<PerturbedEpisode> noted(const Scenario& scenario, std::unique_ptr<Ph
     const Perception perception = perception_of(scenario, arm);
     for (int i = 0; i < played_of_each; ++i) {
       const Scene scene = scene_of(scenario, arm.id, i);
-      const Scene control = find_environment(scenario.environment)
-                                .sample(scenario, {layout_of(scenario), "test", arm.id, 0}, i);
+      const Scene control =
+          find_environment(scenario.environment).sample(scenario, {layout_of(scenario), "test", arm.id, 0}, i);
       Observation seen = environment->reset(scene);
       if (perception) seen = perception(seen, scene);
       const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
@@ -88,10 +88,10 @@ TEST(PerturbedScenes, EveryAxisChangesWhatItDeclaresAndNothingElse) {
 
 TEST(PerturbedScenes, BodiesChangeInEveryEnvironmentAndOnEveryEngine) {
   const std::vector<std::string> bodies{"distractors", "object_size", "friction_mass"};
-  for (const auto& [id, control] : std::vector<std::pair<std::string, Json>>{
-           {"heart", {{"distractors", {2, 2}}}},
-           {"bring_fruit", {{"distractors", {1, 1}}}},
-           {"fetch_fruit", {{"distractors", {2, 2}}}}})
+  for (const auto& [id, control] :
+       std::vector<std::pair<std::string, Json>>{{"heart", {{"distractors", {2, 2}}}},
+                                                 {"bring_fruit", {{"distractors", {1, 1}}}},
+                                                 {"fetch_fruit", {{"distractors", {2, 2}}}}})
     for (const char* of : {"mujoco", "bullet"}) {
       SCOPED_TRACE(id + " on " + of);
       const Scenario scenario = with_arms(id, control, bodies);
@@ -237,8 +237,8 @@ TEST(PerturbedScenes, AnEngineHasTheSizeOfTheLevel) {
       return bodies[level].physics->high_m.z - bodies[level].physics->low_m.z;
     };
     for (std::size_t level = 1; level < bodies.size(); ++level) {
-      const double scale = scene_of(scenario, arm_of({"object_size", static_cast<int>(level)}), 0)
-                               .find(role::target)->scale;
+      const double scale =
+          scene_of(scenario, arm_of({"object_size", static_cast<int>(level)}), 0).find(role::target)->scale;
       EXPECT_NE(scale, 1);
       EXPECT_NEAR(height(level) / height(0), scale, 1e-5) << of;
     }
@@ -254,11 +254,11 @@ std::set<Standing> standing(const Scene& scene) {
 }
 
 TEST(PerturbedScenes, DistractorsOfALevelAreAmongThoseOfTheNext) {
-  for (const auto& [id, control] : std::vector<std::pair<std::string, Json>>{
-           {"something_to_drink_water_out_of", {{"distractors", {2, 2}}}},
-           {"tiger_colored_object", {{"distractors", {2, 2}}}},
-           {"bring_fruit", {{"distractors", {1, 1}}}},
-           {"fetch_fruit", {{"distractors", {2, 2}}}}}) {
+  for (const auto& [id, control] :
+       std::vector<std::pair<std::string, Json>>{{"something_to_drink_water_out_of", {{"distractors", {2, 2}}}},
+                                                 {"tiger_colored_object", {{"distractors", {2, 2}}}},
+                                                 {"bring_fruit", {{"distractors", {1, 1}}}},
+                                                 {"fetch_fruit", {{"distractors", {2, 2}}}}}) {
     SCOPED_TRACE(id);
     const Scenario scenario = with_arms(id, control, {"distractors"});
     int near = 0;
@@ -370,7 +370,8 @@ TEST(PerturbedScenes, WhatARunCannotHaveIsRefusedBeforeItsCells) {
   EXPECT_SAYS(refusal("words", {{"selection_errors", Json::array({{{"missing", .1}}})},
                                 {"scenarios", {"words_union_spoon_or_wooden_fork"}}}),
               "/selection_errors: scenario words_union_spoon_or_wooden_fork: expected commands that mean one product");
-  EXPECT_SAYS(refusal("perturbations", {{"layouts", {"cells"}}, {"scenarios", {"heart"}}}), "expected one of: continuous");
+  EXPECT_SAYS(refusal("perturbations", {{"layouts", {"cells"}}, {"scenarios", {"heart"}}}),
+              "expected one of: continuous");
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ double lowest_z(const Final& object) {
 }
 
 bool is_over(const Final& object, const Final& below) {
-  const auto outline = placed_outline(model_of(below.object),
-                                      {below.pose.position_m.x, below.pose.position_m.y}, below.yaw_rad);
+  const auto outline =
+      placed_outline(model_of(below.object), {below.pose.position_m.x, below.pose.position_m.y}, below.yaw_rad);
   return std::any_of(outline.begin(), outline.end(),
                      [&](const Polygon& polygon) { return contains(polygon, object.centre_m); });
 }

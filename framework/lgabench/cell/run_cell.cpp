@@ -201,10 +201,10 @@ Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, con
              std::vector<PerturbedEpisode>& all) {
   return [&, actor, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
     const auto& perturbation = scenario.arm(scene.arm).perturbation;
-    const Scene control = find_environment(scenario.environment)
-                              .sample(scenario,
-                                      {cell.layout, "test", scene.arm, cell.scene_seed, {}, cell.scenes_of_seed()},
-                                      scene.index);
+    const Scene control =
+        find_environment(scenario.environment)
+            .sample(scenario, {cell.layout, "test", scene.arm, cell.scene_seed, {}, cell.scenes_of_seed()},
+                    scene.index);
     const SceneObject* const target = scene.find(role::target);
     PerturbedEpisode one{scene.arm,
                          scene.index,
@@ -214,9 +214,9 @@ Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, con
                          "",
                          target ? target->scale : 1};
     const Instruction told = told_in(scene, scenario, cell, selected.instructions);
-    one.hashes =
-        parts_of({scene, environment.bodies(), control}, seen, policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
-                 policy ? &told : nullptr);
+    one.hashes = parts_of({scene, environment.bodies(), control}, seen,
+                          policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
+                          policy ? &told : nullptr);
     all.push_back(one);
     const Move move = actor(environment, scene, seen);
     if (policy) all.back().read = read_by(*policy, cell.method.id);

@@ -72,14 +72,14 @@ void render(const RenderArguments& arguments) {
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const Scene scene = sampled_scene(
-      scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
-      arguments.index);
+  const Scene scene =
+      sampled_scene(scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+                    arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
   Observation seen = environment.draw(scene);
   if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
-    seen = perception_of(scenario, scenario.arm(scene.arm))(seen, scene);
+    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3, seen.size);

@@ -112,8 +112,8 @@ class EnvironmentType {
   /// How many more distractors test scenes of the scenario's first arm have room for: 0 unless an environment says
   /// otherwise.
   virtual int room_for_distractors(const Scenario& /*scenario*/) const { return 0; }
-  /// The scene, of a test arm, with so many more, uniform ones or near misses of the target. One stream gives those of a
-  /// smaller count and then others; the control's objects stay where they are. @throws NothingToShow where none fits.
+  /// The scene, of a test arm, with so many more, uniform ones or near misses of the target. One stream gives those of
+  /// a smaller count and then others; the control's objects stay where they are. @throws NothingToShow where none fits.
   virtual Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
                                  RandomStream random) const;
   /// The scene with everything that can be brought somewhere, or swept, of that size, times its type's.

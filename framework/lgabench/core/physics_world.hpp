@@ -27,9 +27,9 @@ struct BodyModel {
 
 /// What an engine simulates a body with.
 struct BodyPhysics {
-  Vec3 low_m, high_m;            // of the box about it now, along the world's axes
-  double mass_kg = 0;            // 0 of a fixed one, and where bodies have no mass
-  double friction = 0;           // with the plane; 0 where there is none
+  Vec3 low_m, high_m;   // of the box about it now, along the world's axes
+  double mass_kg = 0;   // 0 of a fixed one, and where bodies have no mass
+  double friction = 0;  // with the plane; 0 where there is none
 };
 
 /// Where a body is put.

@@ -111,8 +111,8 @@ void expect_control(const JsonReader& file, const JsonReader& arm) {
 // What of its scenes, and of its command, an arm's perturbation changes.
 void read_change(const JsonReader& arm, const Scenario& scenario, Arm& read) {
   if (const std::string lack = lacking(scenario, *read.perturbation); !lack.empty())
-    throw InputError(fmt::format("{}: {}: {}: {}", arm.file(), arm.at("perturbation").place(),
-                                 read.perturbation->axis, lack));
+    throw InputError(
+        fmt::format("{}: {}: {}: {}", arm.file(), arm.at("perturbation").place(), read.perturbation->axis, lack));
   for (const PerturbationAxis* axis : axes_of(scenario, *read.perturbation))
     if (axis->rewords) read.wording = read.perturbation->level;
 }
@@ -222,7 +222,8 @@ std::vector<int> Scenario::commands_of(const std::string& name) const {
   const bool seen = name == "train" || (!arm(name).unseen && wording == 0);
   std::vector<int> indices;
   for (std::size_t i = 0; i < commands.size(); ++i)
-    if (commands[i].seen == seen && commands[i].wording == wording && (commands[i].arm.empty() || commands[i].arm == name))
+    if (commands[i].seen == seen && commands[i].wording == wording &&
+        (commands[i].arm.empty() || commands[i].arm == name))
       indices.push_back(static_cast<int>(i));
   return indices;
 }

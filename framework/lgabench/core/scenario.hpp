@@ -17,7 +17,7 @@ struct ScenarioCommand {
   bool seen = true;        // demonstrated; an unseen command is only tested (paper, Q3)
   std::string arm{};       // the one arm that gives it; "": each that gives commands of its kind
   bool ambiguous = false;  // a reasonable person might mean something else by it: its arm enters no mean
-  int wording = 0;         // of a paraphrase of the scenario's command: the level of the axis `paraphrase` that gives it
+  int wording = 0;  // of a paraphrase of the scenario's command: the level of the axis `paraphrase` that gives it
 };
 
 /// What scenes of one kind hold: the environment's own, see EnvironmentType::read_content().

@@ -92,9 +92,10 @@ void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
          arm.perturbation ? axes_of(scenario, *arm.perturbation) : std::vector<const PerturbationAxis*>()) {
       const BodyVariants bodies = axis->bodies ? axis->bodies(arm.perturbation->level) : BodyVariants();
       if (bodies.friction != 1 || bodies.mass != 1)
-        throw InputError(fmt::format("scenario {}, arm {}: {} on the engine {}, whose bodies have neither friction nor "
-                                     "mass: expected another engine, or other perturbations",
-                                     scenario.id, arm.id, axis->id, engine.id));
+        throw InputError(
+            fmt::format("scenario {}, arm {}: {} on the engine {}, whose bodies have neither friction nor "
+                        "mass: expected another engine, or other perturbations",
+                        scenario.id, arm.id, axis->id, engine.id));
     }
 }
 

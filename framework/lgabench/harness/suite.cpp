@@ -145,8 +145,8 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss", "scenes",
-                                 "paraphrases", "variants", "groups", "references", "presets"});
+  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
+                                 "scenes", "paraphrases", "variants", "groups", "references", "presets"});
   reader.only(members);
 
   Suite suite;

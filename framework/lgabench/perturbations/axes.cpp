@@ -5,7 +5,7 @@ const std::vector<lgabench::PerturbationAxis>* lgabench_perturbations() {
   // In the order in which `all` applies them: the things, the words; the light, the surfaces, the sensor, what is made
   // of its picture.
   static const std::vector<lgabench::PerturbationAxis> axes{
-      distractors(),   object_size(),   friction_mass(), paraphrase(),
-      light_intensity(), light_colour(), texture_noise(), sensor_noise(), segmentation(), selection_errors()};
+      distractors(),  object_size(),   friction_mass(), paraphrase(),   light_intensity(),
+      light_colour(), texture_noise(), sensor_noise(),  segmentation(), selection_errors()};
   return &axes;
 }

@@ -20,8 +20,9 @@ PerturbationAxis distractors() {
   axis.bodies = [](int level) { return BodyVariants{{1}, 1, 1, level}; };
   axis.lacks = [](const Scenario& scenario, int level) -> std::string {
     const int room = find_environment(scenario.environment).room_for_distractors(scenario);
-    return level <= room ? "" : fmt::format("expected scenes with room for {} more, {} has room for {}", level,
-                                            scenario.id, room);
+    return level <= room
+               ? ""
+               : fmt::format("expected scenes with room for {} more, {} has room for {}", level, scenario.id, room);
   };
   return axis;
 }

@@ -12,7 +12,7 @@ PluginDescriptor find_descriptor(std::string_view bytes);
 
 /// What a descriptor's options say.
 struct DeclaredOptions {
-  Json options;                // as PluginInfo::options
+  Json options;                                   // as PluginInfo::options
   bool questionnaire = false, kinematic = false;  // said beside them, and no options
 };
 
