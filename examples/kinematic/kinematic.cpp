@@ -341,5 +341,6 @@ class KinematicWorld final : public PhysicsWorld {
 
 }  // namespace
 
+// LGABENCH_ENGINE in an engine whose bodies have mass and friction.
 LGABENCH_KINEMATIC_ENGINE("kinematic", "0.1", "No dynamics: suction carries, a push moves aside, bodies lie flat",
                           KinematicWorld)
