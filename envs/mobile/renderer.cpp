@@ -37,7 +37,8 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
     objects.push_back({o.object_type,
                        o.texture,
                        {{o.position_m.x, o.position_m.y, table_top_m}, from_yaw(o.yaw_rad)},
-                       o.instance_id});
+                       o.instance_id,
+                       o.scale});
   return objects;
 }
 
@@ -91,7 +92,7 @@ struct Renderer::Impl {
   }
 
   Placed place(const VisibleObject& object) {
-    const ObjectModel& model = model_of(object.object_type);
+    const ObjectModel& model = model_of(object.object_type, object.scale);
     Placed placed(solids.of(model.body.name, model.mesh), object.pose, light);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;

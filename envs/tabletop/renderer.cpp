@@ -59,7 +59,7 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
   std::vector<VisibleObject> objects;
   for (const SceneObject& o : scene.objects)
     objects.push_back(
-        {o.object_type, o.texture, {{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)}, o.instance_id});
+        {o.object_type, o.texture, {{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)}, o.instance_id, o.scale});
   return objects;
 }
 
@@ -76,7 +76,8 @@ struct Renderer::Impl {
   Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {}
 
   Placed place(const VisibleObject& object) {
-    Placed placed(solids.of(object.object_type, object_model(object.object_type).mesh), object.pose, light);
+    const ObjectModel& model = object_model(object.object_type, object.scale);
+    Placed placed(solids.of(model.body.name, model.mesh), object.pose, light);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
     placed.seen_at.reserve(placed.vertices.size());

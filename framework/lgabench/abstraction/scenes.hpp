@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <lgabench/core/environment.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scenario.hpp>
 
@@ -21,6 +22,10 @@ std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::uni
 /// command; empty: the truth. @throws as EnvironmentType::sample().
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index);
+
+/// Scene `index` of the request, changed by the arm's perturbation where it is a test scene. @throws as
+/// EnvironmentType::sample() and perturbed().
+Scene sampled_scene(const Scenario& scenario, const SceneRequest& request, int index);
 
 /// Test scene `index` of an arm, whatever was selected or trained on; with a training seed its own, else shared by all.
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,

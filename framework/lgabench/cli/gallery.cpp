@@ -103,7 +103,10 @@ std::vector<Tile> perturbed() {
     if (!arm.perturbation) continue;
     const auto& [axis, level] = *arm.perturbation;
     const std::vector<const PerturbationAxis*> axes = axes_named(axis);
-    if (axes.front()->selection_errors && axes.size() == 1) continue;
+    const auto shows = [](const PerturbationAxis* axis) {
+      return axis->touches(EpisodePart::rgb) || axis->touches(EpisodePart::ids);
+    };
+    if (std::none_of(axes.begin(), axes.end(), shows)) continue;
     tiles.push_back(scene_and_mask(scenario, layout, arm.id, shown, widest_picture / 2));
     const std::string what = axes.size() == 1 ? axes.front()->levels[static_cast<std::size_t>(level - 1)] : "each";
     tiles.back().caption = fmt::format("`{}`: {}", arm.id, what);

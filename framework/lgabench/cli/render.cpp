@@ -71,9 +71,9 @@ void render(const RenderArguments& arguments) {
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const Scene scene = environment.sample(
-      scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
-      arguments.index);
+  const Scene scene =
+      sampled_scene(scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+                    arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
   const Observation seen = drawn_in_arm(scenario, scene);

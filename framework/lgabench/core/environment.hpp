@@ -7,6 +7,7 @@
 #include <lgabench/core/action.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
 #include <lgabench/core/view.hpp>
 
@@ -31,6 +32,12 @@ struct StepResult {
   Failure failure = failure::none;  // none exactly if is_success
 };
 
+/// A scene's object as the engine has it.
+struct EngineBody {
+  Pose pose;
+  std::optional<BodyPhysics> physics;  // none: the engine cannot tell
+};
+
 /// One thread at a time. Every call but reset needs a reset before it.
 class Environment {
  public:
@@ -52,6 +59,10 @@ class Environment {
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
   /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
+
+  /// What the engine has now of the scene's objects, in their order; what perturbations of bodies are proved by. None:
+  /// the environment does not say, and such a perturbation counts as without effect.
+  virtual std::vector<EngineBody> bodies() const { return {}; }
 
   /// What is seen in the present state; also while step() is under way, by whoever looks on at the engine.
   virtual Observation observe() = 0;

@@ -4,6 +4,10 @@
 
 namespace lgabench::perturbations {
 
+PerturbationAxis distractors();
+PerturbationAxis object_size();
+PerturbationAxis friction_mass();
+PerturbationAxis paraphrase();
 PerturbationAxis light_intensity();
 PerturbationAxis light_direction();
 PerturbationAxis light_colour();

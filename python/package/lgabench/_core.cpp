@@ -109,7 +109,7 @@ class Player {
   Observation reset(const Which& which) {
     const WorkersArithmetic arithmetic;
     const bool test = which.split == "test";
-    Scene scene = type_->sample(
+    Scene scene = sampled_scene(
         *scenario_, {layout_, which.split, test ? which.arm : "train", which.seed, {}, which.own_scenes}, which.index);
     Observation seen = environment_->reset(scene);
     if (test) {
