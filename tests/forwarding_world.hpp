@@ -16,6 +16,7 @@ class ForwardingWorld : public PhysicsWorld {
   double time_step_s() const override { return world_->time_step_s(); }
   void step() override { world_->step(); }
   Pose pose(int body) const override { return world_->pose(body); }
+  std::optional<BodyPhysics> physics(int body) const override { return world_->physics(body); }
   std::vector<Contact> contacts() const override { return world_->contacts(); }
   int cast_down(Vec2 point, double& height_m) const override { return world_->cast_down(point, height_m); }
   void grip(int body, const Pose& gripper) override { world_->grip(body, gripper); }

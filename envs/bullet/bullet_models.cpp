@@ -73,6 +73,7 @@ BulletModel make_bullet_model(const BodyModel& body) {
 
   BulletModel model;
   model.fixed = body.fixed;
+  model.friction = body.friction;
   model.mass_kg = body.fixed ? 0 : body.mass_kg;
   const btVector3 centre = moments.first / moments.volume;
   btMatrix3x3 inertia(0, 0, 0, 0, 0, 0, 0, 0, 0);

@@ -13,6 +13,7 @@ inline btTransform to_bullet(const Pose& pose) {
   const Quat& q = pose.rotation;
   return btTransform(btQuaternion(q.x, q.y, q.z, q.w), to_bullet(pose.position_m));
 }
+inline Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Pose from_bullet(const btTransform& t) {
   const btQuaternion q = t.getRotation();
   const btVector3& p = t.getOrigin();
@@ -26,6 +27,7 @@ struct BulletModel {
   btTransform mass_frame;                                  // centre of mass and principal axes, in the body's frame
   btVector3 inertia;                                       // about these axes, kg m^2
   double mass_kg = 0;
+  double friction = 1;  // BodyModel's
   bool fixed = false;
 
   btCollisionShape* shape() const;

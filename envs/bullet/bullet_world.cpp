@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <lgabench/core/error.hpp>
 
@@ -110,6 +111,7 @@ void BulletWorld::reset(const std::vector<BodyPlacement>& placements) {
     const BulletModel& model = models_[index];
     const btTransform start = finite(p.pose) * model.mass_frame;
     auto rigid = make_body(model.mass_kg, model.shape(), model.inertia, start, static_cast<int>(made->bodies.size()));
+    rigid->setFriction(friction * model.friction);
     made->world->addRigidBody(rigid.get());
     // At rest: it sleeps until something touches it, and costs nothing before.
     if (!model.fixed) rigid->setActivationState(ISLAND_SLEEPING);
@@ -133,6 +135,21 @@ Pose BulletWorld::pose(int index) const {
   const btTransform& at = b.rigid->getWorldTransform();
   // What has not moved is where it was put, to the digit.
   return at == b.start ? b.placed : from_bullet(at * b.model->mass_frame.inverse());
+}
+
+std::optional<BodyPhysics> BulletWorld::physics(int index) const {
+  const Body& b = body(index);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  btVector3 low(infinity, infinity, infinity), high = -low;
+  for (const auto& piece : b.model->pieces)
+    for (int i = 0; i < piece->getNumPoints(); ++i) {
+      const btVector3 corner = b.rigid->getWorldTransform() * piece->getScaledPoint(i);
+      low.setMin(corner);
+      high.setMax(corner);
+    }
+  const double lightness = b.rigid->getInvMass();
+  return BodyPhysics{from_bullet(low), from_bullet(high), lightness > 0 ? 1 / lightness : 0,
+                     b.rigid->getFriction() * now_->table->getFriction()};
 }
 
 std::vector<Contact> BulletWorld::contacts() const {

@@ -22,6 +22,7 @@ class BulletWorld final : public PhysicsWorld {
   double time_step_s() const override;
   void step() override;
   Pose pose(int body) const override;
+  std::optional<BodyPhysics> physics(int body) const override;
   std::vector<Contact> contacts() const override;
   int cast_down(Vec2 point, double& height_m) const override;
   void grip(int body, const Pose& gripper) override;

@@ -5,17 +5,19 @@
 #include <cstdint>
 
 #include <common/textures.hpp>
-#include <lgabench/core/geometry.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench::common {
 
 inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 
-/// Towards the light, a unit vector: from above, the top view's upper left. Shadows fall to the lower right.
-constexpr Vec3 light{-0.36, -0.48, 0.8};
-constexpr double climb = 1 / light.z;  // of the way to the light, for each metre of height
-constexpr int ambient = 141;           // brightness in shadow; a level surface in the light has 256
+/// From far away, the same everywhere.
+struct Light {
+  Vec3 towards = usual_light;
+  double climb = 1 / towards.z;  // of the way to the light, for each metre of height
+};
+constexpr int ambient = 141;  // brightness in shadow; a level surface in the light has 256, wherever that comes from
 
 /// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
 /// object; on top, u is local y (right at yaw 0) and v local x (down), on a side u is y or x and v is -z.
@@ -35,8 +37,8 @@ struct Look {
   bool operator==(const Look& other) const { return brightness == other.brightness && plane == other.plane; }
 };
 
-/// Light on a triangle with that normal, where it comes from there; both in the body's frame.
-inline Look look_of(Vec3 normal, Vec3 towards_light) {
+/// Light on a triangle with that normal, where it comes from there, both in the body's frame; `climb`: the light's.
+inline Look look_of(Vec3 normal, Vec3 towards_light, double climb) {
   const double cosine = dot(normal, towards_light);
   // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative
   const int light_here = cosine > 0 ? static_cast<int>((256 - ambient) * cosine * climb + 0.5) : 0;

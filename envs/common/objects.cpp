@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include <common/shapes.hpp>
 #include <lgabench/core/error.hpp>
@@ -67,6 +68,43 @@ ObjectModel make(const Shape& shape) {
   return model;
 }
 
+ObjectModel scaled(ObjectModel model, double scale) {
+  model.body.name = fmt::format("{} x {}", model.body.name, scale);
+  model.body.mass_kg = std::clamp(scale * scale * scale * model.body.mass_kg, least_mass_kg, greatest_mass_kg);
+  for (ConvexPiece& piece : model.body.pieces)
+    for (Vec3& corner : piece.corners_m) corner = scale * corner;
+  for (Vec3& vertex : model.mesh.vertices_m) vertex = scale * vertex;
+  for (Polygon& polygon : model.outline)
+    for (Vec2& p : polygon) p = scale * p;
+  model.size_m = scale * model.size_m;
+  model.grasp_m = scale * model.grasp_m;
+  model.height_m *= scale;
+  model.radius_m *= scale;
+  return model;
+}
+
+// Each type and size made once; a model stays where it is.
+class Models {
+ public:
+  explicit Models(std::map<std::string, ObjectModel> types) : types_(std::move(types)) {}
+
+  const ObjectModel* find(const std::string& type, double scale) {
+    const auto found = types_.find(type);
+    if (found == types_.end()) return nullptr;
+    if (scale == 1) return &found->second;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto known = scaled_.find({type, scale});
+    return &(known != scaled_.end() ? known
+                                    : scaled_.emplace(std::pair(type, scale), scaled(found->second, scale)).first)
+                ->second;
+  }
+
+ private:
+  const std::map<std::string, ObjectModel> types_;
+  std::map<std::pair<std::string, double>, ObjectModel> scaled_;
+  std::mutex mutex_;
+};
+
 }  // namespace
 
 void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low, double z_high) {
@@ -84,27 +122,25 @@ void append(Mesh& mesh, const Polygon& bottom, const Polygon& top, double z_low,
   }
 }
 
-const ObjectModel& object_model(const std::string& type) {
-  static const std::map<std::string, ObjectModel> models = [] {
+const ObjectModel& object_model(const std::string& type, double scale) {
+  static Models models([] {
     std::map<std::string, ObjectModel> all;
     for (const auto* kind : {&shapes(), &household_shapes()})
       for (const Shape& shape : *kind) all.emplace(shape.type, make(shape));
     return all;
-  }();
-  const auto found = models.find(type);
-  if (found == models.end())
-    throw InputError(fmt::format("object type \"{}\": expected one of: {}", type, fmt::join(object_types(), ", ")));
-  return found->second;
+  }());
+  if (const ObjectModel* const found = models.find(type, scale)) return *found;
+  throw InputError(fmt::format("object type \"{}\": expected one of: {}", type, fmt::join(object_types(), ", ")));
 }
 
-const ObjectModel& standing_model(const std::string& type) {
-  static const std::map<std::string, ObjectModel> models = [] {
+const ObjectModel& standing_model(const std::string& type, double scale) {
+  static Models models([] {
     std::map<std::string, ObjectModel> all;
     for (const Shape& shape : standing_shapes()) all.emplace(shape.type, make(shape));
     return all;
-  }();
-  const auto found = models.find(type);
-  return found == models.end() ? object_model(type) : found->second;
+  }());
+  const ObjectModel* const found = models.find(type, scale);
+  return found ? *found : object_model(type, scale);
 }
 
 const std::vector<std::string>& object_types() {

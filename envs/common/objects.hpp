@@ -33,11 +33,12 @@ struct ObjectModel {
   Vec2 grasp_m;         // where suction takes hold: on material, at least .01 from an edge where the type allows
 };
 
-/// The model of an object type; lives as long as the program. @throws InputError for an unknown type.
-const ObjectModel& object_model(const std::string& type);
+/// The model of an object type, that many times its usual size; lives as long as the program. Its mass is that of its
+/// volume, within the limits of all types. @throws InputError for an unknown type.
+const ObjectModel& object_model(const std::string& type, double scale = 1);
 
 /// Likewise, where things stand as they would in life: bottles, cans and boxes upright, all others as object_model().
-const ObjectModel& standing_model(const std::string& type);
+const ObjectModel& standing_model(const std::string& type, double scale = 1);
 
 /// All object types that can be made, in the order of the household space, which begins with the tabletop's.
 const std::vector<std::string>& object_types();
@@ -47,6 +48,7 @@ struct VisibleObject {
   std::string object_type, texture;
   Pose pose;                 // of the body's frame
   std::uint8_t instance_id;  // 1..255
+  double scale = 1;          // of its type's size
 };
 
 /// What every renderer asks of its objects. @throws InputError for an instance id that is 0 or given twice, or a pose

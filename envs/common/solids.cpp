@@ -61,11 +61,12 @@ const Solid& Solids::of(const std::string& name, const Mesh& mesh) {
   return solids_.emplace(name, std::move(solid)).first->second;
 }
 
-PlacedSolid::PlacedSolid(const Solid& of, const Pose& pose)
+PlacedSolid::PlacedSolid(const Solid& of, const Pose& pose, const Light& in)
     : solid(&of),
       position(pose.position_m),
       axes{rotated({1, 0, 0}, pose.rotation), rotated({0, 1, 0}, pose.rotation), rotated({0, 0, 1}, pose.rotation)},
-      towards_light(to_body(light)) {
+      light(in),
+      towards_light(to_body(in.towards)) {
   vertices.reserve(of.mesh->vertices_m.size());
   for (const Vec3& local : of.mesh->vertices_m) {
     const Vec3 v = vertices.emplace_back(position + local.x * axes[0] + local.y * axes[1] + local.z * axes[2]);
@@ -78,8 +79,12 @@ bool PlacedSolid::shades(Vec3 point) const {
   const double below_top = high.z - point.z;
   if (below_top < clearance_m) return false;
   // The way to the light, as far as it is no higher than the solid, against the solid's box.
-  const double way = below_top * climb;
-  if (point.x + way * light.x > high.x || point.x < low.x || point.y + way * light.y > high.y || point.y < low.y)
+  const double way = below_top * light.climb;
+  const auto passes = [](double from, double to, double low, double high) {
+    return std::min(from, to) > high || std::max(from, to) < low;
+  };
+  if (passes(point.x, point.x + way * light.towards.x, low.x, high.x) ||
+      passes(point.y, point.y + way * light.towards.y, low.y, high.y))
     return false;
   const Vec3 origin = to_body(point - position);
   RTCRay ray{};
@@ -104,9 +109,12 @@ bool PlacedSolid::shades(Vec3 point) const {
 
 bool PlacedSolid::may_shade(const PlacedSolid& other) const {
   constexpr double slack = 1e-6;  // more than rounding
-  const double reach = (high.z - other.low.z) * climb;
-  return reach >= 0 && other.low.x <= high.x - reach * light.x + slack && other.high.x >= low.x - slack &&
-         other.low.y <= high.y - reach * light.y + slack && other.high.y >= low.y - slack;
+  const double reach = (high.z - other.low.z) * light.climb;
+  const Vec2 shadow{-reach * light.towards.x, -reach * light.towards.y};
+  return reach >= 0 && other.low.x <= high.x + std::max(0., shadow.x) + slack &&
+         other.high.x >= low.x + std::min(0., shadow.x) - slack &&
+         other.low.y <= high.y + std::max(0., shadow.y) + slack &&
+         other.high.y >= low.y + std::min(0., shadow.y) - slack;
 }
 
 }  // namespace lgabench::common

@@ -37,15 +37,16 @@ class Solids {
   std::map<std::string, Solid> solids_;
 };
 
-/// A solid at a pose.
+/// A solid at a pose, in a light.
 struct PlacedSolid {
-  PlacedSolid(const Solid& of, const Pose& pose);
+  PlacedSolid(const Solid& of, const Pose& pose, const Light& in);
 
   const Solid* solid;
   Vec3 position;
   std::array<Vec3, 3> axes;    // of the body, in the world
   std::vector<Vec3> vertices;  // in the world
   Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+  Light light;
   Vec3 towards_light;  // in the body's frame
 
   Vec3 to_body(Vec3 direction) const {

@@ -4,20 +4,35 @@
 
 #include <common/light.hpp>
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench::mobile {
 
-/// Without distortion, square pixels. A value.
+/// Without distortion, square pixels.
 class Camera {
  public:
-  /// Looks along `yaw_rad` (0: +x), `pitch_rad` below the horizon. `across_rad`: the horizontal field of view.
-  Camera(Vec3 eye_m, double yaw_rad, double pitch_rad, double across_rad, PictureSize picture)
+  /// Looks along `yaw_rad` (0: +x), `pitch_rad` below the horizon. `across_rad`: the horizontal field of view, which
+  /// `zoom` narrows.
+  Camera(Vec3 eye_m, double yaw_rad, double pitch_rad, double across_rad, PictureSize picture, double zoom = 1)
       : eye(eye_m),
         size(picture),
         forward{std::cos(pitch_rad) * std::cos(yaw_rad), std::cos(pitch_rad) * std::sin(yaw_rad), -std::sin(pitch_rad)},
         right{std::sin(yaw_rad), -std::cos(yaw_rad), 0},
         down(common::cross(forward, right)),
-        focal_px(picture.columns / 2. / std::tan(across_rad / 2)) {}
+        focal_px(zoom * (picture.columns / 2. / std::tan(across_rad / 2))),
+        yaw(yaw_rad),
+        pitch(pitch_rad),
+        across(across_rad) {}
+
+  /// In that view; in the usual one this camera, to the bit.
+  Camera in(const View& view) const {
+    return {eye + view.shift_m.x * right + view.shift_m.y * down,
+            yaw + view.turn_rad.x,
+            pitch + view.turn_rad.y,
+            across,
+            size,
+            view.zoom};
+  }
 
   /// Metres along the optical axis.
   double depth(Vec3 point) const { return common::dot(point - eye, forward); }
@@ -34,12 +49,12 @@ class Camera {
            (column + .5 - size.columns / 2.) / focal_px * right;
   }
 
-  const Vec3 eye;
-  const PictureSize size;
+  Vec3 eye;
+  PictureSize size;
 
  private:
-  const Vec3 forward, right, down;  // unit vectors
-  const double focal_px;
+  Vec3 forward, right, down;  // unit vectors
+  double focal_px, yaw, pitch, across;
 };
 
 /// The robot's, at its start.

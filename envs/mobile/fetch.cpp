@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <common/changed.hpp>
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
@@ -40,9 +41,7 @@ std::vector<Features> wrong(const std::vector<Features>& all, const FeatureSet& 
   return kept;
 }
 
-std::vector<Polygon> outline_at(const SceneObject& o) {
-  return placed_outline(model_of(o.object_type), o.position_m, o.yaw_rad);
-}
+std::vector<Polygon> outline_at(const SceneObject& o) { return placed_outline(model_of(o), o.position_m, o.yaw_rad); }
 
 bool within_room(const std::vector<Polygon>& outline) {
   return std::all_of(outline.begin(), outline.end(), [](const Polygon& p) {
@@ -115,11 +114,11 @@ std::vector<std::string> fetch_scene_members() {
 }
 
 FetchContent read_fetch_content(const Scenario& scenario, const JsonReader* scenes, bool training) {
-  constexpr int most = most_fetch_objects - receivers_shown - 1;
+  static_assert(most_fetch_others == most_fetch_objects - receivers_shown - 1);
   FetchContent content;
   if (training) content.distractors = {1, 1};
   if (!scenes) return content;
-  if (scenes->has("distractors")) content.distractors = read_distractors(scenes->at("distractors"), most);
+  if (scenes->has("distractors")) content.distractors = read_distractors(scenes->at("distractors"), most_fetch_others);
   if (scenes->has("near_miss") && scenes->at("near_miss").json() != Json(false)) {
     const JsonReader reader = scenes->at("near_miss");
     content.near_miss = read_near_miss(reader, scenario);
@@ -178,6 +177,25 @@ Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int in
   place(scene.objects, content.least_visible, stream);
   permute_ids(scene.objects, stream("ids"));
   return scene;
+}
+
+Scene fetch_with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss,
+                             RandomStream random) {
+  const Selection& truth = scenario.commands[static_cast<std::size_t>(scene.command)].truth;
+  const double least_visible = dynamic_cast<const FetchContent&>(*scenario.arm(scene.arm).scenes).least_visible;
+  const std::vector<Features> may_be = wrong(natural_objects(), truth.target.product(), truth.target.product());
+  const auto draw = [&](const std::vector<SceneObject>& objects, int) -> std::optional<SceneObject> {
+    const std::vector<Features> near = like(may_be, {objects.front().object_type, objects.front().texture});
+    const auto [type, texture] = one_of(near_miss && !near.empty() ? near : may_be, random);
+    return SceneObject{type, texture, role::distractor, {}, 0, 0};
+  };
+  const auto place = [&](std::vector<SceneObject>& objects) {
+    std::vector<std::vector<Polygon>> taken;
+    for (std::size_t i = 0; i + 1 < objects.size(); ++i)
+      if (!is_receiver(objects[i].object_type)) taken.push_back(outline_at(objects[i]));
+    return place_one(objects.back(), taken, random) && seen_well(objects, least_visible);
+  };
+  return with_more(scene, count, random, {draw, place});
 }
 
 }  // namespace lgabench::mobile

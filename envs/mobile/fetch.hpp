@@ -34,4 +34,11 @@ FetchContent read_fetch_content(const Scenario& scenario, const JsonReader* scen
 /// in one share the rest. @throws as EnvironmentType::sample(); Error where no room is found.
 Scene sample_fetch(const Scenario& scenario, const SceneRequest& request, int index);
 
+/// Beside the target, of objects that are no receivers.
+constexpr int most_fetch_others = 7;
+
+/// EnvironmentType::with_distractors(), in scenes of the task.
+Scene fetch_with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss,
+                             RandomStream random);
+
 }  // namespace lgabench::mobile

@@ -10,7 +10,7 @@ constexpr double moved_m = .05;    // of a centre: more is not where it was
 constexpr double leaning_m = .12;  // a tall thing's centre, where it leans in the vessel
 
 Vec3 centre_of(const SceneObject& object, const Pose& pose) {
-  return pose.position_m + rotated(Vec3{0, 0, model_of(object.object_type).height_m / 2}, pose.rotation);
+  return pose.position_m + rotated(Vec3{0, 0, model_of(object).height_m / 2}, pose.rotation);
 }
 
 bool rests_in(const Vessel& vessel, Vec3 centre) {

@@ -6,7 +6,9 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <tuple>
 
+#include <common/changed.hpp>
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <mobile/content.hpp>
@@ -40,17 +42,19 @@ Task fetch_task(const Scene& scene) {
 
 class Mobile final : public Environment {
  public:
-  Mobile(std::unique_ptr<PhysicsWorld> world, bool fetches) : world_(std::move(world)), renderer_(front_camera()) {
+  Mobile(std::unique_ptr<PhysicsWorld> world, bool fetches, const std::vector<BodyVariant>& variants)
+      : world_(std::move(world)), renderer_(front_camera()) {
     std::vector<BodyModel> models;
     for (const Furniture& thing : furniture()) models.push_back(thing.body);
     for (std::size_t i = 0; fetches && i < receiver_types().size(); ++i) {
-      models_[receiver_types()[i]] = static_cast<int>(models.size());
+      receivers_[receiver_types()[i]] = static_cast<int>(models.size());
       models.push_back(model_of(receiver_types()[i]).body);
     }
-    for (const auto& [type, textures] : natural_textures()) {
-      models_[type] = static_cast<int>(models.size());
-      models.push_back(standing_model(type).body);
-    }
+    for (const BodyVariant& variant : variants)
+      for (const auto& [type, textures] : natural_textures()) {
+        models_[{type, variant.scale, variant.friction, variant.mass}] = static_cast<int>(models.size());
+        models.push_back(varied(standing_model(type, variant.scale).body, variant));
+      }
     world_->load(models, first_ + (fetches ? most_fetch_objects : most_objects));
   }
 
@@ -61,18 +65,21 @@ class Mobile final : public Environment {
     std::vector<BodyPlacement> placements;
     placements.reserve(first_ + objects.size());
     for (int i = 0; i < first_; ++i) placements.push_back({i, {}});
-    for (const VisibleObject& object : objects) {
-      const auto model = models_.find(object.object_type);
-      if (model == models_.end())
-        throw InputError(fmt::format("scene {} {}: object type \"{}\" is not one that this environment shows",
-                                     scene.scenario, scene.index, object.object_type));
-      placements.push_back({model->second, object.pose});
-    }
+    for (const VisibleObject& object : objects) placements.push_back({model_index(scene, object), object.pose});
     task_ = task_of(scene);
     world_->reset(placements);
     scene_ = scene;
     objects_ = std::move(objects);
     before_ = poses();
+    seen_by_ = &renderer_;
+    return observe();
+  }
+
+  // Of another renderer: plans are carried out by what the usual camera shows.
+  Observation look(const View& view) override {
+    if (!in_view_) in_view_ = std::make_unique<Renderer>(front_camera());
+    in_view_->look(view);
+    seen_by_ = in_view_.get();
     return observe();
   }
 
@@ -86,9 +93,16 @@ class Mobile final : public Environment {
     return result;
   }
 
+  std::vector<EngineBody> bodies() const override {
+    std::vector<EngineBody> all;
+    for (int i = 0; i < static_cast<int>(scene_.objects.size()); ++i)
+      all.push_back({world_->pose(first_ + i), world_->physics(first_ + i)});
+    return all;
+  }
+
   Observation observe() override {
-    look();
-    return renderer_.render(objects_);
+    find_objects();
+    return seen_by_->render(objects_);
   }
 
   Action expert_action() const override {
@@ -103,13 +117,13 @@ class Mobile final : public Environment {
                                     [&](const VisibleObject& o) { return o.instance_id == instance_id; });
     if (found == objects_.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
     const std::size_t index = static_cast<std::size_t>(found - objects_.begin());
-    const ObjectModel& model = model_of(found->object_type);
+    const ObjectModel& model = model_of(found->object_type, found->scale);
     const Pose now = world_->pose(first_ + static_cast<int>(index));
     const Vec3 grasp = now.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, now.rotation);
-    const Camera& camera = front_camera();
+    const Camera& camera = seen_by_->camera();
     const Vec2 at = camera.depth(grasp) > 0 ? camera.at(grasp) : Vec2{};
-    look();
-    const std::vector<std::uint8_t> ids = renderer_.ids(objects_);
+    find_objects();
+    const std::vector<std::uint8_t> ids = seen_by_->ids(objects_);
     double least = std::numeric_limits<double>::infinity();
     Vec2 nearest = at;
     for (int row = 0; row < camera.size.rows; ++row)
@@ -134,13 +148,23 @@ class Mobile final : public Environment {
  private:
   static constexpr int first_ = 4;  // of the objects among the bodies: after the furniture
 
+  int model_index(const Scene& scene, const VisibleObject& object) const {
+    if (const auto found = receivers_.find(object.object_type); found != receivers_.end()) return found->second;
+    const auto found = models_.find({object.object_type, object.scale, scene.friction, scene.mass});
+    if (found != models_.end()) return found->second;
+    throw InputError(
+        fmt::format("scene {} {}: object type \"{}\" of size {:g}, friction {:g}, mass {:g} is not one "
+                    "that this environment shows",
+                    scene.scenario, scene.index, object.object_type, object.scale, scene.friction, scene.mass));
+  }
+
   std::vector<Pose> poses() const {
     std::vector<Pose> all;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) all.push_back(world_->pose(first_ + static_cast<int>(i)));
     return all;
   }
 
-  void look() const {
+  void find_objects() const {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
   }
@@ -156,7 +180,7 @@ class Mobile final : public Environment {
   // What the ray through the plan's place in the picture meets first.
   Surface aimed_at(const Plan& plan) const {
     const PictureSize size = front_camera().size;
-    look();
+    find_objects();
     renderer_.ids(objects_);
     return renderer_.surface(std::min(static_cast<int>(plan.v * size.rows), size.rows - 1),
                              std::min(static_cast<int>(plan.u * size.columns), size.columns - 1));
@@ -188,8 +212,11 @@ class Mobile final : public Environment {
 
   std::unique_ptr<PhysicsWorld> world_;
   mutable Renderer renderer_;
-  std::map<std::string, int> models_;  // by type
-  Task task_;                          // the scene's
+  std::unique_ptr<Renderer> in_view_;
+  Renderer* seen_by_ = &renderer_;
+  std::map<std::string, int> receivers_;                                   // by type
+  std::map<std::tuple<std::string, double, double, double>, int> models_;  // by type, size, friction and mass
+  Task task_;                                                              // the scene's
   Scene scene_;
   mutable std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<Pose> before_;
@@ -238,6 +265,25 @@ class MobileType final : public EnvironmentType {
   Scene sample(const Scenario& scenario, const SceneRequest& request, int index) const override {
     return scenario.task == fetch ? sample_fetch(scenario, request, index) : sample_scene(scenario, request, index);
   }
+  int room_for_distractors(const Scenario& scenario) const override {
+    const SceneContent& control = *scenario.tests.front().scenes;
+    const auto* fetched = dynamic_cast<const FetchContent*>(&control);
+    const int others = fetched ? fetched->distractors.second : dynamic_cast<const Content&>(control).distractors.second;
+    return std::clamp((fetched ? most_fetch_others : most_objects - 1) - others, 0, most_added);
+  }
+  Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
+                         RandomStream random) const override {
+    return scenario.task == fetch ? fetch_with_distractors(scenario, scene, count, near_miss, random)
+                                  : mobile::with_distractors(scenario, scene, count, near_miss, random);
+  }
+  Scene resized(Scene scene, double scale) const override {
+    return common::resized(std::move(scene), scale, [](const SceneObject& o) { return !is_receiver(o.object_type); });
+  }
+  Scene with_larger_target(Scene scene, const std::vector<double>& scales) const override {
+    return common::with_larger_target(std::move(scene), scales, [](const Scene& larger, std::size_t target) {
+      return has_room(larger.objects, target, room_left_m);
+    });
+  }
   Perceive perception(const SceneContent& scenes) const override {
     const auto* fetched = dynamic_cast<const FetchContent*>(&scenes);
     const std::optional<double> error =
@@ -246,13 +292,15 @@ class MobileType final : public EnvironmentType {
     const auto model = fetched ? perceive_in_bad_light : perceive;
     return [e = *error, model](Observation seen, RandomStream stream) { return model(std::move(seen), e, stream); };
   }
-  Observation draw(const Scene& scene) const override {
+  Observation draw(const Scene& scene, const View& view) const override {
     static Renderer& renderer = *new Renderer(front_camera());
+    renderer.look(view);
     return renderer.render(visible_objects(scene));
   }
+  bool has_views() const override { return true; }
   std::string world_of(const Scenario& scenario) const override { return scenario.task == fetch ? fetch : ""; }
   std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
-    return make_environment(std::move(engine), scenario.task == fetch);
+    return make_environment(std::move(engine), scenario.task == fetch, body_variants(scenario));
   }
 
  private:
@@ -270,8 +318,9 @@ Task task_of(const Scene& scene) {
   throw InputError(none_named("task", scene.task, {fixed_tasks()[0].id, fixed_tasks()[1].id, fetch}));
 }
 
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches) {
-  return std::make_unique<Mobile>(std::move(world), fetches);
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches,
+                                              const std::vector<BodyVariant>& variants) {
+  return std::make_unique<Mobile>(std::move(world), fetches, variants);
 }
 
 }  // namespace lgabench::mobile

@@ -4,6 +4,7 @@
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <mobile/place.hpp>
 
 namespace lgabench::mobile {
@@ -34,7 +35,8 @@ struct Task {
 Task task_of(const Scene& scene);
 
 /// Takes the engine, loads the furniture and every object type that scenes can show into it once, and plays on it.
-/// `fetches`: the receivers too, for scenes of that task alone.
-std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches = false);
+/// `fetches`: the receivers too, for scenes of that task alone. Objects as each of the variants.
+std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, bool fetches = false,
+                                              const std::vector<BodyVariant>& variants = {{}});
 
 }  // namespace lgabench::mobile

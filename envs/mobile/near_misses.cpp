@@ -59,6 +59,10 @@ std::vector<Features> held(const std::vector<Features>& all, const FeatureSet& d
   return those(all, [&](const Features& f) { return distribution.contains(f.type, f.texture); });
 }
 
+std::vector<Features> like(const std::vector<Features>& some, const Features& one) {
+  return those(some, [&](const Features& f) { return (f.type == one.type) != (f.texture == one.texture); });
+}
+
 Features one_of(const std::vector<Features>& some, RandomStream& random) {
   std::vector<std::string> types;
   for (const Features& f : some)

@@ -21,6 +21,9 @@ const std::vector<Features>& natural_receivers();
 /// Those of them that a distribution holds.
 std::vector<Features> held(const std::vector<Features>& all, const FeatureSet& distribution);
 
+/// Those that share one feature with it, and not the other.
+std::vector<Features> like(const std::vector<Features>& some, const Features& one);
+
 /// One of them: a type, with equal odds, then one of its textures. @pre there is one.
 Features one_of(const std::vector<Features>& some, RandomStream& random);
 

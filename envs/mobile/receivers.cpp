@@ -87,9 +87,9 @@ const std::vector<std::string>& receiver_types() {
 
 bool is_receiver(const std::string& type) { return receivers().count(type) > 0; }
 
-const ObjectModel& model_of(const std::string& type) {
+const ObjectModel& model_of(const std::string& type, double scale) {
   const auto found = receivers().find(type);
-  return found == receivers().end() ? standing_model(type) : found->second.model;
+  return found == receivers().end() ? standing_model(type, scale) : found->second.model;
 }
 
 Vessel vessel_of(const std::string& type, Vec2 place) {

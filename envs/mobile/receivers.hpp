@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/core/scene.hpp>
 #include <mobile/place.hpp>
 
 namespace lgabench::mobile {
@@ -13,8 +14,10 @@ namespace lgabench::mobile {
 const std::vector<std::string>& receiver_types();
 bool is_receiver(const std::string& type);
 
-/// The model of a receiver, or of an object as it stands in life. @throws InputError for an unknown type.
-const ObjectModel& model_of(const std::string& type);
+/// The model of a receiver, which has one size, or of an object as it stands in life. @throws InputError for an unknown
+/// type.
+const ObjectModel& model_of(const std::string& type, double scale = 1);
+inline const ObjectModel& model_of(const SceneObject& object) { return model_of(object.object_type, object.scale); }
 
 /// What a receiver of that type holds, standing at a place on the table. @pre is_receiver(type)
 Vessel vessel_of(const std::string& type, Vec2 place);

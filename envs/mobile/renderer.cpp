@@ -24,9 +24,9 @@ struct Placed : PlacedSolid {
 };
 
 // Where the shadow of a point falls on the plane at that height.
-Vec3 shadow_of(Vec3 p, double height_m) {
-  const double way = (p.z - height_m) * climb;
-  return {p.x - way * light.x, p.y - way * light.y, height_m};
+Vec3 shadow_of(Vec3 p, const Light& light, double height_m) {
+  const double way = (p.z - height_m) * light.climb;
+  return {p.x - way * light.towards.x, p.y - way * light.towards.y, height_m};
 }
 
 }  // namespace
@@ -37,15 +37,19 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
     objects.push_back({o.object_type,
                        o.texture,
                        {{o.position_m.x, o.position_m.y, table_top_m}, from_yaw(o.yaw_rad)},
-                       o.instance_id});
+                       o.instance_id,
+                       o.scale});
   return objects;
 }
 
 struct Renderer::Impl {
   using Kind = Surface::Kind;
 
-  const Camera camera;
+  const Camera usual;
   const PictureSize size;
+  View view;
+  Camera camera;  // in that view
+  Light light;
   Solids solids;
   // The room without objects: what pixels show, in light (with the room's own shadows) and in an object's shadow.
   std::vector<Kind> room;
@@ -58,8 +62,9 @@ struct Renderer::Impl {
   std::vector<Area> drawn;                // differs from the room, of the last picture
 
   explicit Impl(const Camera& from)
-      : camera(from),
+      : usual(from),
         size(from.size),
+        camera(from),
         room(size.pixels()),
         room_rgb(3 * size.pixels()),
         room_shaded(3 * size.pixels()),
@@ -67,7 +72,7 @@ struct Renderer::Impl {
         looks(size.pixels()),
         ids(size.pixels()),
         shadow(size.pixels()) {
-    draw_room();
+    draw_room(nullptr);
   }
 
   std::size_t at(int row, int column) const { return static_cast<std::size_t>(row * size.columns + column); }
@@ -87,8 +92,8 @@ struct Renderer::Impl {
   }
 
   Placed place(const VisibleObject& object) {
-    const ObjectModel& model = model_of(object.object_type);
-    Placed placed(solids.of(model.body.name, model.mesh), object.pose);
+    const ObjectModel& model = model_of(object.object_type, object.scale);
+    Placed placed(solids.of(model.body.name, model.mesh), object.pose, light);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
     look_at(placed);
@@ -105,7 +110,7 @@ struct Renderer::Impl {
       const Vec2 at_a = solid.seen_at[ia], at_b = solid.seen_at[ib], at_c = solid.seen_at[ic];
       const double area = doubled_area(at_a, at_b, at_c);
       if (area < least_area) continue;
-      const Look look = look_of(solid.solid->normals[i], solid.towards_light);
+      const Look look = look_of(solid.solid->normals[i], solid.towards_light, light.climb);
       fill(size, at_a, at_b, at_c, [&](int row, int begin, int end) {
         for (int column = begin; column < end; ++column) {
           const Vec2 p{row + 0.0, column + 0.0};
@@ -121,7 +126,7 @@ struct Renderer::Impl {
     Vec2 low{1e9, 1e9}, high{-1e9, -1e9};
     std::vector<Vec2> points;
     for (const Vec3& v : solid.vertices) {
-      const Vec3 on_plane = shadow_of(v, height_m);
+      const Vec3 on_plane = shadow_of(v, light, height_m);
       if (camera.depth(on_plane) <= nearest_m) return {0, -1, 0, -1};
       const Vec2 p = points.emplace_back(camera.at(on_plane));
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
@@ -152,7 +157,10 @@ struct Renderer::Impl {
     }
   }
 
-  void draw_room() {
+  // `cloth`: on the table; null: its own colour.
+  void draw_room(const Texture* cloth) {
+    room.assign(size.pixels(), Kind::nothing);
+    room_nearness.assign(size.pixels(), 0);
     std::vector<Rgb> colours(size.pixels(), wall_colour);
     std::vector<int> brightness(size.pixels(), 256);
     for (int row = 0; row < size.rows; ++row)
@@ -165,7 +173,7 @@ struct Renderer::Impl {
       }
     std::vector<Placed> placed;
     for (const Furniture& thing : furniture()) {
-      Placed& solid = placed.emplace_back(solids.of(thing.name, thing.mesh), Pose{});
+      Placed& solid = placed.emplace_back(solids.of(thing.name, thing.mesh), Pose{}, light);
       solid.colour = thing.colour;
       look_at(solid);
       draw(solid, [&](std::size_t pixel, double near, const Look& look) {
@@ -176,6 +184,13 @@ struct Renderer::Impl {
         brightness[pixel] = look.brightness;
       });
     }
+    for (int row = 0; cloth && row < size.rows; ++row)
+      for (int column = 0; column < size.columns; ++column) {
+        const std::size_t pixel = at(row, column);
+        if (room[pixel] != Kind::table_top) continue;
+        const Vec3 p = camera.eye + 1 / room_nearness[pixel] * camera.ray(row, column);
+        colours[pixel] = cloth->at(p.y, p.x);
+      }
     for (const Placed& solid : placed)
       shade_room(solid, [&](std::size_t pixel) {
         if (room[pixel] == Kind::floor) brightness[pixel] = ambient;
@@ -185,6 +200,8 @@ struct Renderer::Impl {
       paint_pixel(&room_shaded[3 * i], colours[i], ambient);
     }
     nearness = room_nearness;
+    std::fill(ids.begin(), ids.end(), std::uint8_t{0});
+    drawn.clear();
   }
 
   // Places the objects and finds what is nearest at each pixel.
@@ -238,6 +255,17 @@ struct Renderer::Impl {
 
 Renderer::Renderer(const Camera& camera) : impl_(std::make_unique<Impl>(camera)) {}
 Renderer::~Renderer() = default;
+
+void Renderer::look(const View& view) {
+  if (view == impl_->view) return;
+  const Texture* const cloth = view.table.empty() ? nullptr : &texture(view.table);
+  impl_->view = view;
+  impl_->camera = impl_->usual.in(view);
+  impl_->light = Light{view.light};
+  impl_->draw_room(cloth);
+}
+
+const Camera& Renderer::camera() const { return impl_->camera; }
 
 Observation Renderer::render(const std::vector<VisibleObject>& objects) {
   const std::vector<Placed> placed = impl_->trace(objects);

@@ -23,7 +23,7 @@ struct Surface {
   Vec3 point_m;
 };
 
-/// One thread at a time. The picture depends on camera and objects alone: same bytes for the same poses.
+/// One thread at a time. The picture depends on camera, view and objects alone: same bytes for the same poses.
 class Renderer {
  public:
   /// @throws EngineError if Embree can't be started.
@@ -31,6 +31,12 @@ class Renderer {
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
+
+  /// Draws what follows in that view; before the first call in the usual one. @throws InputError for a texture of the
+  /// table that is unknown.
+  void look(const View& view);
+  /// The view's.
+  const Camera& camera() const;
 
   /// Fills rgb, ids and the instance table (ordered as `objects`), with hard shadows; table, person, tray and bin are
   /// drawn, and have no id. @throws InputError for an unknown object type or texture, an instance id that is 0 or given

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <tuple>
 
+#include <common/changed.hpp>
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
 #include <mobile/content.hpp>
 #include <mobile/place.hpp>
+#include <mobile/receivers.hpp>
 #include <mobile/renderer.hpp>
 #include <mobile/tables.hpp>
 
@@ -74,9 +78,7 @@ std::vector<SceneObject> sample_others(const Content& content, const FeatureSet&
   return others;
 }
 
-std::vector<Polygon> outline_of(const SceneObject& o) {
-  return placed_outline(standing_model(o.object_type), o.position_m, o.yaw_rad);
-}
+std::vector<Polygon> outline_of(const SceneObject& o) { return placed_outline(model_of(o), o.position_m, o.yaw_rad); }
 
 void place_anywhere(SceneObject& object, RandomStream& random) {
   object.position_m.x = random.uniform(zone.low.x, zone.high.x);
@@ -136,7 +138,52 @@ void place(const Content& content, const std::optional<First>& first, std::vecto
   throw Error(fmt::format("no room found for {} objects", objects.size()));
 }
 
+// A place for the last.
+bool place_last(std::vector<SceneObject>& objects, RandomStream& random) {
+  constexpr int tries = 100;
+  for (int k = 0; k < tries; ++k) {
+    place_anywhere(objects.back(), random);
+    if (has_room(objects, objects.size() - 1, margin_m)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+bool has_room(const std::vector<SceneObject>& objects, std::size_t i, double margin_m) {
+  const std::vector<Polygon> outline = outline_of(objects[i]);
+  for (const Polygon& polygon : outline)
+    if (!std::all_of(polygon.begin(), polygon.end(), [](Vec2 corner) { return table.contains(corner); })) return false;
+  for (std::size_t k = 0; k < objects.size(); ++k)
+    if (k != i && distance(outline_of(objects[k]), outline) < margin_m) return false;
+  return true;
+}
+
+Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random) {
+  const Content& content = content_of(scenario, scene.arm);
+  const FeatureSet& truth = scenario.commands[static_cast<std::size_t>(scene.command)].truth.target.product();
+  const auto draw = [&](const std::vector<SceneObject>& objects, int) -> std::optional<SceneObject> {
+    const SceneObject& target = objects.front();
+    std::vector<std::pair<std::string, std::string>> near;
+    for (const auto& [type, textures] : natural_textures())
+      for (const std::string& texture : textures)
+        if ((type == target.object_type) != (texture == target.texture) && !truth.contains(type, texture))
+          near.emplace_back(type, texture);
+    SceneObject one{"", "", role::distractor, {}, 0, 0};
+    if (near_miss && !near.empty()) {
+      std::tie(one.object_type, one.texture) = near[random.below(static_cast<std::uint32_t>(near.size()))];
+    } else {
+      one.object_type = any_of(content.distractor_types, random);
+      one.texture = natural_texture(one.object_type, scenario.space.textures, random);
+      if (truth.contains(one.object_type, one.texture)) return std::nullopt;
+    }
+    return one;
+  };
+  const auto place = [&](std::vector<SceneObject>& objects) {
+    return place_last(objects, random) && visible_share(objects) >= content.least_visible;
+  };
+  return with_more(scene, count, random, {draw, place});
+}
 
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index) {
   if (request.layout != layout) throw InputError(fmt::format("layout \"{}\": expected {}", request.layout, layout));

@@ -11,6 +11,12 @@ namespace lgabench::mobile {
 /// can be shown. Error where no room is found.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);
 
+/// EnvironmentType::with_distractors(), of tasks other than fetch.
+Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random);
+
+/// Whether objects[i] lies on the table and leaves that margin to all others.
+bool has_room(const std::vector<SceneObject>& objects, std::size_t i, double margin_m);
+
 constexpr const char* layout = "table";
 
 }  // namespace lgabench::mobile

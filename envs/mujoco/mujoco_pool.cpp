@@ -138,8 +138,11 @@ constexpr Column of_body[] = {{&mjModel::body_ipos, 3},    {&mjModel::body_iquat
                               {&mjModel::body_mass, 1},    {&mjModel::body_subtreemass, 1},
                               {&mjModel::body_inertia, 3}, {&mjModel::body_invweight0, 2}};
 constexpr Column of_dof[] = {{&mjModel::dof_length, 1}};
-constexpr Column of_geom[] = {
-    {&mjModel::geom_aabb, 6}, {&mjModel::geom_rbound, 1}, {&mjModel::geom_pos, 3}, {&mjModel::geom_quat, 4}};
+constexpr Column of_geom[] = {{&mjModel::geom_aabb, 6},
+                              {&mjModel::geom_rbound, 1},
+                              {&mjModel::geom_pos, 3},
+                              {&mjModel::geom_quat, 4},
+                              {&mjModel::geom_friction, 3}};
 
 template <std::size_t n>
 void copy_rows(const Column (&columns)[n], const mjModel* from, int first, mjModel* to, int to_first, int count) {
@@ -152,6 +155,15 @@ void set_mass(mjModel* m, int body, double mass_kg) {
   const double scale = mass_kg / m->body_mass[body];
   m->body_mass[body] *= scale;
   for (int k = 0; k < 3; ++k) m->body_inertia[3 * body + k] *= scale;
+}
+
+// MuJoCo takes the greater friction of two: of what has another than usual, the priority makes it count alone.
+void set_friction(mjModel* m, const MujocoBody& body, double friction) {
+  if (friction == 1) return;
+  for (int g = body.first_geom; g < body.first_geom + body.geoms; ++g) {
+    m->geom_priority[g] = 1;
+    for (int k = 0; k < 3; ++k) m->geom_friction[3 * g + k] *= friction;
+  }
 }
 
 }  // namespace
@@ -169,6 +181,7 @@ MujocoPool::MujocoPool(const std::vector<BodyModel>& models, int bodies)
   for (std::size_t i = 0; i < models.size(); ++i) {
     shapes_.push_back(find_body(patterns_.get(), body_name(i)));
     if (!models[i].fixed) set_mass(patterns_.get(), shapes_.back().body, models[i].mass_kg);
+    set_friction(patterns_.get(), shapes_.back(), models[i].friction);
   }
   const std::unique_ptr<mjData, void (*)(mjData*)> data(mj_makeData(patterns_.get()), mj_deleteData);
   if (!data) throw EngineError("MuJoCo: no memory for the simulation state");
@@ -248,6 +261,7 @@ void MujocoPool::put_on(const MujocoBody& shape, MujocoBody& body) const {
   for (int g = 0; g < shape.geoms; ++g) {
     to->geom_sameframe[body.first_geom + g] = from->geom_sameframe[shape.first_geom + g];
     to->geom_dataid[body.first_geom + g] = from->geom_dataid[shape.first_geom + g];
+    to->geom_priority[body.first_geom + g] = from->geom_priority[shape.first_geom + g];
   }
 }
 

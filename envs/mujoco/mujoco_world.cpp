@@ -119,6 +119,30 @@ Pose MujocoWorld::pose(int body) const {
   return get(d->qpos + b.qpos, d->qpos + b.qpos + 3);
 }
 
+std::optional<BodyPhysics> MujocoWorld::physics(int body) const {
+  const MujocoBody& b = placed(body);
+  refresh();
+  const mjModel* m = model_;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  mjtNum low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
+  for (int g = b.first_geom; g < b.first_geom + b.geoms; ++g) {
+    const int mesh = m->geom_dataid[g];
+    for (int v = m->mesh_vertadr[mesh]; v < m->mesh_vertadr[mesh] + m->mesh_vertnum[mesh]; ++v) {
+      const mjtNum local[3] = {m->mesh_vert[3 * v], m->mesh_vert[3 * v + 1], m->mesh_vert[3 * v + 2]};
+      mjtNum corner[3];
+      mju_mulMatVec3(corner, data_->geom_xmat + 9 * g, local);
+      mju_addTo3(corner, data_->geom_xpos + 3 * g);
+      for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], corner[k]), high[k] = std::max(high[k], corner[k]);
+    }
+  }
+  return BodyPhysics{{low[0], low[1], low[2]},
+                     {high[0], high[1], high[2]},
+                     b.mocap >= 0 ? 0 : m->body_mass[b.body],
+                     m->geom_priority[b.first_geom] > m->geom_priority[0]
+                         ? m->geom_friction[3 * b.first_geom]
+                         : std::max(m->geom_friction[0], m->geom_friction[3 * b.first_geom])};
+}
+
 std::vector<Contact> MujocoWorld::contacts() const {
   expect_loaded("contacts");
   std::vector<Contact> found;

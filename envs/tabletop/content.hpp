@@ -46,7 +46,8 @@ struct Content : SceneContent {
   bool crowded() const { return others() > 2; }
   /// How many stand beside the target at most.
   int others() const { return distractors.second + (by_meaning ? 3 : 0); }
-  double widest_m() const { return crowded() ? .18 : std::numeric_limits<double>::infinity(); }
+  static constexpr double widest_in_crowd_m = .18;
+  double widest_m() const { return crowded() ? widest_in_crowd_m : std::numeric_limits<double>::infinity(); }
 };
 
 /// What scenes hold that lgabench read for this environment: an arm's, or those to train on.

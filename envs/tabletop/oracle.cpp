@@ -1,14 +1,14 @@
 #include <tabletop/oracle.hpp>
 
-#include <common/objects.hpp>
 #include <tabletop/motions.hpp>
+#include <tabletop/placement.hpp>
 
 namespace lgabench::tabletop {
 namespace {
 
 /// Where suction would take this object: its grasp point, else the nearest point around it where it is topmost.
 Vec2 reachable_grasp(const SceneObject& object, const Pose& pose, const PhysicsWorld& world, int body) {
-  const ObjectModel& model = object_model(object.object_type);
+  const ObjectModel& model = model_of(object);
   const Vec3 top = pose.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, pose.rotation);
   const Vec2 grasp{top.x, top.y};
   const auto reachable = [&](Vec2 point) {
@@ -28,8 +28,7 @@ Vec2 reachable_grasp(const SceneObject& object, const Pose& pose, const PhysicsW
 }  // namespace
 
 Vec2 centre_of(const SceneObject& object, const Pose& pose) {
-  const Vec3 centre =
-      pose.position_m + rotated(Vec3{0, 0, object_model(object.object_type).height_m / 2}, pose.rotation);
+  const Vec3 centre = pose.position_m + rotated(Vec3{0, 0, model_of(object).height_m / 2}, pose.rotation);
   return {centre.x, centre.y};
 }
 

@@ -26,9 +26,13 @@ struct Taken {
   std::vector<Outline> bodies, room;  // room: the goal, and what motions need
 };
 
-bool clear_of(const Outline& outline, const std::vector<Outline>& others) {
+bool clear_of(const Outline& outline, const std::vector<Outline>& others, double margin = margin_m) {
   return std::all_of(others.begin(), others.end(),
-                     [&](const Outline& other) { return distance(outline, other) >= margin_m; });
+                     [&](const Outline& other) { return distance(outline, other) >= margin; });
+}
+
+Outline outline_of(const SceneObject& object) {
+  return placed_outline(model_of(object), object.position_m, object.yaw_rad);
 }
 
 // A uniform place and yaw, and then false where it does not leave the margin to all that is taken.
@@ -36,7 +40,7 @@ bool try_place(const Room& room_of, SceneObject& object, Taken& taken, RandomStr
   object.position_m.x = random.uniform(Workspace::x_min, Workspace::x_max);
   object.position_m.y = random.uniform(Workspace::y_min, Workspace::y_max);
   object.yaw_rad = random.uniform(-pi, pi);
-  Outline outline = placed_outline(object_model(object.object_type), object.position_m, object.yaw_rad);
+  Outline outline = outline_of(object);
   if (!inside_picture(outline) || !clear_of(outline, taken.bodies) || !clear_of(outline, taken.room)) return false;
   if (object.role == role::target) {
     Outline room = room_of(object);
@@ -59,6 +63,8 @@ bool place_others(const Room& room_of, int tries, std::vector<SceneObject>& obje
 
 }  // namespace
 
+const ObjectModel& model_of(const SceneObject& object) { return object_model(object.object_type, object.scale); }
+
 void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random) {
   const Vec2 target = layout.target_places[random.below(static_cast<std::uint32_t>(layout.target_places.size()))];
   std::vector<Vec2> free;
@@ -69,6 +75,30 @@ void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, Ran
   objects[0].position_m = target;
   objects.resize(std::min(objects.size(), 1 + free.size()));
   for (std::size_t i = 1; i < objects.size(); ++i) objects[i].position_m = free[i - 1];
+}
+
+bool has_room(const Room& room_of, const std::vector<SceneObject>& objects, std::size_t i, double margin_m) {
+  std::vector<Outline> goals, bodies;
+  for (std::size_t k = 0; k < objects.size(); ++k)
+    if (k != i) (objects[k].role == role::goal ? goals : bodies).push_back(outline_of(objects[k]));
+  const auto fits = [&](const Outline& outline, const std::vector<Outline>& others) {
+    return inside_picture(outline) && clear_of(outline, others, margin_m);
+  };
+  const Outline outline = outline_of(objects[i]);
+  if (!fits(outline, bodies) || !fits(outline, goals)) return false;
+  return objects[i].role != role::target || fits(room_of(objects[i]), bodies);
+}
+
+bool place_last(const Room& room_of, std::vector<SceneObject>& objects, RandomStream& random) {
+  constexpr int tries = 500;
+  Taken taken;
+  for (std::size_t i = 0; i + 1 < objects.size(); ++i) {
+    taken.bodies.push_back(outline_of(objects[i]));
+    if (objects[i].role == role::target) taken.room.push_back(room_of(objects[i]));
+  }
+  for (int i = 0; i < tries; ++i)
+    if (try_place(room_of, objects.back(), taken, random)) return true;
+  return false;
 }
 
 void place_freely(const Layout& layout, const Room& room, const Patience& patience, std::vector<SceneObject>& objects,

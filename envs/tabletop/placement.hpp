@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <common/objects.hpp>
 #include <common/outline.hpp>
 #include <common/sampling.hpp>
 #include <lgabench/core/error.hpp>
@@ -24,6 +25,9 @@ using namespace lgabench::role;
 inline constexpr const char* not_meant = "not_meant";
 }  // namespace role
 
+/// The model of an object of a scene.
+const ObjectModel& model_of(const SceneObject& object);
+
 /// Where objects of a task may stand (docs/protocol.md, section 3). Without places: anywhere, at any yaw.
 struct Layout {
   std::string id;
@@ -39,6 +43,12 @@ using Room = std::function<std::vector<Polygon>(const SceneObject& target)>;
 
 /// The target's place first, then the others' without repetition; one that finds no place is left out.
 void place_on_cells(const Layout& layout, std::vector<SceneObject>& objects, RandomStream random);
+
+/// Whether objects[i] lies within the picture and leaves that margin to all others, and a target's motion too.
+bool has_room(const Room& room, const std::vector<SceneObject>& objects, std::size_t i, double margin_m);
+
+/// Places the last among the others, with the margin that all of a scene leave; false where no place is found.
+bool place_last(const Room& room, std::vector<SceneObject>& objects, RandomStream& random);
 
 /// Places were tried for as long as is worth it.
 class NoRoom : public Error {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include <common/objects.hpp>
 #include <common/solids.hpp>
@@ -18,9 +19,6 @@ namespace lgabench::tabletop {
 namespace {
 
 constexpr Rgb table_colour{196, 194, 190}, zone_colour{168, 184, 176};
-// Where the shadow of a point falls on the table.
-Vec2 shadow_of(Vec3 p) { return in_picture(p.x - p.z * climb * light.x, p.y - p.z * climb * light.y); }
-
 // A solid in this picture.
 struct Placed : PlacedSolid {
   using PlacedSolid::PlacedSolid;
@@ -30,23 +28,28 @@ struct Placed : PlacedSolid {
   Area area{}, shadow_area{};            // hold all that is seen of it, and its shadow on the table
 };
 
-// The table without objects, at that brightness everywhere.
-std::vector<std::uint8_t> empty_table(Ground ground, int brightness) {
-  std::vector<std::uint8_t> rgb(3 * pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const double y = Workspace::y_min + (static_cast<double>(i % columns) + 0.5) * column_m;
-    const bool zone = ground == Ground::goal_zones && GoalZones::contains({0, y});
-    paint_pixel(&rgb[3 * i], zone ? zone_colour : table_colour, brightness);
-  }
-  return rgb;
-}
-
+// The table without objects.
 struct Table {
   std::vector<std::uint8_t> in_light, in_shadow;
+
+  Table(Ground ground, const View& view) : in_light(3 * pixels), in_shadow(3 * pixels) {
+    const Camera camera(view);
+    const Texture* const cloth = view.table.empty() ? nullptr : &texture(view.table);
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const Vec2 p = camera.point(row, column);
+        const bool zone = ground == Ground::goal_zones && GoalZones::contains(p);
+        const Rgb colour = zone ? zone_colour : cloth ? cloth->at(p.y, p.x) : table_colour;
+        const std::size_t at = 3 * static_cast<std::size_t>(row * columns + column);
+        paint_pixel(&in_light[at], colour, 256);
+        paint_pixel(&in_shadow[at], colour, ambient);
+      }
+  }
 };
-const Table& table(Ground ground) {
-  const auto make = [](Ground g) { return Table{empty_table(g, 256), empty_table(g, ambient)}; };
-  static const Table plain = make(Ground::plain), with_zones = make(Ground::goal_zones);
+
+// In the usual view.
+const Table& usual_table(Ground ground) {
+  static const Table plain(Ground::plain, {}), with_zones(Ground::goal_zones, {});
   return ground == Ground::plain ? plain : with_zones;
 }
 
@@ -56,13 +59,16 @@ std::vector<VisibleObject> visible_objects(const Scene& scene) {
   std::vector<VisibleObject> objects;
   for (const SceneObject& o : scene.objects)
     objects.push_back(
-        {o.object_type, o.texture, {{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)}, o.instance_id});
+        {o.object_type, o.texture, {{o.position_m.x, o.position_m.y, 0}, from_yaw(o.yaw_rad)}, o.instance_id, o.scale});
   return objects;
 }
 
 struct Renderer::Impl {
   Solids solids;
-  // The picture in work: how high the highest is at a pixel, and its look; valid in the areas of objects.
+  // The picture in work: where it shows what, in which light; how high the highest is at a pixel, and its look; valid
+  // in the areas of objects.
+  Camera camera;
+  Light light;
   std::vector<double> heights_m;
   std::vector<Look> looks;
   std::vector<std::uint8_t> shadow;  // pixels to which an object keeps the light from the table; all 0 between pictures
@@ -70,22 +76,29 @@ struct Renderer::Impl {
   Impl() : heights_m(pixels), looks(pixels), shadow(pixels) {}
 
   Placed place(const VisibleObject& object) {
-    Placed placed(solids.of(object.object_type, object_model(object.object_type).mesh), object.pose);
+    const ObjectModel& model = object_model(object.object_type, object.scale);
+    Placed placed(solids.of(model.body.name, model.mesh), object.pose, light);
     placed.texture = &texture(object.texture);
     placed.id = object.instance_id;
     placed.seen_at.reserve(placed.vertices.size());
     placed.shadow_at.reserve(placed.vertices.size());
-    Vec2 shadow_low{1e9, 1e9}, shadow_high{-1e9, -1e9};
     for (const Vec3& v : placed.vertices) {
-      placed.seen_at.push_back(in_picture(v.x, v.y));
-      const Vec2& shadow_at = placed.shadow_at.emplace_back(shadow_of(v));
-      shadow_low = {std::min(shadow_low.x, shadow_at.x), std::min(shadow_low.y, shadow_at.y)};
-      shadow_high = {std::max(shadow_high.x, shadow_at.x), std::max(shadow_high.y, shadow_at.y)};
+      placed.seen_at.push_back(camera.at({v.x, v.y}));
+      const double way = v.z * light.climb;
+      placed.shadow_at.push_back(camera.at({v.x - way * light.towards.x, v.y - way * light.towards.y}));
     }
-    placed.shadow_area = area_of(Workspace::picture, shadow_low, shadow_high);
-    placed.area =
-        area_of(Workspace::picture, in_picture(placed.low.x, placed.low.y), in_picture(placed.high.x, placed.high.y));
+    placed.area = around(placed.seen_at);
+    placed.shadow_area = around(placed.shadow_at);
     return placed;
+  }
+
+  static Area around(const std::vector<Vec2>& points) {
+    Vec2 low{1e9, 1e9}, high{-1e9, -1e9};
+    for (const Vec2 p : points) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    return area_of(Workspace::picture, low, high);
   }
 
   // The table is what is highest in the area.
@@ -100,7 +113,7 @@ struct Renderer::Impl {
       const auto [ia, ib, ic] = object.solid->mesh->triangles[i];
       const Vec2 at_a = object.seen_at[ia], at_b = object.seen_at[ib], at_c = object.seen_at[ic];
       if (doubled_area(at_a, at_b, at_c) < least_area) continue;
-      const Look look = look_of(object.solid->normals[i], object.towards_light);
+      const Look look = look_of(object.solid->normals[i], object.towards_light, light.climb);
       const double a = object.vertices[ia].z, b = object.vertices[ib].z, c = object.vertices[ic].z;
       const auto keep_highest = [&](int pixel, double height) {
         if (height <= heights_m[pixel]) return;
@@ -171,23 +184,24 @@ struct Renderer::Impl {
   void paint_run(const Placed& object, int row, int first, int end, const std::vector<const Placed*>& casters,
                  std::uint8_t* rgb) const {
     const double* const heights = &heights_m[row * columns];
-    const double x = Workspace::x_min + (row + 0.5) * row_m;
-    const auto y = [](int column) { return Workspace::y_min + (column + 0.5) * column_m; };
+    const auto point = [&](int column) {
+      const Vec2 p = camera.point(row, column);
+      return Vec3{p.x, p.y, heights[column]};
+    };
     const auto [lit, plane] = looks[row * columns + first];
     const Vec3 u = object.axes[plane == Plane::side_xz ? 0 : 1],
                v = plane == Plane::top ? object.axes[0] : -1 * object.axes[2], origin = object.position;
     const Texture& texture = *object.texture;
     std::array<int, columns> texels, brightness;  // loops of their own, so that the work of several pixels overlaps
     for (int column = first; column < end; ++column) {
-      const Vec3 local = Vec3{x, y(column), heights[column]} - origin;
+      const Vec3 local = point(column) - origin;
       texels[column] = texture.texel(dot(v, local)) * Texture::size + texture.texel(dot(u, local));
     }
     std::fill(&brightness[first], &brightness[end - 1] + 1, lit);
     if (lit > ambient)
       for (const Placed* caster : casters)
         for (int column = first; column < end; ++column)
-          if (brightness[column] == lit && caster->shades({x, y(column), heights[column]}))
-            brightness[column] = ambient;
+          if (brightness[column] == lit && caster->shades(point(column))) brightness[column] = ambient;
     for (int column = first; column < end; ++column, rgb += 3)
       paint_pixel(rgb, texture.pixels[texels[column]], brightness[column]);
   }
@@ -196,12 +210,15 @@ struct Renderer::Impl {
 Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
 Renderer::~Renderer() = default;
 
-Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground) {
+Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground, const View& view) {
   expect_drawable(objects);
+  impl_->camera = Camera(view);
+  impl_->light = Light{view.light};
   std::vector<Placed> placed;
   for (const VisibleObject& object : objects) placed.push_back(impl_->place(object));
 
-  const Table& empty = table(ground);
+  const std::optional<Table> own = view == View() ? std::nullopt : std::optional<Table>({ground, view});
+  const Table& empty = own ? *own : usual_table(ground);
   Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};
   for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);

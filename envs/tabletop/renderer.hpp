@@ -7,6 +7,7 @@
 #include <common/objects.hpp>
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/scene.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench::tabletop {
 
@@ -18,7 +19,7 @@ std::vector<VisibleObject> visible_objects(const Scene& scene);
 /// What is painted on the table: no instance, in the colours only.
 enum class Ground { plain, goal_zones };
 
-/// One thread at a time. The picture depends on the objects and the ground alone: same bytes for the same poses,
+/// One thread at a time. The picture depends on objects, ground and view alone: same bytes for the same poses,
 /// whatever was drawn before.
 class Renderer {
  public:
@@ -32,7 +33,7 @@ class Renderer {
   /// surface shows its texture's colour as it is. What lies outside the picture or below the table is not seen.
   /// @throws InputError for an unknown object type or texture, an instance id that is 0 or given twice, or a pose that
   /// is not finite.
-  Observation render(const std::vector<VisibleObject>& objects, Ground ground = Ground::plain);
+  Observation render(const std::vector<VisibleObject>& objects, Ground ground = Ground::plain, const View& view = {});
 
  private:
   struct Impl;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include <common/changed.hpp>
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
 #include <tabletop/meant.hpp>
@@ -310,6 +311,45 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
   return scene;
+}
+
+Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random) {
+  constexpr int draws_of_any = 20;
+  constexpr double narrow_m = .12;
+  const Task& task = find_task(scenario.task);
+  Layout layout = find_layout(task, scene.layout);
+  layout.widest_m = std::min(layout.widest_m, Content::widest_in_crowd_m);
+  Content content = content_of(scenario, scene.arm);
+  content.distractors = {1, 1};
+  content.hard = false;
+  content.decoys.clear();
+  content.near_miss.reset();
+  if (near_miss) content.near_miss.emplace();
+  const Request request{
+      scenario, task, layout, content, false, scenario.commands[static_cast<std::size_t>(scene.command)].truth, {}};
+  const Room room = [&](const SceneObject& target) { return task.room(layout, target); };
+  const auto one = [&](const SceneObject& target) -> std::vector<Features> {
+    try {
+      return sample_distractors(request, {target.object_type, target.texture}, random);
+    } catch (const NothingToShow&) {  // the command leaves out nothing that is near
+      content.near_miss.reset();
+      return {};
+    }
+  };
+  const auto draw = [&](const std::vector<SceneObject>& objects, int n) -> std::optional<SceneObject> {
+    if (n == draws_of_any) {
+      layout.widest_m = narrow_m;
+      content.near_miss.reset();
+    }
+    const std::vector<Features> drawn = one(objects.front());
+    if (drawn.empty()) return std::nullopt;
+    const auto& [type, texture] = drawn.front();
+    const auto same = [&, t = type, x = texture](const SceneObject& o) { return o.object_type == t && o.texture == x; };
+    if (content.near_miss && std::any_of(objects.begin(), objects.end(), same)) return std::nullopt;
+    return SceneObject{type, texture, role::distractor, {}, 0, 0};
+  };
+  const auto place = [&](std::vector<SceneObject>& objects) { return place_last(room, objects, random); };
+  return with_more(scene, count, random, {draw, place});
 }
 
 }  // namespace lgabench::tabletop

@@ -17,6 +17,10 @@ namespace lgabench::tabletop {
 /// found.
 Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int index);
 
+/// EnvironmentType::with_distractors(). No uniform one is wider than .18 m. Where 20 draws find no room for all, what
+/// is left is uniform and no wider than .12.
+Scene with_distractors(const Scenario& scenario, const Scene& scene, int count, bool near_miss, RandomStream random);
+
 /// The members of what the scenario's command means that all of its scenes can show in that layout, in an order drawn
 /// for the training seed; training shows the first of them (Content::members). Fewer are among more, and all suites
 /// that give one command share them.

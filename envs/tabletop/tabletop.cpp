@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
+#include <common/changed.hpp>
 #include <common/objects.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/error.hpp>
@@ -20,15 +22,19 @@ namespace {
 
 class Tabletop final : public Environment {
  public:
-  Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space, int bodies) : world_(std::move(world)) {
+  Tabletop(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space, int bodies,
+           const std::vector<BodyVariant>& variants)
+      : world_(std::move(world)) {
     std::vector<BodyModel> models;
-    const auto add = [&](const std::string& type, bool fixed) {
-      models_[{type, fixed}] = static_cast<int>(models.size());
-      models.push_back(object_model(type).body);
+    const auto add = [&](const std::string& type, bool fixed, const BodyVariant& variant) {
+      models_[{type, fixed, variant.scale, variant.friction, variant.mass}] = static_cast<int>(models.size());
+      models.push_back(varied(object_model(type, variant.scale).body, variant));
       models.back().fixed = fixed;
     };
-    for (const std::string& type : space.object_types) add(type, false);
-    add(goal_type, true);
+    for (const BodyVariant& variant : variants) {
+      for (const std::string& type : space.object_types) add(type, false, variant);
+      if (models_.count({goal_type, true, 1, 1, 1}) == 0) add(goal_type, true, {});
+    }
     world_->load(models, bodies);
   }
 
@@ -40,10 +46,15 @@ class Tabletop final : public Environment {
     std::vector<bool> fixed;
     for (std::size_t i = 0; i < objects.size(); ++i) {
       fixed.push_back(scene.objects[i].role == role::goal);
-      const auto model = models_.find({objects[i].object_type, fixed[i]});
+      const auto model =
+          fixed[i] ? models_.find({objects[i].object_type, true, 1, 1, 1})
+                   : models_.find({objects[i].object_type, false, objects[i].scale, scene.friction, scene.mass});
       if (model == models_.end())
-        throw InputError(fmt::format("scene {} {}: object type \"{}\" with role {} is not in the environment's space",
-                                     scene.scenario, scene.index, objects[i].object_type, scene.objects[i].role));
+        throw InputError(
+            fmt::format("scene {} {}: object type \"{}\" with role {}, size {:g}, friction {:g}, mass {:g} is not "
+                        "among the environment's",
+                        scene.scenario, scene.index, objects[i].object_type, scene.objects[i].role, objects[i].scale,
+                        scene.friction, scene.mass));
       placements.push_back({model->second, objects[i].pose});
     }
     world_->reset(placements);
@@ -52,6 +63,11 @@ class Tabletop final : public Environment {
     objects_ = std::move(objects);
     fixed_ = std::move(fixed);
     went_wrong_ = failure::none;
+    return look({});
+  }
+
+  Observation look(const View& view) override {
+    view_ = view;
     return observe();
   }
 
@@ -70,10 +86,17 @@ class Tabletop final : public Environment {
     return result;
   }
 
+  std::vector<EngineBody> bodies() const override {
+    std::vector<EngineBody> all;
+    for (std::size_t i = 0; i < scene_.objects.size(); ++i)
+      all.push_back({world_->pose(static_cast<int>(i)), world_->physics(static_cast<int>(i))});
+    return all;
+  }
+
   Observation observe() override {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
-    return renderer_.render(objects_, task_->ground());
+    return renderer_.render(objects_, task_->ground(), view_);
   }
 
   Action expert_action() const override { return expert_action_for(expect(scene_, role::target).instance_id); }
@@ -83,10 +106,21 @@ class Tabletop final : public Environment {
     const auto found = std::find_if(objects.begin(), objects.end(),
                                     [instance_id](const SceneObject& o) { return o.instance_id == instance_id; });
     if (found == objects.end()) throw InputError(fmt::format("scene: expected an object with id {}", instance_id));
-    return task_->expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin()));
+    return misread(task_->expert_action(scene_, poses(), *world_, static_cast<std::size_t>(found - objects.begin())));
   }
 
  private:
+  // Both places as if the picture were the usual view's; an object's height does not show from straight above.
+  TwoPoses misread(TwoPoses action) const {
+    if (view_ == View()) return action;  // to the bit
+    const Camera usual, camera(view_);
+    for (PlanarPose* const pose : {&action.pose0, &action.pose1}) {
+      const Vec2 seen = camera.at(pose->position_m);
+      pose->position_m = usual.point(seen.x, seen.y);
+    }
+    return action;
+  }
+
   std::vector<Pose> poses() const {
     std::vector<Pose> all;
     for (std::size_t i = 0; i < scene_.objects.size(); ++i) all.push_back(world_->pose(static_cast<int>(i)));
@@ -95,11 +129,13 @@ class Tabletop final : public Environment {
 
   std::unique_ptr<PhysicsWorld> world_;
   Renderer renderer_;
-  std::map<std::pair<std::string, bool>, int> models_;  // by type and whether it is fixed
-  const Task* task_ = nullptr;                          // the scene's
+  // By type, whether it is fixed, size, friction and mass.
+  std::map<std::tuple<std::string, bool, double, double, double>, int> models_;
+  const Task* task_ = nullptr;  // the scene's
   Scene scene_;
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;
+  View view_;
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
 
@@ -112,6 +148,8 @@ int bodies_of(const Scenario& scenario) {
   };
   hold(*scenario.train);
   for (const Arm& arm : scenario.tests) hold(*arm.scenes);
+  if (const int more = more_bodies(scenario); more > 0)
+    bodies = std::max(bodies, content_of(*scenario.tests.front().scenes).others() + more + 2);
   return bodies;
 }
 
@@ -164,7 +202,31 @@ class TabletopType final : public EnvironmentType {
       distance.turn_rad = std::abs(std::remainder(yaw_of(a.pose1.rotation) - yaw_of(b.pose1.rotation), 2 * pi));
     return distance;
   }
-  Observation draw(const Scene& scene) const override { return drawn(scene); }
+  // Where wide targets leave no room for more than usual there is none for perturbations either.
+  int room_for_distractors(const Scenario& scenario) const override {
+    constexpr int usual = 2;
+    const Content& control = content_of(*scenario.tests.front().scenes);
+    const int most = find_task(scenario.task).most_distractors();
+    if (control.by_meaning || !control.choice.empty() || most <= usual) return 0;
+    return std::min(most_added, std::max(0, most - control.distractors.second));
+  }
+  Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
+                         RandomStream random) const override {
+    return tabletop::with_distractors(scenario, scene, count, near_miss, random);
+  }
+  Scene resized(Scene scene, double scale) const override {
+    return common::resized(std::move(scene), scale, [](const SceneObject& o) { return o.role != role::goal; });
+  }
+  Scene with_larger_target(Scene scene, const std::vector<double>& scales) const override {
+    const Task& task = find_task(scene.task);
+    const Layout layout = find_layout(task, scene.layout);
+    const Room room = [&](const SceneObject& target) { return task.room(layout, target); };
+    return common::with_larger_target(std::move(scene), scales, [&room](const Scene& larger, std::size_t target) {
+      return has_room(room, larger.objects, target, room_left_m);
+    });
+  }
+  Observation draw(const Scene& scene, const View& view) const override { return drawn(scene, view); }
+  bool has_views() const override { return true; }
   Json shown_members(const Scenario& scenario, const SceneRequest& request) const override {
     const int shown = content_of(*scenario.train).members;
     if (shown == 0) return nullptr;
@@ -179,11 +241,12 @@ class TabletopType final : public EnvironmentType {
     }
     return commands;
   }
-  // Fixed places cannot show where things lie beside each other.
+  // Fixed places cannot show where things lie beside each other, nor more things than they are.
   std::vector<std::string> layouts_of(const Scenario& scenario) const override {
+    const bool anywhere = content_of(*scenario.train).by_meaning || more_bodies(scenario) > 0;
     std::vector<std::string> ids;
     for (const Layout& layout : find_task(scenario.task).layouts())
-      if (!content_of(*scenario.train).by_meaning || layout.target_places.empty()) ids.push_back(layout.id);
+      if (!anywhere || layout.target_places.empty()) ids.push_back(layout.id);
     return ids;
   }
   std::string goal_type() const override { return tabletop::goal_type; }
@@ -192,7 +255,7 @@ class TabletopType final : public EnvironmentType {
     return bodies == most_bodies ? "" : fmt::format("{} bodies", bodies);
   }
   std::unique_ptr<Environment> make(std::unique_ptr<PhysicsWorld> engine, const Scenario& scenario) const override {
-    return make_environment(std::move(engine), scenario.space, bodies_of(scenario));
+    return make_environment(std::move(engine), scenario.space, bodies_of(scenario), body_variants(scenario));
   }
 
  private:
@@ -205,8 +268,8 @@ class TabletopType final : public EnvironmentType {
 }  // namespace
 
 std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
-                                              int bodies) {
-  return std::make_unique<Tabletop>(std::move(world), space, bodies);
+                                              int bodies, const std::vector<BodyVariant>& variants) {
+  return std::make_unique<Tabletop>(std::move(world), space, bodies, variants);
 }
 
 }  // namespace lgabench::tabletop

@@ -1,9 +1,11 @@
 // The tabletop environment over any engine.
 #pragma once
 #include <memory>
+#include <vector>
 
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/feature_space.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/physics_world.hpp>
 
 namespace lgabench::tabletop {
@@ -11,8 +13,10 @@ namespace lgabench::tabletop {
 /// In one scene, unless a scenario has more distractors than two; what the engine is told.
 constexpr int most_bodies = 6;
 
-/// Takes the engine, loads every object type of `space` into it once, and plays scenes on it, of as many bodies.
+/// Takes the engine, loads every object type of `space` into it once, as each of the variants, and plays scenes on it,
+/// of as many bodies.
 std::unique_ptr<Environment> make_environment(std::unique_ptr<PhysicsWorld> world, const FeatureSpace& space,
-                                              int bodies = most_bodies);
+                                              int bodies = most_bodies,
+                                              const std::vector<BodyVariant>& variants = {{}});
 
 }  // namespace lgabench::tabletop

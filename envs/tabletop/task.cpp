@@ -40,9 +40,9 @@ const Task& find_task(const std::string& id) {
   return *named("task", tasks(), id, [](const Task* task) { return task->id(); });
 }
 
-Observation drawn(const Scene& scene) {
+Observation drawn(const Scene& scene, const View& view) {
   static thread_local Renderer renderer;
-  return renderer.render(visible_objects(scene), find_task(scene.task).ground());
+  return renderer.render(visible_objects(scene), find_task(scene.task).ground(), view);
 }
 
 Layout find_layout(const Task& task, const std::string& id) {

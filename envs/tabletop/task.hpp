@@ -77,7 +77,7 @@ const std::vector<const Task*>& tasks();
 /// @throws InputError that lists the known ones.
 const Task& find_task(const std::string& id);
 /// The scene before any action, drawn by a renderer of the calling thread's own.
-Observation drawn(const Scene& scene);
+Observation drawn(const Scene& scene, const View& view = {});
 /// The task's layout of that name. @throws InputError that lists its layouts.
 Layout find_layout(const Task& task, const std::string& id);
 

@@ -189,6 +189,18 @@ class KinematicWorld final : public PhysicsWorld {
 
   Pose pose(int body) const override { return bodies_[index_of(body)].pose; }
 
+  // Their boxes alone.
+  std::optional<BodyPhysics> physics(int body) const override {
+    BodyPhysics box{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    for (const Prism& prism : bodies_[index_of(body)].prisms) {
+      box.low_m = {std::min(box.low_m.x, prism.low.x), std::min(box.low_m.y, prism.low.y),
+                   std::min(box.low_m.z, prism.bottom)};
+      box.high_m = {std::max(box.high_m.x, prism.high.x), std::max(box.high_m.y, prism.high.y),
+                    std::max(box.high_m.z, prism.top)};
+    }
+    return box;
+  }
+
   // Only of bodies that moved since reset(): the others rest.
   std::vector<Contact> contacts() const override {
     std::vector<Contact> found;
@@ -329,4 +341,6 @@ class KinematicWorld final : public PhysicsWorld {
 
 }  // namespace
 
-LGABENCH_ENGINE("kinematic", "0.1", "No dynamics: suction carries, a push moves aside, bodies lie flat", KinematicWorld)
+// LGABENCH_ENGINE in an engine whose bodies have mass and friction.
+LGABENCH_KINEMATIC_ENGINE("kinematic", "0.1", "No dynamics: suction carries, a push moves aside, bodies lie flat",
+                          KinematicWorld)

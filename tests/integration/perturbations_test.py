@@ -10,8 +10,11 @@ import case
 
 EPISODES = 6
 PARTS = ("objects", "physics", "rgb", "ids", "instances", "words", "answers", "selection", "input", "control")
-CHANGES = {"light_intensity": {"rgb"}, "segmentation": {"ids"}, "selection_errors": {"selection"}}  # and so the input
-MAY_CHANGE = {"segmentation": {"instances"}}
+CHANGES = {"distractors": {"objects", "physics", "rgb", "ids", "instances"}, "object_size": {"physics", "rgb", "ids"},
+           "friction_mass": {"physics"}, "paraphrase": {"words"}, "light_intensity": {"rgb"}, "segmentation": {"ids"},
+           "selection_errors": {"selection"}}
+MAY_CHANGE = {"segmentation": {"instances"}, "paraphrase": {"answers", "selection"}}
+NOT_SEEN = {"friction_mass"}  # all others change the policy's input
 
 
 def lines(file):
@@ -51,8 +54,17 @@ class Perturbations(case.BesideOneRun):
                 if e["axis"] is None:
                     continue
                 differ = {part for part in PARTS if e[part] != controls[e["index"]][part]}
-                must = CHANGES[e["axis"]] | {"input"}
+                must = CHANGES[e["axis"]] | ({"input"} if e["axis"] not in NOT_SEEN else set())
                 self.assertEqual(differ - MAY_CHANGE.get(e["axis"], set()), must, e["arm"])
+
+    def test_what_is_not_seen_is_acted_on_alike_and_sizes_are_recorded(self):
+        for cell in self.cells_of("lga"):
+            acted = {(e["arm"], e["index"]): e["action"] for e in lines(cell / "episodes.jsonl")}
+            scales = {(e["arm"], e["index"]): e["target_scale"] for e in lines(cell / "perturbed.jsonl")}
+            for index in range(EPISODES):
+                self.assertEqual(acted["friction_mass_4", index], acted["control", index])
+                self.assertEqual(scales["control", index], 1)
+                self.assertIn(scales["object_size_4", index], (.67, 1.05, 1.1, 1.25, 1.5))
 
     def test_status_vouches_for_the_record_and_names_its_library(self):
         for cell in self.cells_of("lga", "oracle"):
@@ -117,7 +129,7 @@ class Perturbations(case.BesideOneRun):
             self.assertEqual(said.count("\n"), 1, said)
             return said
 
-        self.assertIn('no axis "light_color" (did you mean "light_colour"?), expected one of: light_intensity, ',
+        self.assertIn('no axis "light_color" (did you mean "light_colour"?), expected one of: distractors, ',
                       refusal("light_color", [1]))
         self.assertIn("expected a level from 1 to 4 (10 %; 20 %; 30 %; 45 %)", refusal("light_colour", [5]))
         self.assertIn("mine.json", refusal("all", [0]))

@@ -611,7 +611,7 @@ class Engines(Case):
 class Gallery(Case):
     def test_the_legends_in_the_documentation_are_the_sheets_own(self):
         page = (pathlib.Path(__file__).parents[2] / "docs" / "gallery.md").read_text()
-        for what in ("objects", "textures", "scenes", "words", "mobile"):
+        for what in ("objects", "textures", "scenes", "words", "perturbations", "mobile"):
             printed = self.call("render", "--gallery", what, "--out", "sheet.png").stdout
             file, legend = printed.split("\n\n", 1)
             self.assertEqual(file, "sheet.png")

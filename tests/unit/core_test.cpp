@@ -296,7 +296,7 @@ TEST(Scenario, ACommandMayNameTheArmThatGivesIt) {
   EXPECT_SAYS(refusal(json), "mine.json: /commands/1/arm: expected \"seen\": false beside it");
   json = s.json;
   json["commands"][4].erase("arm");
-  EXPECT_SAYS(refusal(json), "mine.json: /commands/4/ambiguous: expected \"arm\" beside it");
+  EXPECT_SAYS(refusal(json), "mine.json: /commands/4/ambiguous: expected \"arm\" or \"wording\" beside it");
   json = s.json;
   json["commands"][1]["arm"] = "polite";
   EXPECT_SAYS(refusal(json), "mine.json: /tests/1: expected a scenario with commands for this arm");

@@ -44,6 +44,10 @@ std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>&
     auto [scene, seen] = drawn(scenario)[static_cast<std::size_t>(i)];
     const Instruction right{"u", scenario.commands.front().truth};
     Instruction told = right;
+    View view;
+    for (const PerturbationAxis* axis : level > 0 ? axes : std::vector<const PerturbationAxis*>())
+      if (axis->look) axis->look(view, scene, level, perturbation_stream(axis->id, scene, {}));
+    if (view != View()) seen = environment.draw(scene, view);
     for (const PerturbationAxis* axis : level > 0 ? axes : std::vector<const PerturbationAxis*>()) {
       if (axis->perceive) seen = axis->perceive(seen, scenario, level, perturbation_stream(axis->id, scene, {}));
       if (axis->selection_errors) {
@@ -53,7 +57,7 @@ std::vector<PerturbedEpisode> played(const std::vector<const PerturbationAxis*>&
       }
     }
     all.push_back({level > 0 ? "perturbed" : "control", i, level > 0 ? axes.front()->id : "", level,
-                   parts_of(scene, seen, &right, &told)});
+                   parts_of({scene, {}, scene}, seen, &right, &told)});
   }
   return all;
 }
@@ -69,11 +73,22 @@ void expect_as_declared(const PerturbationAxis& axis, int level, const std::stri
 
 TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
   for (const PerturbationAxis& axis : perturbation_axes())
-    for (int level = 1; level <= axis.most(); ++level)
+    for (int level = 1; level <= axis.most() && (axis.perceive || axis.selection_errors); ++level)
       for (const char* scenario : {"heart", "fetch_fruit"}) {
         SCOPED_TRACE(axis.id + " " + std::to_string(level) + " " + scenario);
         EXPECT_NO_THROW(expect_as_declared(axis, level, scenario));
       }
+}
+
+TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
+  const PerturbationAxis& axis = perturbation_axes().front();
+  std::vector<PerturbedEpisode> all = played({&axis}, 0);
+  for (PerturbedEpisode e : played({}, 0, "red_heart")) {
+    e.arm = "other";
+    all.push_back(e);
+  }
+  for (const PerturbedEpisode& e : played({&axis}, 1)) all.push_back(e);
+  EXPECT_NO_THROW(expect_declared(all, {}, false));
 }
 
 TEST(Perturbations, ADeadAxisIsCaught) {
@@ -192,9 +207,10 @@ std::string refusal(const Json& perturbation) {
 }
 
 TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
-  EXPECT_SAYS(refusal({{"light_color", 1}}),
-              "/tests/1/perturbation: no axis \"light_color\" (did you mean "
-              "\"light_colour\"?), expected one of: light_intensity, light_colour");
+  EXPECT_SAYS(
+      refusal({{"light_color", 1}}),
+      "/tests/1/perturbation: no axis \"light_color\" (did you mean "
+      "\"light_colour\"?), expected one of: distractors, object_size, friction_mass, paraphrase, light_intensity");
   EXPECT_SAYS(refusal({{"light_colour", 5}}),
               "/tests/1/perturbation/light_colour: expected a level from 1 to 4 (10 %; 20 %");
   EXPECT_SAYS(refusal({{"all", 0}}), "/tests/1/perturbation/all: expected a level from 1 to 4");
@@ -209,13 +225,13 @@ TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
 TEST(Perturbations, ASuiteNamesThemInALineEach) {
   const Suite suite = load_suite("perturbations");
   const Scenario whole = suite_scenario(suite, "heart", Truth::released);
-  EXPECT_EQ(whole.tests.size(), 1u + 7 * 4);
-  EXPECT_EQ(whole.tests[1].id, "light_intensity_1");
+  EXPECT_EQ(whole.tests.size(), 1 + perturbation_ids().size() * 4);
+  EXPECT_EQ(whole.tests[1].id, "distractors_1");
   const Design smoke = preset_design(suite, "smoke");
   const Scenario small = suite_scenario(suite, "heart", Truth::released, &smoke.perturbations);
-  EXPECT_EQ(small.tests.size(), 1u + 3 * 2);
+  EXPECT_EQ(small.tests.size(), 1u + 7 * 2);
   const Scene control = test_scene(whole, "continuous", "control", 0, 5),
-              other = test_scene(whole, "continuous", "all_4", 0, 5);
+              other = test_scene(whole, "continuous", "light_colour_4", 0, 5);
   EXPECT_EQ(to_json(control)["objects"], to_json(other)["objects"]);
   EXPECT_FALSE(to_json(load_suite("q1").design).contains("perturbations")) << "other suites stay as they are";
 }

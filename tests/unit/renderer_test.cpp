@@ -173,6 +173,79 @@ TEST(Renderer, ShadowsFallOnObjectsToo) {
   EXPECT_LT(colour(bowl, pixel_at(0.47, -0.04))[0], 0.7 * colour(bowl, pixel_at(0.53, 0.04))[0]);
 }
 
+// In light from the lower right all is mirrored.
+TEST(Renderer, InAnotherLightShadowsFallTheOtherWay) {
+  Renderer renderer;
+  View view;
+  view.light = {.36, .48, .8};
+  const auto lit = [&](const std::vector<VisibleObject>& objects) {
+    return renderer.render(objects, Ground::plain, view);
+  };
+  const Observation seen = lit({object("block", "red", {0.5, 0.0})});
+  const Rgb table = colour(seen, 0);
+  EXPECT_EQ(colour(seen, pixel_at(0.5, 0.0)), (Rgb{255, 87, 89}));
+  EXPECT_EQ(colour(seen, pixel_at(0.545, 0.02)), table);
+  for (const Vec2 dark : {Vec2{0.455, -0.02}, Vec2{0.48, -0.05}, Vec2{0.437, -0.03}})
+    EXPECT_LT(colour(seen, pixel_at(dark.x, dark.y))[0], 0.7 * table[0]) << dark.x << ' ' << dark.y;
+  const VisibleObject low = object("pallet", "red", {0.455, 0.0});
+  const Observation both = lit({low, object("block", "blue", {0.58, 0.0}, 0, 2)});
+  const std::size_t shaded = pixel_at(0.537, -0.02);
+  ASSERT_EQ(both.ids[shaded], 1);
+  EXPECT_LT(colour(both, shaded)[0], 0.7 * colour(lit({low}), shaded)[0]) << "by a ray";
+  const Observation bowl = lit({object("bowl", "red", {0.5, 0.0})});
+  EXPECT_GT(colour(bowl, pixel_at(0.47, -0.04))[0], colour(bowl, pixel_at(0.53, 0.04))[0] / 0.7);
+}
+
+TEST(Renderer, AViewShowsWhatItsCameraSays) {
+  Renderer renderer;
+  const std::vector<VisibleObject> objects = scenes()[1];
+  const Observation usual = renderer.render(objects);
+  View half;  // counter-clockwise
+  half.turn_rad = {pi, 0};
+  std::vector<std::uint8_t> ids = renderer.render(objects, Ground::plain, half).ids;
+  std::reverse(ids.begin(), ids.end());
+  int differ = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) differ += ids[i] != usual.ids[i];
+  EXPECT_LE(differ, 3) << "borders through a pixel's centre";
+
+  View shifted;  // to the right and down, by whole pixels
+  shifted.shift_m = {5 * pixel_m, 3 * pixel_m};
+  const Observation seen = renderer.render(objects, Ground::plain, shifted);
+  for (int row = 0; row < rows - 3; ++row)
+    for (int column = 0; column < columns - 5; ++column) {
+      EXPECT_EQ(seen.ids[index(row, column)], usual.ids[index(row + 3, column + 5)]);
+      EXPECT_EQ(colour(seen, index(row, column)), colour(usual, index(row + 3, column + 5)));
+    }
+
+  const auto block = [&](double zoom, double turn) {
+    View view;
+    view.zoom = zoom;
+    view.turn_rad = {-turn, 0};
+    return renderer.render({object("block", "red", {0.5, 0.1})}, Ground::plain, view);
+  };
+  EXPECT_NEAR(block(2, 0).instances[0].pixels, 4 * block(1, 0).instances[0].pixels, 60);
+  EXPECT_EQ(block(2, 0).ids[index(64, 128 + 51)], 1) << "twice as far from the middle";
+  EXPECT_EQ(block(1, pi / 2).ids[index(64 - 26, 128)], 1) << "a camera that turns clockwise: right becomes up";
+}
+
+TEST(Renderer, ATableHasATextureBelowItsZones) {
+  Renderer renderer;
+  View view;
+  view.table = "checkerboard";
+  const Observation usual = renderer.render({}, Ground::goal_zones),
+                    seen = renderer.render({}, Ground::goal_zones, view);
+  const std::size_t in_zone = pixel_at(.5, .41);
+  EXPECT_EQ(colour(seen, in_zone), colour(usual, in_zone));
+  std::vector<Rgb> colours;
+  for (int column = 100; column < 156; ++column)
+    if (const Rgb one = colour(seen, index(64, column)); std::count(colours.begin(), colours.end(), one) == 0)
+      colours.push_back(one);
+  EXPECT_EQ(colours.size(), 2u);
+  view.table = "plaid";
+  EXPECT_THROW(renderer.render({}, Ground::plain, view), InputError);
+  EXPECT_EQ(renderer.render({}, Ground::goal_zones).rgb, usual.rgb);
+}
+
 TEST(Renderer, ATextureTurnsWithItsObject) {
   Renderer renderer;
   const Vec2 centre{0.25 + 64 * pixel_m, -0.5 + 128 * pixel_m};  // on a corner of four pixels, for exact quarter turns

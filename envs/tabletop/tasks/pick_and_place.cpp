@@ -24,7 +24,7 @@ class PickAndPlace final : public Task {
 
   // A large target reaches beyond the pallet that it is brought to.
   std::vector<Polygon> room(const Layout& layout, const SceneObject& target) const override {
-    return placed_outline(object_model(target.object_type), *layout.pallet, target.yaw_rad);
+    return placed_outline(model_of(target), *layout.pallet, target.yaw_rad);
   }
 
   int most_distractors() const override { return 6; }

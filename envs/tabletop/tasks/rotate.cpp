@@ -43,7 +43,7 @@ class Rotate final : public Task {
   // The disc that the target sweeps.
   std::vector<Polygon> room(const Layout&, const SceneObject& target) const override {
     constexpr int corners = 32;
-    const double radius_m = object_model(target.object_type).radius_m / std::cos(pi / corners);  // around it, not in it
+    const double radius_m = model_of(target).radius_m / std::cos(pi / corners);  // around it, not in it
     Polygon disc;
     for (int i = 0; i < corners; ++i) disc.push_back(target.position_m + rotated({radius_m, 0}, 2 * pi * i / corners));
     return {disc};

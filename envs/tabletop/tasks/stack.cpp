@@ -12,22 +12,22 @@ constexpr const char* support = "support";
 
 // Where something is set down on an object: over the point at which suction would take it, on material.
 Vec2 top_of(const SceneObject& object, const Pose& pose) {
-  const ObjectModel& model = object_model(object.object_type);
+  const ObjectModel& model = model_of(object);
   const Vec3 top = pose.position_m + rotated(Vec3{model.grasp_m.x, model.grasp_m.y, model.height_m}, pose.rotation);
   return {top.x, top.y};
 }
 
 double lowest_z(const Final& object) {
   double lowest = lift_m;
-  for (const ConvexPiece& piece : object_model(object.object.object_type).body.pieces)
+  for (const ConvexPiece& piece : model_of(object.object).body.pieces)
     for (const Vec3& corner : piece.corners_m)
       lowest = std::min(lowest, (object.pose.position_m + rotated(corner, object.pose.rotation)).z);
   return lowest;
 }
 
 bool is_over(const Final& object, const Final& below) {
-  const auto outline = placed_outline(object_model(below.object.object_type),
-                                      {below.pose.position_m.x, below.pose.position_m.y}, below.yaw_rad);
+  const auto outline =
+      placed_outline(model_of(below.object), {below.pose.position_m.x, below.pose.position_m.y}, below.yaw_rad);
   return std::any_of(outline.begin(), outline.end(),
                      [&](const Polygon& polygon) { return contains(polygon, object.centre_m); });
 }
@@ -52,7 +52,7 @@ class Stack final : public Task {
   // The centre is over the support's outline, and all of the target above half of the support's height.
   Failure judge(const Scene& scene, const Final& target, const std::vector<Final>& finals) const override {
     const Final& onto = finals[static_cast<std::size_t>(&expect(scene, support) - scene.objects.data())];
-    const double least_z = object_model(onto.object.object_type).height_m / 2;
+    const double least_z = model_of(onto.object).height_m / 2;
     return is_over(target, onto) && lowest_z(target) > least_z ? failure::none : failure::bad_placement;
   }
 };

@@ -82,7 +82,7 @@ TwoPoses sweep_action(const Scene& scene, const Pose& pose, const SceneObject& o
   constexpr double behind_m = .03;
   const bool bars_upper = expect(scene, obstacle).position_m.y > expect(scene, role::target).position_m.y;
   const double side = bars_upper ? -1 : 1;  // the free one
-  const ObjectModel& model = object_model(object.object_type);
+  const ObjectModel& model = model_of(object);
   const Vec2 centre = centre_of(object, pose);
   const Vec2 mass =
       placed({{centroid(model.outline)}}, {pose.position_m.x, pose.position_m.y}, yaw_of(pose.rotation))[0][0];
@@ -243,7 +243,7 @@ bool touches_obstacle(const Scene& scene, const std::vector<Pose>& poses, const 
   if (!spatula.empty()) moving.push_back(spatula);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const auto outline = [&] {
-      return placed_outline(object_model(scene.objects[i].object_type), {poses[i].position_m.x, poses[i].position_m.y},
+      return placed_outline(model_of(scene.objects[i]), {poses[i].position_m.x, poses[i].position_m.y},
                             yaw_of(poses[i].rotation));
     };
     if (scene.objects[i].role == obstacle) barred.push_back(outline());

@@ -74,7 +74,7 @@ SceneScore score(const Scenario& scenario, int command, const Selection& selecti
     for (int i = 0; i < scenes; ++i) {
       const int index = static_cast<int>(turn - commands.begin()) + i * static_cast<int>(commands.size());
       const Scene scene = test_scene(scenario, layout, arm.id, scene_seed, index);
-      const Observation seen = environment.draw(scene);
+      const Observation seen = environment.draw(scene, view_of(scenario, scene));
       add_scene(scene, perceived ? perceived(seen, scene) : seen, selection.target, score);
     }
   }

@@ -25,7 +25,9 @@ class InOrder final : public Environment {
     has_scene_ = true;
     return seen;
   }
+  Observation look(const View& view) override { return after_reset("look()").look(view); }
   StepResult step(const Action& action) override { return after_reset("step()").step(action); }
+  std::vector<EngineBody> bodies() const override { return after_reset("bodies()").bodies(); }
   Observation observe() override { return after_reset("observe()").observe(); }
   Action expert_action() const override { return after_reset("expert_action()").expert_action(); }
   Action expert_action_for(std::uint8_t instance_id) const override {
@@ -54,10 +56,14 @@ Scene training_scene(const Scenario& scenario, const std::string& layout, const 
       .sample(scenario, {layout, "train", "train", training_seed, selections}, index);
 }
 
+Scene sampled_scene(const Scenario& scenario, const SceneRequest& request, int index) {
+  Scene scene = find_environment(scenario.environment).sample(scenario, request, index);
+  return request.arm == "train" ? scene : perturbed(std::move(scene), scenario, request.training_seed);
+}
+
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
                  int index, std::optional<std::uint64_t> training_seed) {
-  return find_environment(scenario.environment)
-      .sample(scenario, {layout, "test", arm, scene_seed, {}, training_seed}, index);
+  return sampled_scene(scenario, {layout, "test", arm, scene_seed, {}, training_seed}, index);
 }
 
 Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional<std::uint64_t> training_seed) {
@@ -65,7 +71,7 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
   const Perceive perceive = find_environment(scenario.environment).perception(*arm.scenes);
   std::vector<const PerturbationAxis*> axes;
   if (arm.perturbation)
-    for (const PerturbationAxis* axis : axes_named(arm.perturbation->axis))
+    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
       if (axis->perceive) axes.push_back(axis);
   if (!perceive && noise.label_noise == 0 && noise.missed_segment == 0 && axes.empty()) return nullptr;
   const std::string own = own_stream(training_seed);
@@ -82,6 +88,16 @@ Perception perception_of(const Scenario& scenario, const Arm& arm, std::optional
           axis->perceive(std::move(perceived), scenario, level, perturbation_stream(axis->id, scene, training_seed));
     return perceived;
   };
+}
+
+View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed) {
+  View view;
+  if (scene.arm == "train") return view;
+  const std::optional<Perturbation>& perturbation = scenario.arm(scene.arm).perturbation;
+  if (!perturbation) return view;
+  for (const PerturbationAxis* axis : axes_of(scenario, *perturbation))
+    if (axis->look) axis->look(view, scene, perturbation->level, perturbation_stream(axis->id, scene, training_seed));
+  return view;
 }
 
 }  // namespace lgabench

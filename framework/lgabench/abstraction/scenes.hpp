@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <lgabench/core/environment.hpp>
+#include <lgabench/core/environments.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scenario.hpp>
 
@@ -22,6 +23,10 @@ std::unique_ptr<Environment> make_environment(const Scenario& scenario, std::uni
 Scene training_scene(const Scenario& scenario, const std::string& layout, const std::vector<Selection>& selections,
                      std::uint64_t training_seed, int index);
 
+/// Scene `index` of the request, changed by the arm's perturbation where it is a test scene. @throws as
+/// EnvironmentType::sample() and perturbed().
+Scene sampled_scene(const Scenario& scenario, const SceneRequest& request, int index);
+
 /// Test scene `index` of an arm, whatever was selected or trained on; with a training seed its own, else shared by all.
 Scene test_scene(const Scenario& scenario, const std::string& layout, const std::string& arm, std::uint64_t scene_seed,
                  int index, std::optional<std::uint64_t> training_seed = std::nullopt);
@@ -34,6 +39,7 @@ struct TestScene {
   Scene scene;
   Perception perception = nullptr;  // null: as it is
   bool abstraction_empty = false;   // nothing was selected for its command: failed without being played
+  View view = {};
 };
 
 /// The arm's: its noise, and what the environment adds (EnvironmentType::perception()); null where neither errs. Draws
@@ -41,5 +47,8 @@ struct TestScene {
 /// as in SceneRequest. @pre the scenario outlives it.
 Perception perception_of(const Scenario& scenario, const Arm& arm,
                          std::optional<std::uint64_t> training_seed = std::nullopt);
+
+/// How the scene's arm is looked at: the usual view, but for a perturbation. `training_seed`: likewise.
+View view_of(const Scenario& scenario, const Scene& scene, std::optional<std::uint64_t> training_seed = std::nullopt);
 
 }  // namespace lgabench

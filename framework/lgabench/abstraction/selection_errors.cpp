@@ -67,6 +67,14 @@ SelectionErrors read_selection_errors(const JsonReader& reader) {
   return errors;
 }
 
+std::string why_no_selection_errors(const Scenario& scenario) {
+  for (const ScenarioCommand& command : scenario.commands)
+    if (!command.truth.target.is_product())
+      return fmt::format("expected commands that mean one product of types and textures, \"{}\" means more",
+                         command.utterance);
+  return "";
+}
+
 Selection with_errors(Selection selected, const Scenario& scenario, int command, const SelectionErrors& errors,
                       std::uint64_t training_seed, const std::string& never_meant) {
   const std::string& utterance = scenario.commands.at(static_cast<std::size_t>(command)).utterance;

@@ -25,6 +25,9 @@ Json to_json(const SelectionErrors& errors);
 /// @throws InputError for another member, or a number outside 0 to 1.
 SelectionErrors read_selection_errors(const JsonReader& reader);
 
+/// Why no errors can be made in what is selected for the scenario's commands, in a few words; "" where they can.
+std::string why_no_selection_errors(const Scenario& scenario);
+
 /// What `selected` for the scenario's command number `command` becomes. Each feature has one number in [0, 1), from a
 /// stream of (utterance, training seed): it errs where that lies below the probability, so that more errors hold all
 /// that fewer make, for every method alike. `never_meant`: an object type that no set with errors holds, as the place

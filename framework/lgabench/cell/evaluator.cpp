@@ -75,6 +75,7 @@ Episode play(Environment& environment, const TestScene& test, const Actor& actor
   Episode episode{scene.arm, scene.index, scene.command, hex(scene.hash()), failure::abstraction_empty};
   if (test.abstraction_empty) return episode;
   Observation observation = environment.reset(scene);
+  if (test.view != View()) observation = environment.look(test.view);
   if (test.perception) observation = test.perception(observation, scene);
   try {
     const Move move = actor(environment, scene, observation);
@@ -150,7 +151,8 @@ void attribute_failures(Environment& environment, const std::vector<TestScene>& 
     Episode& episode = episodes[i];
     if (episode.success()) continue;
     TestScene as_it_is = scenes.at(i);
-    const bool errs = std::exchange(as_it_is.perception, nullptr) != nullptr;
+    const bool errs = std::exchange(as_it_is.perception, nullptr) != nullptr || as_it_is.view != View();
+    as_it_is.view = View();
     if (episode.failure == failure::abstraction_empty)
       episode.attribution = "abstraction";
     else if (errs && succeeds(as_it_is, actor))

@@ -17,33 +17,51 @@ constexpr double fewest_changed = .95;
 std::string hash_of(const std::string& bytes) { return hex(hash64(bytes)); }
 std::string hash_of(const Json& json) { return hash_of(canonical(json)); }
 
+Json size_json(const Vec3& size) { return {size.x, size.y, size.z}; }
+Json pose_json(const Pose& pose) {
+  const auto& [p, q] = pose;
+  return {p.x, p.y, p.z, q.x, q.y, q.z, q.w};
+}
+
 std::string bytes_of(const std::vector<std::uint8_t>& values) { return {values.begin(), values.end()}; }
 
 using Key = std::pair<std::string, int>;  // arm, index
 
 }  // namespace
 
-std::vector<const PerturbationAxis*> installed_axes(const PerturbedEpisode& episode) {
-  return episode.axis.empty() ? std::vector<const PerturbationAxis*>() : axes_named(episode.axis);
+AxesOf axes_in(const Scenario& scenario) {
+  return [&scenario](const PerturbedEpisode& episode) {
+    return episode.axis.empty() ? std::vector<const PerturbationAxis*>()
+                                : axes_of(scenario, {episode.axis, episode.level});
+  };
 }
 
-std::array<std::string, parts> parts_of(const Scene& scene, const Observation& observation, const Instruction* selected,
-                                        const Instruction* told) {
-  Json whole = to_json(scene), physics = Json::array(), instances = Json::array(), pixels = Json::array();
-  whole.erase("arm");  // which alone differs between a control and scenes that are its own
-  for (const SceneObject& o : scene.objects) physics.push_back({o.object_type, o.role});
+std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
+                                        const Instruction* selected, const Instruction* told) {
+  const Scene& scene = played.scene;
+  Json objects = to_json(scene).at("objects"), control = to_json(played.control), physics = Json::array(),
+       instances = Json::array(), pixels = Json::array();
+  for (const char* own : {"arm", "command"}) control.erase(own);  // a scene is the control's whoever asks, and how
+  for (Json& object : objects) object.erase("scale");             // of physics
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    physics.push_back({scene.objects[i].object_type, scene.objects[i].role});
+    if (i >= played.bodies.size()) continue;
+    objects[i]["pose"] = pose_json(played.bodies[i].pose);
+    if (const auto& of = played.bodies[i].physics)
+      physics.back().push_back({of->mass_kg, of->friction, size_json(of->high_m - of->low_m)});
+  }
   for (const Instance& one : observation.instances) {
     instances.push_back({one.id, one.object_type, one.texture});
     pixels.push_back(one.pixels);
   }
   std::array<std::string, parts> hashes;
   const auto of = [&hashes](EpisodePart part) -> std::string& { return hashes[static_cast<std::size_t>(part)]; };
-  of(EpisodePart::objects) = hash_of(whole.at("objects"));
+  of(EpisodePart::objects) = hash_of(objects);
   of(EpisodePart::physics) = hash_of(Json{{"bodies", physics}, {"parameters", scene.parameters}});
   of(EpisodePart::rgb) = hash_of(bytes_of(observation.rgb));
   of(EpisodePart::ids) = hash_of(bytes_of(observation.ids));
   of(EpisodePart::instances) = hash_of(instances);
-  of(EpisodePart::control) = hash_of(whole);
+  of(EpisodePart::control) = hash_of(control);
   std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
   if (selected && told) {
     of(EpisodePart::words) = hash_of(told->utterance);

@@ -12,19 +12,26 @@ namespace lgabench {
 
 /// The axes that changed an episode; none for the control's.
 using AxesOf = std::function<std::vector<const PerturbationAxis*>(const PerturbedEpisode&)>;
-/// Those that are installed.
-std::vector<const PerturbationAxis*> installed_axes(const PerturbedEpisode& episode);
+/// Those of the scenario's arms. @pre it outlives what is returned.
+AxesOf axes_in(const Scenario& scenario);
+
+/// A scene as it was played.
+struct PlayedScene {
+  const Scene& scene;
+  std::vector<EngineBody> bodies;  // at its beginning
+  const Scene& control;            // which it was made from
+};
 
 /// The parts of an episode that a policy sees as `observation`, told `told` where `selected` was selected. Without
 /// them, of a reference row.
-std::array<std::string, parts> parts_of(const Scene& scene, const Observation& observation, const Instruction* selected,
-                                        const Instruction* told);
+std::array<std::string, parts> parts_of(const PlayedScene& played, const Observation& observation,
+                                        const Instruction* selected, const Instruction* told);
 
 /// Expects of every axis that parts which it does not declare are the control's, to the bit, and that a part which it
 /// changes is another one in at least 95 % of its arm's episodes. `actions`: whether a policy acts, whose action must
 /// be the control's, to the bit, where its input is. `episodes` as evaluate() returned them, those of the control
 /// first. @throws EngineError that names axis, part and episode; MethodError where the policy is at fault.
 void expect_declared(const std::vector<PerturbedEpisode>& parts, const std::vector<Episode>& episodes, bool actions,
-                     const AxesOf& axes = installed_axes);
+                     const AxesOf& axes);
 
 }  // namespace lgabench

@@ -147,7 +147,8 @@ std::vector<TestScene> test_scenes(const Scenario& scenario, const Cell& cell, C
     for (int i = 0; i < cell.episodes; ++i) {
       Scene scene = test_scene(scenario, cell.layout, arm.id, cell.scene_seed, i, cell.scenes_of_seed());
       const bool empty = course == Course::nothing_selected || selected.nothing_for(scene.command);
-      scenes.push_back({std::move(scene), perception, empty});
+      const View view = view_of(scenario, scene, cell.scenes_of_seed());
+      scenes.push_back({std::move(scene), perception, empty, view});
     }
   }
   return scenes;
@@ -171,7 +172,7 @@ Instruction told_in(const Scene& scene, const Scenario& scenario, const Cell& ce
   Instruction told = instructions.at(static_cast<std::size_t>(scene.command));
   const Arm& arm = scenario.arm(scene.arm);
   if (!arm.perturbation) return told;
-  for (const PerturbationAxis* axis : axes_named(arm.perturbation->axis)) {
+  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
     if (!axis->selection_errors) continue;
     const double p = axis->selection_errors(arm.perturbation->level);
     told.selection = lgabench::with_errors(std::move(told.selection), scenario, scene.command, SelectionErrors{p, p},
@@ -201,12 +202,22 @@ Actor noting(const Actor& actor, const Scenario& scenario, const Cell& cell, con
              std::vector<PerturbedEpisode>& all) {
   return [&, actor, policy](const Environment& environment, const Scene& scene, const Observation& seen) {
     const auto& perturbation = scenario.arm(scene.arm).perturbation;
-    PerturbedEpisode one{
-        scene.arm, scene.index, perturbation ? perturbation->axis : "", perturbation ? perturbation->level : 0, {}};
+    const Scene control =
+        find_environment(scenario.environment)
+            .sample(scenario, {cell.layout, "test", scene.arm, cell.scene_seed, {}, cell.scenes_of_seed()},
+                    scene.index);
+    const SceneObject* const target = scene.find(role::target);
+    PerturbedEpisode one{scene.arm,
+                         scene.index,
+                         perturbation ? perturbation->axis : "",
+                         perturbation ? perturbation->level : 0,
+                         {},
+                         "",
+                         target ? target->scale : 1};
     const Instruction told = told_in(scene, scenario, cell, selected.instructions);
-    one.hashes =
-        parts_of(scene, seen, policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
-                 policy ? &told : nullptr);
+    one.hashes = parts_of({scene, environment.bodies(), control}, seen,
+                          policy ? &selected.instructions.at(static_cast<std::size_t>(scene.command)) : nullptr,
+                          policy ? &told : nullptr);
     all.push_back(one);
     const Move move = actor(environment, scene, seen);
     if (policy) all.back().read = read_by(*policy, cell.method.id);
@@ -378,7 +389,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
     count(n);
     if (showing) showing->played(tests[static_cast<std::size_t>(n) - 1]);
   });
-  expect_declared(perturbed, episodes, policy != nullptr);
+  expect_declared(perturbed, episodes, policy != nullptr, axes_in(scenario));
   auto* const hosted = dynamic_cast<MethodInProcesses*>(method.get());
   const Files of_method = hosted ? hosted->files() : Files();  // from now on the method may be told the truth
   const std::string kept = policy_text(job, policy.get());

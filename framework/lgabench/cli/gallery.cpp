@@ -3,9 +3,12 @@
 #include <algorithm>
 
 #include <lgabench/abstraction/goal_mask.hpp>
+#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/gallery.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
+#include <lgabench/harness/expand.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -37,13 +40,13 @@ Tile close_up(const std::string& type, const std::string& texture, const std::st
   return tile;
 }
 
-Tile scene_and_mask(const Scenario& scenario, const std::string& layout, const std::string& arm) {
-  const EnvironmentType& environment = find_environment(scenario.environment);
-  const Scene scene = environment.sample(scenario, {layout, "test", arm, 0}, 0);
+Tile scene_and_mask(const Scenario& scenario, const std::string& layout, const std::string& arm, int index = 0,
+                    int widest = widest_picture) {
+  const Scene scene = test_scene(scenario, layout, arm, 0, index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
-  const Observation seen = environment.draw(scene);
+  const Observation seen = drawn_in_arm(scenario, scene);
   const auto mask = goal_mask(seen, command.truth);
-  const int step = std::max(1, seen.size.columns / widest_picture);  // of a large picture every step-th pixel
+  const int step = std::max(1, seen.size.columns / widest);  // of a large picture every step-th pixel
   const int rows = seen.size.rows / step, columns = seen.size.columns / step;
   Tile tile{fmt::format("`{}`, {}: {}", scenario.id, arm, command.utterance), 2 * columns, rows, {}};
   for (int row = 0; row < rows; ++row) {
@@ -89,7 +92,37 @@ bool in_other_words(const Scenario& scenario, const Arm& arm) {
                      [&](int command) { return !scenario.commands[static_cast<std::size_t>(command)].arm.empty(); });
 }
 
+// Of the suite's first scenario every perturbed arm that looks otherwise than the control, a row an axis.
+std::vector<Tile> perturbed() {
+  const Suite suite = load_suite("perturbations");
+  const Scenario scenario = suite_scenario(suite, suite.design.scenarios.front(), Truth::released);
+  const std::string layout = suite.design.layouts.front();
+  constexpr int shown = 6;  // a scene in which the segmenter does not miss the target at once
+  std::vector<Tile> tiles;
+  for (const Arm& arm : scenario.tests) {
+    if (!arm.perturbation) continue;
+    const auto& [axis, level] = *arm.perturbation;
+    const std::vector<const PerturbationAxis*> axes = axes_named(axis);
+    const auto shows = [](const PerturbationAxis* axis) {
+      return axis->touches(EpisodePart::rgb) || axis->touches(EpisodePart::ids);
+    };
+    if (std::none_of(axes.begin(), axes.end(), shows)) continue;
+    tiles.push_back(scene_and_mask(scenario, layout, arm.id, shown, widest_picture / 2));
+    const std::string what = axes.size() == 1 ? axes.front()->levels[static_cast<std::size_t>(level - 1)] : "each";
+    tiles.back().caption = fmt::format("`{}`: {}", arm.id, what);
+  }
+  return tiles;
+}
+
 }  // namespace
+
+Observation drawn_in_arm(const Scenario& scenario, const Scene& scene) {
+  const EnvironmentType& environment = find_environment(scenario.environment);
+  Observation seen = environment.draw(scene, view_of(scenario, scene));
+  if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
+    if (const Perception perception = perception_of(scenario, scenario.arm(scene.arm))) seen = perception(seen, scene);
+  return seen;
+}
 
 Sheet scene_sheet(const Scenario& scenario, const std::string& layout) {
   std::vector<Tile> tiles;
@@ -109,6 +142,7 @@ Sheet gallery(const std::string& what) {
       tiles.push_back(close_up("pallet", texture, texture));
     return sheet(tiles, 7);
   }
+  if (what == "perturbations") return sheet(perturbed(), 4);
   const std::vector<std::string> environments = environment_ids();
   const bool words = what == "words";
   const std::string environment = words || what == "scenes" ? "tabletop" : what;
@@ -125,7 +159,8 @@ Sheet gallery(const std::string& what) {
     }
     return sheet(tiles, 2);
   }
-  throw InputError(fmt::format("--gallery {}: expected objects, textures, scenes, words or an environment", what));
+  throw InputError(
+      fmt::format("--gallery {}: expected objects, textures, scenes, words, perturbations or an environment", what));
 }
 
 }  // namespace lgabench::cli

@@ -13,9 +13,13 @@ struct Sheet {
   Json cells;          // where the pictures lie: {"names", "tile", "step", "across"}, row by row, in pixels
 };
 
-/// `what`: "objects" (every type), "textures" (every one, on a pallet) or "scenes" (a test scene of every scenario,
-/// with its goal mask). Twice the observation's size. @throws InputError for anything else.
+/// `what`: "objects" (every type), "textures" (every one, on a pallet), "scenes" (a test scene of every scenario, with
+/// its goal mask), "words" or an environment (likewise), or "perturbations" (one along every axis at every level, where
+/// that shows). Twice the observation's size, or as large. @throws InputError for anything else.
 Sheet gallery(const std::string& what);
+
+/// A scene's beginning: as a policy sees it where its arm has a perturbation, else as it is.
+Observation drawn_in_arm(const Scenario& scenario, const Scene& scene);
 
 /// A test scene of every arm of the scenario in that layout, with its goal mask.
 Sheet scene_sheet(const Scenario& scenario, const std::string& layout);

@@ -73,10 +73,13 @@ class Pictures {
   Json draw(const PictureRequest& request) {
     const PlayedScenes::Played& played = scenes_.cell(request.cell.string());
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
-    const Observation seen = find_environment(played.scenario.environment).draw(scene);
+    const EnvironmentType& type = find_environment(played.scenario.environment);
+    const Observation seen = type.draw(scene);
     const Perception perception =
         perception_of(played.scenario, played.scenario.arm(request.arm), played.cell.scenes_of_seed());
-    const Observation perceived = perception ? perception(seen, scene) : seen;
+    const View view = view_of(played.scenario, scene, played.cell.scenes_of_seed());
+    Observation perceived = view == View() ? seen : type.draw(scene, view);
+    if (perception) perceived = perception(perceived, scene);
     Json masks = Json::array();
     for (const Json& one : request.selections) {
       const JsonReader selection(one, "selection");

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include <lgabench/abstraction/goal_mask.hpp>
-#include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/picture.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gallery.hpp>
@@ -59,14 +58,12 @@ void render(const RenderArguments& arguments) {
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
   const EnvironmentType& environment = find_environment(scenario.environment);
-  const Scene scene = environment.sample(
-      scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
-      arguments.index);
+  const Scene scene =
+      sampled_scene(scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
+                    arguments.index);
   const ScenarioCommand& command = scenario.commands[static_cast<std::size_t>(scene.command)];
 
-  Observation seen = environment.draw(scene);
-  if (scene.arm != "train" && scenario.arm(scene.arm).perturbation)
-    seen = perception_of(scenario, scenario.arm(scene.arm))(seen, scene);
+  const Observation seen = drawn_in_arm(scenario, scene);
   const std::vector<std::uint8_t> mask = goal_mask(seen, command.truth);
 
   Panels panels(3, seen.size);
@@ -87,12 +84,12 @@ void render(const RenderArguments& arguments) {
 void add_render(CLI::App& app, int&) {
   auto arguments = std::make_shared<RenderArguments>();
   CLI::App* verb = app.add_subcommand("render", worker_summary("render"));
-  std::vector<std::string> galleries{"objects", "textures", "scenes", "words"};
+  std::vector<std::string> galleries{"objects", "textures", "scenes", "words", "perturbations"};
   for (const std::string& id : environment_ids()) galleries.push_back(id);
   auto* scenario = verb->add_option("scenario", arguments->scenario, "A scenario's id");
   verb->add_option("--gallery", arguments->gallery,
                    "Draw one sheet instead: all objects, all textures, or a scene of every scenario (words: of the "
-                   "suite words; or of those of one environment)")
+                   "suite words; perturbations: one along each axis; or of those of one environment)")
       ->check(one_of("gallery", galleries))
       ->excludes(scenario);
   verb->add_option("--cells", arguments->cells,
@@ -121,7 +118,7 @@ void add_render(CLI::App& app, int&) {
   add_scenario_path(*verb);
   arrange(*verb, "", {{"scenario", "SCENARIO"}, {"--out", "FILE"}});
   arrange(*verb, "What is drawn",
-          {{"--gallery", "objects|textures|scenes|words|ENVIRONMENT"},
+          {{"--gallery", "objects|textures|scenes|words|perturbations|ENVIRONMENT"},
            {"--cells", "FILE"},
            {"--index", "N"},
            {"--layout", "LAYOUT"},

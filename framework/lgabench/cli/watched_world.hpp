@@ -39,6 +39,7 @@ class WatchedWorld final : public PhysicsWorld {
     world_->step();
   }
   Pose pose(int body) const override { return world_->pose(body); }
+  std::optional<BodyPhysics> physics(int body) const override { return world_->physics(body); }
   std::vector<Contact> contacts() const override { return world_->contacts(); }
   int cast_down(Vec2 point, double& height_m) const override { return world_->cast_down(point, height_m); }
   void grip(int body, const Pose& gripper) override {

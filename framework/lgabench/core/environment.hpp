@@ -5,8 +5,11 @@
 #include <vector>
 
 #include <lgabench/core/action.hpp>
+#include <lgabench/core/error.hpp>
 #include <lgabench/core/observation.hpp>
+#include <lgabench/core/physics_world.hpp>
 #include <lgabench/core/scene.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench {
 
@@ -29,6 +32,12 @@ struct StepResult {
   Failure failure = failure::none;  // none exactly if is_success
 };
 
+/// A scene's object as the engine has it.
+struct EngineBody {
+  Pose pose;
+  std::optional<BodyPhysics> physics;  // none: the engine cannot tell
+};
+
 /// One thread at a time. Every call but reset needs a reset before it.
 class Environment {
  public:
@@ -41,10 +50,19 @@ class Environment {
   /// @throws EngineError if the engine fails, InputError for an object type or texture that is not known.
   virtual Observation reset(const Scene& scene) = 0;
 
+  /// What is seen in that view, as by observe() and step() until the next reset(). The oracle then reads its places off
+  /// that picture as if it were the usual one: a camera that moved leads it astray as far as the picture moved. Actions
+  /// are carried out as ever. @throws InputError unless EnvironmentType::has_views().
+  virtual Observation look(const View& /*view*/) { throw InputError("environment: it has its usual view alone"); }
+
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
   /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.
   virtual StepResult step(const Action& action) = 0;
+
+  /// What the engine has now of the scene's objects, in their order; what perturbations of bodies are proved by. None:
+  /// the environment does not say, and such a perturbation counts as without effect.
+  virtual std::vector<EngineBody> bodies() const { return {}; }
 
   /// What is seen in the present state; also while step() is under way, by whoever looks on at the engine.
   virtual Observation observe() = 0;

@@ -91,6 +91,18 @@ std::vector<std::string> failure_words() {
   return words;
 }
 
+Scene EnvironmentType::with_distractors(const Scenario&, Scene, int, bool, RandomStream) const {
+  throw NothingToShow(fmt::format("environment {}: its scenes have no room for more distractors", id()));
+}
+
+Scene EnvironmentType::resized(Scene, double) const {
+  throw InputError(fmt::format("environment {}: its objects have one size each", id()));
+}
+
+Scene EnvironmentType::with_larger_target(Scene, const std::vector<double>&) const {
+  throw InputError(fmt::format("environment {}: its objects have one size each", id()));
+}
+
 std::vector<std::string> EnvironmentType::layouts_of(const Scenario& scenario) const {
   return find_task(*this, scenario.task).layouts;
 }

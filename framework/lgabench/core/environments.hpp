@@ -109,8 +109,22 @@ class EnvironmentType {
   virtual std::string goal_type() const { return ""; }
   /// Of the task's layouts, those that can show the scenario's scenes: all, unless an environment says otherwise.
   virtual std::vector<std::string> layouts_of(const Scenario& scenario) const;
+  /// How many more distractors test scenes of the scenario's first arm have room for: 0 unless an environment says
+  /// otherwise.
+  virtual int room_for_distractors(const Scenario& /*scenario*/) const { return 0; }
+  /// The scene, of a test arm, with so many more, uniform ones or near misses of the target. One stream gives those of
+  /// a smaller count and then others; the control's objects stay where they are. @throws NothingToShow where none fits.
+  virtual Scene with_distractors(const Scenario& scenario, Scene scene, int count, bool near_miss,
+                                 RandomStream random) const;
+  /// The scene with everything that can be brought somewhere, or swept, of that size, times its type's.
+  virtual Scene resized(Scene scene, double scale) const;
+  /// The scene with a target as large as room is left for, by 5 mm: of the greatest of `scales`, which grow, if any.
+  virtual Scene with_larger_target(Scene scene, const std::vector<double>& scales) const;
   /// What is seen at the scene's beginning, without an engine. One thread at a time.
-  virtual Observation draw(const Scene& scene) const = 0;
+  virtual Observation draw(const Scene& scene, const View& view) const = 0;
+  Observation draw(const Scene& scene) const { return draw(scene, View()); }
+  /// Whether draw() and Environment::look() show other views than the usual one.
+  virtual bool has_views() const { return false; }
   /// How an engine's world for the scenario differs from that for most of the environment's, "" where it does not: what
   /// demonstrations in it depend on.
   virtual std::string world_of(const Scenario& /*scenario*/) const { return ""; }

@@ -11,6 +11,27 @@
 #include <lgabench/core/suggest.hpp>
 
 namespace lgabench {
+namespace {
+
+// What bodies each arm with a perturbation may ask for: of all its axes together.
+std::vector<BodyVariants> bodies_of_arms(const Scenario& scenario) {
+  std::vector<BodyVariants> all;
+  for (const Arm& arm : scenario.tests) {
+    if (!arm.perturbation) continue;
+    BodyVariants& of_arm = all.emplace_back();
+    for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation)) {
+      if (!axis->bodies) continue;
+      const BodyVariants own = axis->bodies(arm.perturbation->level);
+      if (own.scales.size() > 1) of_arm.scales = own.scales;
+      of_arm.friction *= own.friction;
+      of_arm.mass *= own.mass;
+      of_arm.more += own.more;
+    }
+  }
+  return all;
+}
+
+}  // namespace
 
 bool PerturbationAxis::touches(EpisodePart part) const {
   const auto has = [](const std::vector<EpisodePart>& some, EpisodePart one) {
@@ -52,6 +73,52 @@ std::vector<const PerturbationAxis*> axes_named(const std::string& id) {
   return axes;
 }
 
+bool operator==(const BodyVariant& a, const BodyVariant& b) {
+  return a.scale == b.scale && a.friction == b.friction && a.mass == b.mass;
+}
+
+std::string lacking(const Scenario& scenario, const Perturbation& perturbation) {
+  if (perturbation.axis == all_axes) return "";
+  const PerturbationAxis& axis = *axes_named(perturbation.axis).front();
+  return axis.lacks ? axis.lacks(scenario, perturbation.level) : "";
+}
+
+std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation) {
+  std::vector<const PerturbationAxis*> axes = axes_named(perturbation.axis);
+  axes.erase(std::remove_if(axes.begin(), axes.end(),
+                            [&](const PerturbationAxis* axis) {
+                              return !lacking(scenario, {axis->id, perturbation.level}).empty();
+                            }),
+             axes.end());
+  return axes;
+}
+
+std::vector<BodyVariant> body_variants(const Scenario& scenario) {
+  std::vector<BodyVariant> all{{}};
+  for (const BodyVariants& of_arm : bodies_of_arms(scenario))
+    for (const double scale : of_arm.scales) {
+      const BodyVariant one{scale, of_arm.friction, of_arm.mass};
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+    }
+  return all;
+}
+
+int more_bodies(const Scenario& scenario) {
+  int most = 0;
+  for (const BodyVariants& of_arm : bodies_of_arms(scenario)) most = std::max(most, of_arm.more);
+  return most;
+}
+
+Scene perturbed(Scene scene, const Scenario& scenario, std::optional<std::uint64_t> training_seed) {
+  const Arm& arm = scenario.arm(scene.arm);
+  if (!arm.perturbation) return scene;
+  for (const PerturbationAxis* axis : axes_of(scenario, *arm.perturbation))
+    if (axis->change)
+      scene = axis->change(std::move(scene), scenario, arm.perturbation->level,
+                           perturbation_stream(axis->id, scene, training_seed));
+  return scene;
+}
+
 Perturbation read_perturbation(const JsonReader& reader) {
   const Json& json = reader.json();
   if (!json.is_object() || json.size() != 1)
@@ -72,6 +139,13 @@ Perturbation read_perturbation(const JsonReader& reader) {
     level.fail(id == all_axes ? fmt::format("a level from 1 to {}", most)
                               : fmt::format("a level from 1 to {} ({})", most, fmt::join(axes.front()->levels, "; ")));
   return {id, level.json().get<int>()};
+}
+
+void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views) {
+  for (const PerturbationAxis* axis : axes_named(perturbation.json().begin().key()))
+    if (axis->look && !has_views)
+      perturbation.fail(fmt::format("an axis that leaves the view as it is ({} does not): environment {} has one alone",
+                                    axis->id, environment));
 }
 
 std::string arm_of(const Perturbation& perturbation) {

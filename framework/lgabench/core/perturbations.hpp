@@ -10,6 +10,7 @@
 #include <lgabench/core/observation.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/core/view.hpp>
 
 namespace lgabench {
 
@@ -19,6 +20,19 @@ enum class EpisodePart { objects, physics, rgb, ids, instances, words, answers, 
 constexpr std::array part_names{"objects", "physics", "rgb",       "ids",   "instances",
                                 "words",   "answers", "selection", "input", "control"};
 constexpr std::size_t parts = part_names.size();
+
+/// How a body may differ from its type's: each times that of the type.
+struct BodyVariant {
+  double scale = 1, friction = 1, mass = 1;
+};
+bool operator==(const BodyVariant& a, const BodyVariant& b);
+
+/// Those of an axis' scenes at one level: any of these sizes, one friction and one mass.
+struct BodyVariants {
+  std::vector<double> scales{1};
+  double friction = 1, mass = 1;
+  int more = 0;  // bodies beside the control's
+};
 
 /// One axis. Level 0 is the control, which it leaves as it is. The stream is the episode's own and the same at every
 /// level: what it gives is the direction of a change, and the level gives the size alone.
@@ -31,6 +45,15 @@ struct PerturbationAxis {
   std::function<Observation(Observation, const Scenario&, int level, RandomStream)> perceive = nullptr;
   /// How likely each true feature is missing from what was selected, and each wrong one added. Null: as it is.
   std::function<double(int level)> selection_errors = nullptr;
+  /// Changes how the scene is looked at. Null: not at all.
+  std::function<void(View&, const Scene&, int level, RandomStream)> look = nullptr;
+  /// The control's scene, changed. Null: as it is.
+  std::function<Scene(Scene, const Scenario&, int level, RandomStream)> change = nullptr;
+  /// What bodies change() may ask for, which engines are told before. Null: as they are.
+  std::function<BodyVariants(int level)> bodies = nullptr;
+  bool rewords = false;  // gives the scenario's command in the words of that level (ScenarioCommand::wording)
+  /// Why scenes of the scenario cannot have it at that level, in a few words; "" where they can. Null: all can.
+  std::function<std::string(const Scenario&, int level)> lacks = nullptr;
   bool named = false;  // its levels are kinds without an order: no curve, no area
 
   int most() const { return static_cast<int>(levels.size()); }
@@ -52,11 +75,26 @@ std::vector<std::string> perturbation_ids();
 /// The axis of that id, or every axis for `all`. @throws InputError that lists the known ones.
 std::vector<const PerturbationAxis*> axes_named(const std::string& id);
 
+/// Those by which the arm's scenes differ: of `all`, the ones that the scenario can have.
+std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation);
+/// Why the scenario cannot have it, in a few words; "" where it can. It can always have `all`.
+std::string lacking(const Scenario& scenario, const Perturbation& perturbation);
+/// Every body that scenes of the scenario's arms may ask for, the usual one first.
+std::vector<BodyVariant> body_variants(const Scenario& scenario);
+/// How many bodies more than in their control's scenes they may ask for.
+int more_bodies(const Scenario& scenario);
+
 /// {"AXIS": LEVEL}, an axis or `all`. @throws InputError with file and place for an unknown axis, a level that it
 /// lacks, two axes.
 Perturbation read_perturbation(const JsonReader& reader);
+/// @throws InputError with file and place where an axis changes views, and the environment has its usual one alone.
+void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views);
 /// "AXIS_LEVEL": an arm's name.
 std::string arm_of(const Perturbation& perturbation);
+
+/// The arm's scene, changed by its axes where it has a perturbation. `training_seed`: as in SceneRequest. @throws as
+/// EnvironmentType::with_distractors() and resized().
+Scene perturbed(Scene control, const Scenario& scenario, std::optional<std::uint64_t> training_seed);
 
 /// The stream of one axis in one test scene; `training_seed`: as in SceneRequest.
 RandomStream perturbation_stream(const std::string& axis, const Scene& scene,

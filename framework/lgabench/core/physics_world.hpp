@@ -1,6 +1,7 @@
 // What an engine plugin provides: rigid bodies on a level plane. Tasks, success, pictures and the oracle are the
 // environment's.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,16 @@ struct BodyModel {
   std::vector<ConvexPiece> pieces;
   double mass_kg = 0.1;
   bool fixed = false;  // stays where reset() puts it, whatever touches it; cannot be gripped
+  /// With the plane, the spatula and bodies of friction 1, times what it usually is; with another body as the engine
+  /// combines two.
+  double friction = 1;
+};
+
+/// What an engine simulates a body with.
+struct BodyPhysics {
+  Vec3 low_m, high_m;   // of the box about it now, along the world's axes
+  double mass_kg = 0;   // 0 of a fixed one, and where bodies have no mass
+  double friction = 0;  // with the plane; 0 where there is none
 };
 
 /// Where a body is put.
@@ -56,6 +67,9 @@ class PhysicsWorld {
 
   /// Of the body's frame, in metres. `body`: index into reset()'s placements.
   virtual Pose pose(int body) const = 0;
+  /// Read from what it simulates, not from what load() was given: shows that the one follows from the other.
+  /// nullopt: it cannot tell.
+  virtual std::optional<BodyPhysics> physics(int /*body*/) const { return std::nullopt; }
   /// Pairs in which both bodies are at rest may be left out.
   virtual std::vector<Contact> contacts() const = 0;
 

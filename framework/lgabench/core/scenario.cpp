@@ -14,6 +14,8 @@
 namespace lgabench {
 namespace {
 
+constexpr int most_wordings = 99;
+
 // What the environment says of one of the file's words, with the place of that word.
 template <class Find>
 auto& named(const JsonReader& reader, Find find) {
@@ -25,7 +27,7 @@ auto& named(const JsonReader& reader, Find find) {
 }
 
 ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario) {
-  reader.only({"utterance", "truth", "seen", "arm", "ambiguous"});
+  reader.only({"utterance", "truth", "seen", "arm", "ambiguous", "wording"});
   ScenarioCommand command{reader.at("utterance").string(),
                           read_distribution(reader.at("truth"), scenario.space, scenario.second)};
   command.truth.provenance = Provenance::truth;
@@ -38,8 +40,27 @@ ScenarioCommand read_command(const JsonReader& reader, const Scenario& scenario)
   if (reader.has("arm")) command.arm = reader.at("arm").string();
   if (reader.has("arm") && command.seen) reader.at("arm").fail("\"seen\": false beside it");
   if (reader.has("ambiguous")) command.ambiguous = reader.at("ambiguous").boolean();
-  if (command.ambiguous && command.arm.empty()) reader.at("ambiguous").fail("\"arm\" beside it");
+  if (reader.has("wording")) command.wording = static_cast<int>(reader.at("wording").integer(1, most_wordings));
+  if (command.wording > 0 && (command.seen || !command.arm.empty()))
+    reader.at("wording").fail("\"seen\": false and no \"arm\" beside it");
+  if (command.ambiguous && command.arm.empty() && command.wording == 0)
+    reader.at("ambiguous").fail("\"arm\" or \"wording\" beside it");
   return command;
+}
+
+// Other words for one command mean what it means, so that its scenes are theirs.
+void expect_wordings(const JsonReader& commands, const Scenario& scenario) {
+  const std::vector<JsonReader> all = commands.elements();
+  std::vector<int> seen;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const ScenarioCommand& command = scenario.commands[i];
+    if (command.wording == 0) continue;
+    if (scenario.commands_of("train") != std::vector<int>{0}) all[i].at("wording").fail("one seen command, the first");
+    if (std::count(seen.begin(), seen.end(), command.wording) > 0) all[i].at("wording").fail("each level once");
+    if (distribution_json(command.truth) != distribution_json(scenario.commands.front().truth))
+      all[i].at("truth").fail("the truth of the command that this is another wording of");
+    seen.push_back(command.wording);
+  }
 }
 
 // Of the test arms, the one that a command names.
@@ -85,6 +106,15 @@ void expect_control(const JsonReader& file, const JsonReader& arm) {
   if (control.contains("perturbation")) arm.at("perturbation").fail("a first arm without one, its control");
   for (const char* own : {"arm", "perturbation"}) control.erase(own), same.erase(own);
   if (control != same) arm.at("perturbation").fail("the members of the first arm, its control, beside it");
+}
+
+// What of its scenes, and of its command, an arm's perturbation changes.
+void read_change(const JsonReader& arm, const Scenario& scenario, Arm& read) {
+  if (const std::string lack = lacking(scenario, *read.perturbation); !lack.empty())
+    throw InputError(
+        fmt::format("{}: {}: {}: {}", arm.file(), arm.at("perturbation").place(), read.perturbation->axis, lack));
+  for (const PerturbationAxis* axis : axes_of(scenario, *read.perturbation))
+    if (axis->rewords) read.wording = read.perturbation->level;
 }
 
 void read_train(const JsonReader& file, std::vector<std::string> members, const EnvironmentType& environment,
@@ -154,6 +184,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   }
   s.space = load_feature_space(reader.at("feature_space").string());
   for (const JsonReader& command : reader.at("commands").elements()) s.commands.push_back(read_command(command, s));
+  expect_wordings(reader.at("commands"), s);
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
   if (reader.has("answers")) read_answers(reader.at("answers"), s);
   read_train(reader, of_scenes, environment, s);
@@ -161,7 +192,11 @@ Scenario read_scenario(const Json& json, const std::string& file) {
     s.tests.push_back(read_arm(arm, of_scenes, [&] { return environment.read_content(s, reader, &arm, false); }));
     const auto same = [&](const Arm& other) { return other.id == s.tests.back().id; };
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
-    if (s.tests.back().perturbation) expect_control(reader, arm);
+    if (s.tests.back().perturbation) {
+      expect_control(reader, arm);
+      expect_shown(arm.at("perturbation"), s.environment, environment.has_views());
+      read_change(arm, s, s.tests.back());
+    }
     if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
   }
   expect_arms(reader.at("commands"), s);
@@ -184,10 +219,12 @@ const Arm& Scenario::arm(const std::string& name) const {
 }
 
 std::vector<int> Scenario::commands_of(const std::string& name) const {
-  const bool seen = name == "train" || !arm(name).unseen;
+  const int wording = name == "train" ? 0 : arm(name).wording;
+  const bool seen = name == "train" || (!arm(name).unseen && wording == 0);
   std::vector<int> indices;
   for (std::size_t i = 0; i < commands.size(); ++i)
-    if (commands[i].seen == seen && (commands[i].arm.empty() || commands[i].arm == name))
+    if (commands[i].seen == seen && commands[i].wording == wording &&
+        (commands[i].arm.empty() || commands[i].arm == name))
       indices.push_back(static_cast<int>(i));
   return indices;
 }

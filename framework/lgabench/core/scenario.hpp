@@ -17,6 +17,7 @@ struct ScenarioCommand {
   bool seen = true;        // demonstrated; an unseen command is only tested (paper, Q3)
   std::string arm{};       // the one arm that gives it; "": each that gives commands of its kind
   bool ambiguous = false;  // a reasonable person might mean something else by it: its arm enters no mean
+  int wording = 0;  // of a paraphrase of the scenario's command: the level of the axis `paraphrase` that gives it
 };
 
 /// What scenes of one kind hold: the environment's own, see EnvironmentType::read_content().
@@ -37,6 +38,7 @@ struct Arm {
   bool unseen = false;                            // give the unseen commands instead of the seen ones
   double label_noise = 0, missed_segment = 0;     // how imperfect the textualization is (see textualization.hpp)
   std::optional<Perturbation> perturbation = {};  // of the scenes of the scenario's first arm, its control
+  int wording = 0;                                // above 0: gives the command in those other words
 };
 
 /// Whose true distributions: the annotations that the paper's authors released with their code where there are any, or

@@ -6,13 +6,15 @@ namespace lgabench {
 
 Json to_json(const Scene& scene) {
   Json objects = Json::array();
-  for (const SceneObject& o : scene.objects)
+  for (const SceneObject& o : scene.objects) {
     objects.push_back({{"object_type", o.object_type},
                        {"texture", o.texture},
                        {"role", o.role},
                        {"position_m", {o.position_m.x, o.position_m.y}},
                        {"yaw_rad", o.yaw_rad},
                        {"instance_id", o.instance_id}});
+    if (o.scale != 1) objects.back()["scale"] = o.scale;
+  }
   Json json = scene.parameters;
   json.update({{"scenario", scene.scenario},
                {"arm", scene.arm},
@@ -23,6 +25,8 @@ Json to_json(const Scene& scene) {
                {"command", scene.command},
                {"task", scene.task},
                {"objects", std::move(objects)}});
+  if (scene.friction != 1) json["friction"] = scene.friction;
+  if (scene.mass != 1) json["mass"] = scene.mass;
   return json;
 }
 

@@ -24,6 +24,7 @@ struct SceneObject {
   Vec2 position_m;  // of the object type's centre
   double yaw_rad = 0;
   std::uint8_t instance_id = 0;  // 1..255, permuted over the scene
+  double scale = 1;              // of its type's size
 };
 
 /// A value: the same arguments of the sampler give the same scene on every host, for every engine and method.
@@ -37,6 +38,7 @@ struct Scene {
   int index = 0;
   int command = 0;                   // which of the scenario's commands is given
   std::vector<SceneObject> objects;  // ordered by instance_id
+  double friction = 1, mass = 1;     // of what can be moved, times those of its type
 
   /// Stable over hosts and versions; covers every field.
   std::uint64_t hash() const;

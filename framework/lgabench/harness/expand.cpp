@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
@@ -57,6 +58,47 @@ Json first_commands(const Json& commands, std::size_t count) {
   return some;
 }
 
+// To the scenario's command other ways to say it, with the answers to all of them: of one model.
+void add_wordings(const Suite& suite, const std::string& id, Json& json) {
+  const std::string other = suite.paraphrases.at(id);
+  const Scenario from = load_scenario(other);
+  if (from.commands.front().utterance != json["commands"].front().at("utterance"))
+    throw InputError(fmt::format("{}: /paraphrases/{}: expected a scenario whose first command is {}, got {} of {}",
+                                 suite.file, id, canonical(json["commands"].front().at("utterance")),
+                                 canonical(Json(from.commands.front().utterance)), other));
+  int wording = 0;
+  for (Json command : from.json.at("commands")) {
+    if (command.value("seen", true)) continue;
+    command.erase("arm");
+    command["wording"] = ++wording;
+    json["commands"].push_back(std::move(command));
+  }
+  json["answers"] = from.json.value("answers", Json{{"recorded", from.recorded}});
+  json["answers_of"] = from.answers_of;
+}
+
+// Errors can only be made in what is one product.
+void expect_errors_possible(const Suite& suite, const Scenario& scenario, const std::vector<SelectionErrors>& errors) {
+  const bool any = std::any_of(errors.begin(), errors.end(), [](const SelectionErrors& e) { return !e.none(); });
+  if (const std::string why = any ? why_no_selection_errors(scenario) : ""; !why.empty())
+    throw InputError(fmt::format("{}: /selection_errors: scenario {}: {}", suite.file, scenario.id, why));
+}
+
+// A perturbation of what the engine does not simulate would be none.
+void expect_dynamics(const Scenario& scenario, const PluginInfo& engine) {
+  if (!engine.kinematic) return;
+  for (const Arm& arm : scenario.tests)
+    for (const PerturbationAxis* axis :
+         arm.perturbation ? axes_of(scenario, *arm.perturbation) : std::vector<const PerturbationAxis*>()) {
+      const BodyVariants bodies = axis->bodies ? axis->bodies(arm.perturbation->level) : BodyVariants();
+      if (bodies.friction != 1 || bodies.mass != 1)
+        throw InputError(
+            fmt::format("scenario {}, arm {}: {} on the engine {}, whose bodies have neither friction nor "
+                        "mass: expected another engine, or other perturbations",
+                        scenario.id, arm.id, axis->id, engine.id));
+    }
+}
+
 // A suite's scenarios may be of several tasks, each with layouts of its own.
 void expect_layouts(const Scenario& scenario, const std::vector<std::string>& layouts) {
   const std::vector<std::string> there = layouts_of(scenario);
@@ -104,6 +146,9 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
                                  scenario.environment, suite.environment));
   Json json = scenario.json;
   if (!suite.train.empty()) json["train"].update(suite.train);
+  const Json scenes = suite.scenes.value(base, Json::object());
+  if (!scenes.empty()) json["train"].update(scenes);
+  if (suite.paraphrases.contains(base)) add_wordings(suite, base, json);
   if (!variant.empty()) json["train"].update(suite.variants[variant].value("train", Json::object()));
   if (!variant.empty() && suite.variants[variant].contains("commands"))
     json["commands"] = first_commands(json["commands"], suite.variants[variant]["commands"].get<std::size_t>());
@@ -112,16 +157,20 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   for (const Json& arm : suite.arms) {
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
+    json["tests"].back().update(scenes);
     if (suite.near_miss.contains(base) && arm.value("near_miss", Json()) == Json(true))
       json["tests"].back()["near_miss"] = suite.near_miss[base];
   }
   const Json control = json["tests"].front();
-  for (const Json& axis : perturbations ? *perturbations : suite.design.perturbations)
+  for (const Json& axis : perturbations ? *perturbations : suite.design.perturbations) {
+    const Json except = axis.value("except", Json::array());
+    if (std::find(except.begin(), except.end(), base) != except.end()) continue;
     for (const int level : axis["levels"]) {
       const Perturbation one{axis["axis"], level};
       json["tests"].push_back(control);
       json["tests"].back().update({{"arm", arm_of(one)}, {"perturbation", {{one.axis, one.level}}}});
     }
+  }
   if (!variant.empty()) {
     json["id"] = id;
     json["answers_of"] = scenario.answers_of;
@@ -153,6 +202,8 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
     const Scenario scenario = suite_scenario(suite, id, variation.truth, &design.perturbations);
     expect_own_scenes(suite, design, scenario);
     expect_layouts(scenario, design.layouts);
+    expect_errors_possible(suite, scenario, all_errors);
+    for (const std::string& engine : design.engines) expect_dynamics(scenario, catalogue.find("engine", engine));
     Cell cell = unplayed_cell(suite, design, scenario, variation.answers);
     const auto add = [&](const Competitor& method, int demonstrations, std::uint64_t seed,
                          const SelectionErrors& errors = {}) {

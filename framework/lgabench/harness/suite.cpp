@@ -31,14 +31,16 @@ std::vector<T> distinct(const JsonReader& list, Read read) {
   return all;
 }
 
+std::string one_of(const JsonReader& element, const char* what, const std::vector<std::string>& known) {
+  const std::string name = element.string();
+  if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+    throw InputError(fmt::format("{}: {}: {}", element.file(), element.place(), none_named(what, name, known)));
+  return name;
+}
+
 std::vector<std::string> names(const JsonReader& list, const char* what = "",
                                const std::vector<std::string>& known = {}) {
-  return distinct<std::string>(list, [&](const JsonReader& element) {
-    const std::string name = element.string();
-    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
-      throw InputError(fmt::format("{}: {}: {}", element.file(), element.place(), none_named(what, name, known)));
-    return name;
-  });
+  return distinct<std::string>(list, [&](const JsonReader& element) { return one_of(element, what, known); });
 }
 
 const std::vector<std::string> grid_members{
@@ -62,12 +64,12 @@ Json options_of(const JsonReader& options, const std::vector<std::string>& metho
   return options.json();
 }
 
-// Each line an axis and its levels.
+// Each line an axis and its levels, and the scenarios that do not play it.
 Json perturbations_of(const JsonReader& list) {
   Json all = Json::array();
   std::vector<std::string> axes;
   for (const JsonReader& line : list.elements()) {
-    line.only({"axis", "levels"});
+    line.only({"axis", "levels", "except"});
     const std::string axis = line.at("axis").string();
     if (std::find(axes.begin(), axes.end(), axis) != axes.end()) line.at("axis").fail("each axis once");
     axes.push_back(axis);
@@ -76,6 +78,7 @@ Json perturbations_of(const JsonReader& list) {
       return read_perturbation(JsonReader(one, list.file(), line.place())).level;
     });
     all.push_back({{"axis", axis}, {"levels", levels}});
+    if (line.has("except")) all.back()["except"] = names(line.at("except"), "scenario", scenario_ids());
   }
   return all;
 }
@@ -167,7 +170,7 @@ Suite load_suite(const std::string& id) {
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
   members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
-                                 "variants", "groups", "references", "presets"});
+                                 "scenes", "paraphrases", "variants", "groups", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -195,6 +198,18 @@ Suite load_suite(const std::string& id) {
   if (reader.has("near_miss")) {
     reader.at("near_miss").only(suite.design.scenarios);
     suite.near_miss = reader.at("near_miss").json();
+  }
+  if (reader.has("scenes")) {
+    reader.at("scenes").only(suite.design.scenarios);
+    suite.scenes = reader.at("scenes").json();
+    for (const auto& [scenario, own_members] : suite.scenes.items())
+      if (!own_members.is_object()) reader.at("scenes").at(scenario).fail("an object");
+  }
+  if (reader.has("paraphrases")) {
+    reader.at("paraphrases").only(suite.design.scenarios);
+    suite.paraphrases = reader.at("paraphrases").json();
+    for (const auto& [scenario, ignored] : suite.paraphrases.items())
+      one_of(reader.at("paraphrases").at(scenario), "scenario", scenario_ids());
   }
   if (reader.has("variants")) {
     suite.variants = reader.at("variants").json();

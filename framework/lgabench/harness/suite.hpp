@@ -51,6 +51,10 @@ struct Suite {
   bool only_arms = false;           // instead of the scenario's own
   Json train = Json::object();      // members that replace the "train" of every scenario
   Json near_miss = Json::object();  // scenario -> "near_miss" of its arms that have one, in place of true
+  Json scenes = Json::object();     // scenario -> members of its "train" and of every arm, in place of those above
+  /// Scenario -> another one, of the same command: the words of its unseen commands are wordings 1, 2, ... here, and
+  /// its recorded answers hold.
+  Json paraphrases = Json::object();
   /// Name -> {"train": members that replace those of every scenario's "train", "commands": how many of its demonstrated
   /// commands are left, the first ones}: in place of each scenario ID there is one ID_NAME for each, with arms
   /// ARM_NAME.

@@ -7,7 +7,7 @@ namespace lgabench::perturbations {
 
 PerturbationAxis light_intensity() {
   PerturbationAxis axis{
-      "light_intensity", {"x 1.08 or .8", "x 1.15 or .6", "x 1.22 or .45", "x 1.3 or .33"}, {EpisodePart::rgb}};
+      "light_intensity", {"x 1.08 or 0.8", "x 1.15 or 0.6", "x 1.22 or 0.45", "x 1.3 or 0.33"}, {EpisodePart::rgb}};
   axis.perceive = [](Observation seen, const Scenario&, int level, RandomStream stream) {
     constexpr std::array up{1.08, 1.15, 1.22, 1.3}, down{.8, .6, .45, .33};
     const double gain = (stream.coin() ? up : down).at(static_cast<std::size_t>(level - 1));

@@ -22,7 +22,8 @@ Json to_json(const PluginInfo& plugin) {
           {"asks", plugin.asks},
           {"options", plugin.options},
           {"sha256", plugin.sha256},
-          {"questionnaire", plugin.questionnaire}};
+          {"questionnaire", plugin.questionnaire},
+          {"kinematic", plugin.kinematic}};
 }
 
 const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id) const {

@@ -22,7 +22,8 @@ struct PluginDescriptor {
   char summary[160];
   char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
   // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n, "max": n,
-  // "needs": {...}, "framework": true}, ...}; beside them "questionnaire": true, see LGABENCH_QUESTIONNAIRE
+  // "needs": {...}, "framework": true}, ...}; beside them "questionnaire": true, see LGABENCH_QUESTIONNAIRE,
+  // and of an engine "kinematic": true, see LGABENCH_KINEMATIC_ENGINE
   char options_json[4096];
 };
 static_assert(sizeof(PluginDescriptor) == 4664, "the descriptor has no padding");

@@ -25,6 +25,7 @@ struct PluginInfo {
   /// "versions"}; else null.
   Json python{};
   bool questionnaire = false;  // of a method: see LGABENCH_QUESTIONNAIRE
+  bool kinematic = false;      // of an engine: see LGABENCH_KINEMATIC_ENGINE
 };
 
 /// Every member, under its name.

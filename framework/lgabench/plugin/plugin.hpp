@@ -46,6 +46,10 @@
 #define LGABENCH_ENGINE(id, version, summary, Class) \
   LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, "{}")
 
+/// Likewise, whose bodies have neither mass nor friction: perturbations of these are refused.
+#define LGABENCH_KINEMATIC_ENGINE(id, version, summary, Class) \
+  LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, R"({"kinematic": true})")
+
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
 // NOLINTBEGIN(bugprone-macro-parentheses): Interface and Class are types.
 #define LGABENCH_PLUGIN_(kind, asks, id, version, summary, Interface, Class, options_json)                     \

@@ -137,10 +137,12 @@ DeclaredOptions read_options(const std::string& options_json) {
     DeclaredOptions declared{parse_json(options_json, "options")};
     Json& options = declared.options;
     if (!options.is_object()) JsonReader(options, "options").fail("an object");
-    if (const auto said = options.find("questionnaire"); said != options.end() && said->is_boolean()) {
-      declared.questionnaire = said->get<bool>();
-      options.erase(said);
-    }
+    for (const auto& [name, says] :
+         {std::pair{"questionnaire", &declared.questionnaire}, {"kinematic", &declared.kinematic}})
+      if (const auto said = options.find(name); said != options.end() && said->is_boolean()) {
+        *says = said->get<bool>();
+        options.erase(said);
+      }
     for (const auto& [name, option] : options.items()) {
       const JsonReader reader(option, "options", "/" + name);
       reader.only({"default", "help", "source", "values", "min", "max", "words", "needs", "framework", "added"});
@@ -234,6 +236,7 @@ PluginInfo inspect_plugin(const fs::path& file) {
   DeclaredOptions declared = read_options(text(d.options_json, "options"));
   plugin.options = std::move(declared.options);
   plugin.questionnaire = declared.questionnaire;
+  plugin.kinematic = declared.kinematic;
   plugin.sha256 = sha256(bytes);
   return plugin;
 }

@@ -12,8 +12,8 @@ PluginDescriptor find_descriptor(std::string_view bytes);
 
 /// What a descriptor's options say.
 struct DeclaredOptions {
-  Json options;                // as PluginInfo::options
-  bool questionnaire = false;  // said beside them, and no option
+  Json options;                                   // as PluginInfo::options
+  bool questionnaire = false, kinematic = false;  // said beside them, and no options
 };
 
 /// Checked. @throws PluginError with the place of what is wrong.

@@ -18,9 +18,10 @@ struct PerturbedEpisode {
   std::array<std::string, parts> hashes;
   std::string
       read{};  // of the pictures and texts that the policy says it made its action of; "" where it does not tell
+  double target_scale = 1;  // the target's size, times its type's
 };
 
-/// {"arm", "index", "axis", "level", "objects": HASH, ..., "read"}; null for "".
+/// {"arm", "index", "axis", "level", "objects": HASH, ..., "read", "target_scale"}; null for "".
 Json to_json(const PerturbedEpisode& episode);
 /// @throws InputError
 PerturbedEpisode read_perturbed_episode(const JsonReader& reader);

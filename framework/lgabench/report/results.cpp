@@ -14,6 +14,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/parallel.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
@@ -111,6 +112,18 @@ Perturbation perturbation_of(const JsonReader& reader) {
   return {one_line(axis), static_cast<int>(reader.at(axis).integer(1, std::numeric_limits<int>::max()))};
 }
 
+// The arms that give the command.
+void note_ambiguous(const JsonReader& scenario, const JsonReader& command, CellResult& result) {
+  if (!command.has("wording")) {
+    result.ambiguous.insert(shown(command.at("arm")));
+    return;
+  }
+  for (const JsonReader& arm : scenario.at("tests").elements())
+    for (const char* axis : {"paraphrase", all_axes})
+      if (arm.has("perturbation") && arm.at("perturbation").json() == Json{{axis, command.at("wording").json()}})
+        result.ambiguous.insert(shown(arm.at("arm")));
+}
+
 void read_configuration(const fs::path& directory, CellResult& result) {
   const lgabench::Cell& cell = result.configuration = recorded_cell(directory);
   const JsonReader scenario(*cell.scenario, (directory / cell_file::configuration).string(), "/scenario");
@@ -123,7 +136,7 @@ void read_configuration(const fs::path& directory, CellResult& result) {
                                Json(),
                                {},
                                command.has("ambiguous") && command.at("ambiguous").boolean()});
-    if (result.commands.back().ambiguous) result.ambiguous.insert(shown(command.at("arm")));
+    if (result.commands.back().ambiguous) note_ambiguous(scenario, command, result);
     if (!result.commands.back().truth.is_object()) command.at("truth").fail("an object");
   }
   result.demonstrated_commands = static_cast<int>(

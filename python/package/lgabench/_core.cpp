@@ -109,12 +109,15 @@ class Player {
   Observation reset(const Which& which) {
     const WorkersArithmetic arithmetic;
     const bool test = which.split == "test";
-    Scene scene = type_->sample(
+    Scene scene = sampled_scene(
         *scenario_, {layout_, which.split, test ? which.arm : "train", which.seed, {}, which.own_scenes}, which.index);
     Observation seen = environment_->reset(scene);
-    if (test)
+    if (test) {
+      if (const View view = view_of(*scenario_, scene, which.own_scenes); view != View())
+        seen = environment_->look(view);
       if (const Perception perception = perception_of(*scenario_, scenario_->arm(which.arm), which.own_scenes))
         seen = perception(seen, scene);
+    }
     scene_ = std::move(scene);
     return seen;
   }
