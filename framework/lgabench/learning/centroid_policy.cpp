@@ -1,6 +1,7 @@
 #include <lgabench/learning/centroid_policy.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -128,6 +129,8 @@ bool CentroidRule::learned(Archive& archive) {
   name_motion(impl_->motion, impl_->mean, impl_->shape.actions, archive);
   archive(impl_->sides);
   if (impl_->motion && impl_->motion->groups() != impl_->sides.size()) Archive::fail();
+  for (const Side& side : impl_->sides)
+    if (!std::isfinite(norm(side.to_second))) Archive::fail();  // nearest() must find one
   return true;
 }
 
