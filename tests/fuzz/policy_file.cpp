@@ -1,4 +1,5 @@
-// What a run kept of a learned policy: the bytes as a cell's file, and as what a policy saved, whose kind the first names.
+// What a run kept of a learned policy: the bytes as a cell's file, and as what a policy saved, whose kind the first
+// names.
 #include <array>
 
 #include <lgabench/core/environments.hpp>
@@ -35,8 +36,13 @@ class NoLog : public TrainingLog {
 
 Json options_of(std::uint8_t kind) {
   constexpr std::array kinds{"centroid", "heat_map", "regression"};
-  return {{"policy", kinds[kind % kinds.size()]}, {"epochs", 1},        {"batch_size", 1}, {"learning_rate", .1},
-          {"batches", "drawn"},                   {"network", "plain"}, {"loss", "norm"}};
+  return {{"policy", kinds[kind % kinds.size()]},
+          {"epochs", 1},
+          {"batch_size", 1},
+          {"learning_rate", .1},
+          {"batches", "drawn"},
+          {"network", "plain"},
+          {"loss", "norm"}};
 }
 
 void read_file_of(std::string_view text) {
@@ -57,8 +63,10 @@ void restore(std::uint8_t kind, const std::string& saved) {
   try {
     const auto policy = Masked().restore(saved, services);
     const PictureSize picture = tabletop.picture_size();
-    const Observation one_object{picture, std::vector<std::uint8_t>(3 * picture.pixels()),
-                                 std::vector<std::uint8_t>(picture.pixels(), 1), {{1, "heart", "red", 9}}};
+    const Observation one_object{picture,
+                                 std::vector<std::uint8_t>(3 * picture.pixels()),
+                                 std::vector<std::uint8_t>(picture.pixels(), 1),
+                                 {{1, "heart", "red", 9}}};
     Selection all;
     all.target = Meaning{{{{"heart"}, {"red"}}}};
     policy->act(one_object, {"the heart", all});
