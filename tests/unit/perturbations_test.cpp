@@ -86,7 +86,9 @@ TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
     all.push_back(e);
   }
   for (const PerturbedEpisode& e : played({&axis}, 1)) all.push_back(e);
-  EXPECT_NO_THROW(expect_declared(all, {}, false));
+  EXPECT_NO_THROW(expect_declared(all, {}, false, [&](const PerturbedEpisode& e) {
+    return e.axis.empty() ? std::vector<const PerturbationAxis*>() : std::vector<const PerturbationAxis*>{&axis};
+  }));
 }
 
 TEST(Perturbations, ADeadAxisIsCaught) {
