@@ -79,7 +79,7 @@ TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
 }
 
 TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
-  const PerturbationAxis& axis = perturbation_axes().front();
+  const PerturbationAxis& axis = *axes_named("light_intensity").front();
   std::vector<PerturbedEpisode> all = played({&axis}, 0);
   for (PerturbedEpisode e : played({}, 0, "red_heart")) {
     e.arm = "other";
