@@ -71,7 +71,7 @@ void expect_as_declared(const PerturbationAxis& axis, int level, const std::stri
 
 TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
   for (const PerturbationAxis& axis : perturbation_axes())
-    for (int level = 1; level <= axis.most() && (axis.perceive || axis.selection_errors); ++level)
+    for (int level = 1; level <= axis.most() && (axis.perceive || axis.look || axis.selection_errors); ++level)
       for (const char* scenario : {"heart", "fetch_fruit"}) {
         SCOPED_TRACE(axis.id + " " + std::to_string(level) + " " + scenario);
         EXPECT_NO_THROW(expect_as_declared(axis, level, scenario));
