@@ -73,7 +73,7 @@ void expect_as_declared(const PerturbationAxis& axis, int level, const std::stri
 
 TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
   for (const PerturbationAxis& axis : perturbation_axes())
-    for (int level = 1; level <= axis.most() && (axis.perceive || axis.selection_errors); ++level)
+    for (int level = 1; level <= axis.most() && (axis.perceive || axis.look || axis.selection_errors); ++level)
       for (const char* scenario : {"heart", "fetch_fruit"}) {
         SCOPED_TRACE(axis.id + " " + std::to_string(level) + " " + scenario);
         EXPECT_NO_THROW(expect_as_declared(axis, level, scenario));
@@ -81,14 +81,16 @@ TEST(Perturbations, EveryAxisChangesWhatItDeclaresAndNothingElse) {
 }
 
 TEST(Perturbations, TheFirstArmIsTheControlAmongSeveral) {
-  const PerturbationAxis& axis = perturbation_axes().front();
+  const PerturbationAxis& axis = *axes_named("light_intensity").front();
   std::vector<PerturbedEpisode> all = played({&axis}, 0);
   for (PerturbedEpisode e : played({}, 0, "red_heart")) {
     e.arm = "other";
     all.push_back(e);
   }
   for (const PerturbedEpisode& e : played({&axis}, 1)) all.push_back(e);
-  EXPECT_NO_THROW(expect_declared(all, {}, false));
+  EXPECT_NO_THROW(expect_declared(all, {}, false, [&](const PerturbedEpisode& e) {
+    return e.axis.empty() ? std::vector<const PerturbationAxis*>() : std::vector<const PerturbationAxis*>{&axis};
+  }));
 }
 
 TEST(Perturbations, ADeadAxisIsCaught) {

@@ -103,8 +103,8 @@ std::vector<Tile> perturbed() {
     if (!arm.perturbation) continue;
     const auto& [axis, level] = *arm.perturbation;
     const std::vector<const PerturbationAxis*> axes = axes_named(axis);
-    const auto shows = [](const PerturbationAxis* axis) {
-      return axis->touches(EpisodePart::rgb) || axis->touches(EpisodePart::ids);
+    const auto shows = [](const PerturbationAxis* one) {
+      return one->touches(EpisodePart::rgb) || one->touches(EpisodePart::ids);
     };
     if (std::none_of(axes.begin(), axes.end(), shows)) continue;
     tiles.push_back(scene_and_mask(scenario, layout, arm.id, shown, widest_picture / 2));

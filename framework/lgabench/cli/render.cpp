@@ -57,7 +57,6 @@ void render(const RenderArguments& arguments) {
       suite ? suite_scenario(*suite, arguments.scenario, truth) : load_scenario(arguments.scenario, truth);
   const std::string layout = arguments.layout.empty() ? layouts_of(scenario).front() : arguments.layout;
   const std::string first = arguments.split == "train" ? "train" : scenario.tests.front().id;
-  const EnvironmentType& environment = find_environment(scenario.environment);
   const Scene scene =
       sampled_scene(scenario, {layout, arguments.split, arguments.arm.empty() ? first : arguments.arm, arguments.seed},
                     arguments.index);
