@@ -68,7 +68,7 @@ void restore(std::uint8_t kind, const std::string& saved) {
                                  std::vector<std::uint8_t>(picture.pixels(), 1),
                                  {{1, "heart", "red", 9}}};
     Selection all;
-    all.target = Meaning{{{{"heart"}, {"red"}}}};
+    all.target = Meaning({"heart"}, {"red"});
     policy->act(one_object, {"the heart", all});
   } catch (const InputError&) {
   } catch (const MethodError&) {
