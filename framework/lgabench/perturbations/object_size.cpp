@@ -15,7 +15,8 @@ std::vector<double> larger(int level) { return {up.begin(), up.begin() + level};
 PerturbationAxis object_size() {
   PerturbationAxis axis{"object_size",
                         {"all x 0.95 or the target x 1.05", "x 0.9 or 1.1", "x 0.8 or 1.25", "x 0.67 or 1.5"},
-                        {EpisodePart::physics, EpisodePart::rgb, EpisodePart::ids}};
+                        {EpisodePart::physics, EpisodePart::rgb},
+                        {EpisodePart::ids}};  // less than a pixel of a small thing
   axis.change = [](Scene scene, const Scenario& scenario, int level, RandomStream stream) {
     const EnvironmentType& environment = find_environment(scenario.environment);
     return stream.coin() ? environment.resized(std::move(scene), down.at(static_cast<std::size_t>(level - 1)))
