@@ -1,7 +1,7 @@
 """Repainting: what is taken out of a picture, or made to look otherwise, beside what a goal mask keeps.
 
-The same bytes as lgabench::repaint() of abstraction/repaint.hpp for the same streams. Colours change; ids, instances and
-shadows stay. `Needs(shadows=True)` asks for what shadows are taken away by.
+The same bytes as lgabench::repaint() of abstraction/repaint.hpp for the same streams. Colours change, ids and instances
+stay. `Needs(shadows=True)` asks for what shadows are taken away by.
 """
 from __future__ import annotations
 
@@ -162,7 +162,8 @@ def repaint(observation: Observation, which: Sequence[int], how: How) -> Observa
     """Paints the pixels whose ids are `which`; 0: of all that is no object.
 
     A background or a colour takes their shadows away too, where the observation tells shadows and nothing else throws one
-    there; noise covers what is no object in their shadows; under textures shadows stay.
+    there, so that a second time changes nothing; noise covers what is no object in their shadows; under textures shadows
+    stay.
     """
     covered: Mask = numpy.isin(observation.ids, list(which))
     rgb = observation.rgb.copy()
@@ -182,6 +183,8 @@ def repaint(observation: Observation, which: Sequence[int], how: How) -> Observa
         alone = shaded & ((shadows & ~numpy.uint16(bits)) == 0)
         rgb[alone] = numpy.minimum(255, (rgb[alone].astype(int) * 256 + SHADOW // 2) // SHADOW)
         rgb[covered] = how.rgb[covered] if isinstance(how, Background) else (how.red, how.green, how.blue)
+        if observation.shadows is not None:
+            return replace(observation, rgb=rgb, shadows=numpy.where(covered, 0, shadows & ~numpy.uint16(bits)).astype(numpy.uint16))
     return replace(observation, rgb=rgb)
 
 

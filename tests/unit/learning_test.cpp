@@ -16,6 +16,7 @@
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/learning/cloning_options.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
 #include <lgabench/learning/training.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <tabletop/two_poses.hpp>
@@ -844,6 +845,16 @@ TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Action first = act(trained, probe);
   act(trained, scene(0, 0, 80, 200));
   EXPECT_EQ(act(trained, probe), first);
+}
+
+TEST(SentenceEmbeddings, HoldEveryNameOfTheSpaces) {
+  SentenceEmbeddings embeddings;
+  for (const char* id : {"tabletop", "household", "household_mobile"}) {
+    const FeatureSpace space = load_feature_space(id);
+    for (const auto* names : {&space.object_types, &space.textures})
+      for (const std::string& name : *names) EXPECT_TRUE(embeddings.holds(name)) << name;
+  }
+  EXPECT_FALSE(embeddings.holds("a name that no space has"));
 }
 
 TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {

@@ -137,6 +137,23 @@ TEST(Repaint, LeavesWhatIsKeptAndChangesWhatIsNot) {
   }
 }
 
+TEST(Repaint, AShadowIsTakenAwayOnceAndOneAfterTheOtherAsAllAtOnce) {
+  for (const char* scenario : scenarios) {
+    Drawing drawing(scenario);
+    for (int i = 0; i < scenes; ++i) {
+      const Observation seen = drawing.of(drawing.scene(i), {}, true);
+      const Ids all = unselected(seen, {});
+      const Observation once = repaint(seen, all, Colour{9, 9, 9});
+      EXPECT_EQ(repaint(once, all, Colour{9, 9, 9}).rgb, once.rgb);
+      EXPECT_EQ(std::count(once.shadows.begin(), once.shadows.end(), 0),
+                static_cast<std::ptrdiff_t>(once.shadows.size()));
+      Observation by_turns = seen;
+      for (const std::uint8_t id : all) by_turns = repaint(std::move(by_turns), {id}, Colour{9, 9, 9});
+      EXPECT_EQ(by_turns.rgb, once.rgb) << scenario << " " << i;
+    }
+  }
+}
+
 TEST(Repaint, TheUsualBackgroundIsTheEmptyTable) {
   for (const char* scenario : {"heart", "bring_fruit"}) {
     Drawing drawing(scenario);

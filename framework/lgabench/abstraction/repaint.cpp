@@ -81,6 +81,9 @@ class Cover {
     }
   }
 
+  /// Of its shadows.
+  std::uint16_t bits() const { return bits_; }
+
  private:
   // Nothing is to be painted in these eight pixels.
   bool is_empty(std::size_t first) const {
@@ -99,12 +102,18 @@ class Cover {
 template <class At>
 Observation erased(Observation seen, const Ids& which, const At& colour) {
   std::uint8_t* const rgb = seen.rgb.data();
-  Cover(seen, which)
-      .visit([&](std::size_t pixel) { std::memcpy(rgb + 3 * pixel, colour(pixel), 3); },
-             [&](std::size_t pixel, bool alone) {
-               if (alone)
-                 for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) rgb[i] = lit()[rgb[i]];
-             });
+  std::uint16_t* const shadows = seen.shadows.data();
+  const Cover cover(seen, which);
+  cover.visit(
+      [&](std::size_t pixel) {
+        std::memcpy(rgb + 3 * pixel, colour(pixel), 3);
+        if (shadows) shadows[pixel] = 0;
+      },
+      [&](std::size_t pixel, bool alone) {
+        if (alone)
+          for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) rgb[i] = lit()[rgb[i]];
+        shadows[pixel] &= static_cast<std::uint16_t>(~cover.bits());
+      });
   return seen;
 }
 

@@ -1,5 +1,5 @@
 // Repainting: what is taken out of a picture, or made to look otherwise, beside what a goal mask keeps. Colours change;
-// ids, instances and shadows stay, so that one observation can be repainted again.
+// ids and instances stay, so that one observation can be repainted again.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -43,7 +43,8 @@ struct RandomTextures {
 
 /// Paints the pixels of `which` with the background, or one colour, and takes away their shadows, where the observation
 /// has Observation::shadows and nothing else throws one there: a level surface has its colour in the light to within 1
-/// of 255. @throws InputError for a background of another size.
+/// of 255. Shadows that were taken away are none of the observation's any more: a second time changes nothing.
+/// @throws InputError for a background of another size.
 Observation repaint(Observation seen, const Ids& which, const Background& how);
 Observation repaint(Observation seen, const Ids& which, const Colour& how);
 /// Paints the pixels of `which`, and what is no object in their shadows.
