@@ -101,6 +101,41 @@ bool place_last(const Room& room_of, std::vector<SceneObject>& objects, RandomSt
   return false;
 }
 
+bool place_beside(const Layout& layout, const Room& room_of, std::vector<SceneObject>& objects, std::size_t i,
+                  double near_m, double far_m, RandomStream& random) {
+  constexpr int tries = 40, directions = 8;
+  constexpr double step_m = .002, least_margin_m = .005;
+  Taken taken;
+  for (std::size_t k = 0; k + 1 < objects.size(); ++k) {
+    if (k != i) taken.bodies.push_back(outline_of(objects[k]));
+    if (objects[k].role == role::target) taken.room.push_back(room_of(objects[k]));
+  }
+  if (layout.pallet) taken.room.push_back(placed_outline(object_model(goal_type), *layout.pallet, 0));
+  const SceneObject& other = objects[i];
+  const Outline there = outline_of(other);
+  SceneObject& placed = objects.back();
+  std::optional<SceneObject> nearest;
+  double least_m = near_m;
+  for (int n = 0; n < tries && !(nearest && n >= directions); ++n) {
+    const double direction = random.uniform(-pi, pi);
+    placed.yaw_rad = random.uniform(-pi, pi);
+    Outline outline;
+    for (double away = 0; away <= near_m + model_of(placed).radius_m; away += step_m) {
+      placed.position_m = other.position_m + rotated({away, 0}, direction);
+      outline = outline_of(placed);
+      if (distance(outline, there) >= least_margin_m) break;
+    }
+    const double gap_m = distance(other.position_m, outline);
+    const bool fits = distance(outline, there) >= least_margin_m && inside_picture(outline) &&
+                      clear_of(outline, taken.bodies) && clear_of(outline, taken.room);
+    if (!fits || gap_m > least_m || (i > 0 && distance(objects[0].position_m, outline) < far_m)) continue;
+    least_m = gap_m;
+    nearest = placed;
+  }
+  if (nearest) placed = *nearest;
+  return nearest.has_value();
+}
+
 void place_freely(const Layout& layout, const Room& room, const Patience& patience, std::vector<SceneObject>& objects,
                   const Streams& stream) {
   constexpr int tries = 10000;

@@ -50,6 +50,12 @@ bool has_room(const Room& room, const std::vector<SceneObject>& objects, std::si
 /// Places the last among the others, with the margin that all of a scene leave; false where no place is found.
 bool place_last(const Room& room, std::vector<SceneObject>& objects, RandomStream& random);
 
+/// Places the last beside objects[i], as near as a margin of .005 m allows from one of several directions, and with the
+/// usual margin to all others: so that some of it is within `near_m` of that one's centre, and none within `far_m` of
+/// the target's, unless that is objects[i]. False where no place is found.
+bool place_beside(const Layout& layout, const Room& room, std::vector<SceneObject>& objects, std::size_t i,
+                  double near_m, double far_m, RandomStream& random);
+
 /// Places were tried for as long as is worth it.
 class NoRoom : public Error {
  public:
