@@ -19,6 +19,7 @@ class Task;
 struct Cue {
   enum class Place { kept, moved, gone };  // beside the target, as in training; beside another object; not there
   FeatureSet look;                         // one type and one texture
+  int count = 1;                           // so many of that look, all beside the same object
   Place place = Place::kept;
 };
 
@@ -54,7 +55,7 @@ struct Content : SceneContent {
   /// More stand there than always fit: wide types are left out, and what finds no room is drawn again.
   bool crowded() const { return others() > 2 || cue; }
   /// How many stand beside the target at most.
-  int others() const { return distractors.second + (by_meaning ? 3 : 0) + (cue ? 1 : 0); }
+  int others() const { return distractors.second + (by_meaning ? 3 : 0) + (cue ? cue->count : 0); }
   static constexpr double widest_in_crowd_m = .18;
   double widest_m() const { return crowded() ? widest_in_crowd_m : std::numeric_limits<double>::infinity(); }
 };

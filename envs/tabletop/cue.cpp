@@ -10,8 +10,9 @@
 namespace lgabench::tabletop {
 namespace {
 
-constexpr double near_m = .10;    // of the centre of what it lies beside: a policy sees no farther
-constexpr double far_m = .20;     // from the target's, where it lies beside another one
+constexpr double near_m = .10;  // of the centre of what it lies beside: a policy sees no farther
+constexpr double far_m = .20;   // from the target's, where it lies beside another one
+constexpr int most_cues = 3;
 constexpr double widest_m = .10;  // of the types that are drawn
 
 // Why no object of that look may be the cue, else "".
@@ -44,10 +45,12 @@ FeatureSet drawn_look(const JsonReader& reader, const Scenario& scenario, const 
   return all[random.below(static_cast<std::uint32_t>(all.size()))];
 }
 
-FeatureSet read_look(const JsonReader& reader, const Scenario& scenario, const Content& content) {
-  if (reader.json() == Json(true)) return drawn_look(reader, scenario, content);
+Cue read_look(const JsonReader& reader, const Scenario& scenario, const Content& content) {
+  if (reader.json() == Json(true)) return {drawn_look(reader, scenario, content)};
   if (!reader.json().is_object()) reader.fail("true, or an object");
-  reader.only({"object_type", "texture"});
+  reader.only({"object_type", "texture", "count"});
+  const int count = reader.has("count") ? static_cast<int>(reader.at("count").integer(1, most_cues)) : 1;
+  if (!reader.has("object_type") && !reader.has("texture")) return {drawn_look(reader, scenario, content), count};
   const auto name = [](const JsonReader& one, const char* what, const std::vector<std::string>& known) {
     if (std::find(known.begin(), known.end(), one.string()) == known.end())
       one.fail(fmt::format("{} of the feature space", what));
@@ -57,7 +60,7 @@ FeatureSet read_look(const JsonReader& reader, const Scenario& scenario, const C
   const std::string texture = name(reader.at("texture"), "a texture", scenario.space.textures);
   if (const std::string by = taken(scenario, content, type, texture); !by.empty())
     reader.fail("an object outside of " + by);
-  return {{type}, {texture}};
+  return {{{type}, {texture}}, count};
 }
 
 bool is_cue(const Cue& cue, const SceneObject& object) { return cue.look.contains(object.object_type, object.texture); }
@@ -70,33 +73,39 @@ Cue read_cue(const JsonReader& scenes, const JsonReader& file, const Scenario& s
   const int most = find_task(scenario.task).most_distractors();
   if (most <= 2) reader.fail("the task pick_and_place, whose scenes have room for it");
   if (content.distractors.first == 0) reader.fail("\"distractors\" beside it, one or more");
-  if (content.others() >= most) scenes.at("distractors").fail(fmt::format("at most {} beside \"cue\"", most - 1));
-  if (training) {
-    if (scenario.as_method_asks) reader.fail("\"as_method_asks\": false beside it");
-    return {read_look(reader, scenario, content), Cue::Place::kept};
-  }
+  if (training && scenario.as_method_asks) reader.fail("\"as_method_asks\": false beside it");
+  if (!training && (!file.has("train") || !file.at("train").has("cue"))) reader.fail("\"cue\" in \"train\"");
+  Cue cue = read_look(training ? reader : file.at("train").at("cue"), scenario, content);
+  if (content.others() + cue.count > most)
+    reader.fail(fmt::format("at most {} \"distractors\" beside it",
+                            content.distractors.second + most - content.others() - cue.count));
+  if (training) return cue;
   static const std::map<std::string, Cue::Place> places{
       {"kept", Cue::Place::kept}, {"moved", Cue::Place::moved}, {"gone", Cue::Place::gone}};
   const auto place = places.find(reader.string());
   if (place == places.end()) reader.fail("kept, moved or gone");
-  if (!file.has("train") || !file.at("train").has("cue")) reader.fail("\"cue\" in \"train\"");
-  return {read_look(file.at("train").at("cue"), scenario, content), place->second};
+  cue.place = place->second;
+  return cue;
 }
 
 bool add_cue(const Task& task, const Layout& layout, const Cue& cue, std::vector<SceneObject>& objects,
              RandomStream random) {
   const std::size_t others = objects.size();
   const Room room = [&](const SceneObject& target) { return task.room(layout, target); };
-  objects.push_back({cue.look.object_types.front(), cue.look.textures.front(), role::distractor, {}, 0, 0});
-  const auto beside = [&](std::size_t i) { return place_beside(layout, room, objects, i, near_m, far_m, random); };
-  bool found = beside(0);
-  const SceneObject kept = objects.back();
-  bool another = false;
-  for (std::size_t i = 1; i < others && found && !another; ++i) another = beside(i);
-  found = found && another;
-  if (cue.place != Cue::Place::moved) objects.back() = kept;
-  if (!found) objects.pop_back();
-  return found;
+  const SceneObject one{cue.look.object_types.front(), cue.look.textures.front(), role::distractor, {}, 0, 0};
+  const auto beside = [&](std::size_t i) {
+    std::vector<SceneObject> all = objects;
+    for (int n = 0; n < cue.count; ++n) {
+      all.push_back(one);
+      if (!place_beside(layout, room, all, i, near_m, far_m, random)) return std::vector<SceneObject>();
+    }
+    return all;
+  };
+  std::vector<SceneObject> kept = beside(0), moved;
+  for (std::size_t i = 1; i < others && !kept.empty() && moved.empty(); ++i) moved = beside(i);
+  if (moved.empty()) return false;
+  objects = std::move(cue.place == Cue::Place::moved ? moved : kept);
+  return true;
 }
 
 void place_with_cue(const Task& task, const Layout& layout, const Content& content, std::vector<SceneObject>& objects,

@@ -103,8 +103,8 @@ bool place_last(const Room& room_of, std::vector<SceneObject>& objects, RandomSt
 
 bool place_beside(const Layout& layout, const Room& room_of, std::vector<SceneObject>& objects, std::size_t i,
                   double near_m, double far_m, RandomStream& random) {
-  constexpr int tries = 40, directions = 8;
-  constexpr double step_m = .002, least_margin_m = .005;
+  constexpr int directions = 64, steps = 20;
+  constexpr double least_margin_m = .002, least_step_m = 1e-4;
   Taken taken;
   for (std::size_t k = 0; k + 1 < objects.size(); ++k) {
     if (k != i) taken.bodies.push_back(outline_of(objects[k]));
@@ -115,21 +115,22 @@ bool place_beside(const Layout& layout, const Room& room_of, std::vector<SceneOb
   const Outline there = outline_of(other);
   SceneObject& placed = objects.back();
   std::optional<SceneObject> nearest;
-  double least_m = near_m;
-  for (int n = 0; n < tries && !(nearest && n >= directions); ++n) {
+  double nearest_m = near_m;
+  for (int n = 0; n < directions; ++n) {
     const double direction = random.uniform(-pi, pi);
     placed.yaw_rad = random.uniform(-pi, pi);
     Outline outline;
-    for (double away = 0; away <= near_m + model_of(placed).radius_m; away += step_m) {
-      placed.position_m = other.position_m + rotated({away, 0}, direction);
+    double away_m = model_of(other).radius_m + model_of(placed).radius_m + least_margin_m, left_m = 1;
+    for (int step = 0; step < steps && left_m > least_step_m; ++step) {
+      placed.position_m = other.position_m + rotated({away_m, 0}, direction);
       outline = outline_of(placed);
-      if (distance(outline, there) >= least_margin_m) break;
+      left_m = distance(outline, there) - least_margin_m;
+      away_m = std::max(0.0, away_m - left_m);
     }
     const double gap_m = distance(other.position_m, outline);
-    const bool fits = distance(outline, there) >= least_margin_m && inside_picture(outline) &&
-                      clear_of(outline, taken.bodies) && clear_of(outline, taken.room);
-    if (!fits || gap_m > least_m || (i > 0 && distance(objects[0].position_m, outline) < far_m)) continue;
-    least_m = gap_m;
+    if (gap_m > nearest_m || (i > 0 && distance(objects[0].position_m, outline) < far_m)) continue;
+    if (!inside_picture(outline) || !clear_of(outline, taken.bodies) || !clear_of(outline, taken.room)) continue;
+    nearest_m = gap_m;
     nearest = placed;
   }
   if (nearest) placed = *nearest;
