@@ -101,4 +101,11 @@ double distance(const std::vector<Polygon>& a, const std::vector<Polygon>& b) {
   return best;
 }
 
+double distance(Vec2 point, const std::vector<Polygon>& polygons) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Polygon& polygon : polygons)
+    best = std::min(best, contains(polygon, point) ? 0 : corner_distance({point}, polygon));
+  return best;
+}
+
 }  // namespace lgabench::common

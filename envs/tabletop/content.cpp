@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <tabletop/cue.hpp>
 #include <tabletop/task.hpp>
 
 namespace lgabench::tabletop {
@@ -16,9 +17,10 @@ void append(std::vector<std::string>& names, std::vector<std::string> more) {
 // `second`: the id of the task's second set, of which the choice then is; "" where the choice is of targets.
 void read_choice(const JsonReader& scenes, const std::string& second, const FeatureSpace& space, Content& content) {
   constexpr std::size_t most = 5;  // with the goal's or the target's, the bodies that an engine holds ready
-  for (const std::string& drawn : {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
-                                   std::string("later_letters"), std::string("near_miss"), std::string("members"),
-                                   std::string("decoys"), second.empty() ? std::string("target") : second})
+  for (const std::string& drawn :
+       {std::string("distractors"), std::string("outside_all_commands"), std::string("hard"),
+        std::string("later_letters"), std::string("near_miss"), std::string("members"), std::string("decoys"),
+        std::string("cue"), second.empty() ? std::string("target") : second})
     if (scenes.has(drawn)) scenes.at(drawn).fail("no such member beside \"choice\"");  // it would do nothing
   const JsonReader reader = scenes.at("choice");
   content.choice = reader.strings();
@@ -127,9 +129,9 @@ std::vector<std::string> scenario_members(const Task& task) {
 }
 
 std::vector<std::string> scene_members(const Task& task) {
-  std::vector<std::string> names{"target",    "distractors", "outside_all_commands", "hard",
-                                 "near_miss", "members",     "later_letters",        "choice",
-                                 "decoys",    "misleading"};
+  std::vector<std::string> names{
+      "target", "distractors", "outside_all_commands", "hard", "near_miss", "members", "later_letters",
+      "choice", "decoys",      "misleading",           "cue"};
   if (const auto second = task.second()) names.push_back(second->id);
   append(names, task.scene_members());
   return names;
@@ -153,6 +155,7 @@ Content read_content(const Scenario& scenario, const JsonReader& file, const Jso
     content.decoys = decoys;
   }
   if (scenes && scenes->has("members")) read_members(*scenes, file, scenario, training, content);
+  if (scenes && scenes->has("cue")) content.cue = read_cue(*scenes, file, scenario, content, training);
   find_task(scenario.task).read(file, scenes, content);
   if (training && scenes && scenario.as_method_asks && (content.target || content.second))
     scenes->fail("\"as_method_asks\": false beside \"target\"" +

@@ -14,6 +14,15 @@ namespace lgabench::tabletop {
 
 class Task;
 
+/// An object of one type and texture that no command means. In training it lies beside the target, so that a policy may
+/// learn to look for it in the target's place.
+struct Cue {
+  enum class Place { kept, moved, gone };  // beside the target, as in training; beside another object; not there
+  FeatureSet look;                         // one type and one texture
+  int count = 1;                           // so many of that look, all beside the same object
+  Place place = Place::kept;
+};
+
 /// What scenes of one kind hold. Targets and the second set are drawn from the command's truth where nothing else is
 /// said.
 struct Content : SceneContent {
@@ -33,6 +42,7 @@ struct Content : SceneContent {
   std::vector<std::string> choice;
   /// Others are of these sets, each of another one as far as they go: what further commands mean. Empty: of any.
   std::vector<FeatureSet> decoys;
+  std::optional<Cue> cue;
   /// A scenario whose meaning is more than one product, or that says what a careless reading keeps: meant_objects().
   bool by_meaning = false;
   std::optional<Meaning> words;       // what the command's words alone hold, where that is more than what is meant
@@ -43,9 +53,9 @@ struct Content : SceneContent {
   std::map<std::string, std::vector<double>> numbers;  // of the task's own members, see Task::read()
 
   /// More stand there than always fit: wide types are left out, and what finds no room is drawn again.
-  bool crowded() const { return others() > 2; }
+  bool crowded() const { return others() > 2 || cue; }
   /// How many stand beside the target at most.
-  int others() const { return distractors.second + (by_meaning ? 3 : 0); }
+  int others() const { return distractors.second + (by_meaning ? 3 : 0) + (cue ? cue->count : 0); }
   static constexpr double widest_in_crowd_m = .18;
   double widest_m() const { return crowded() ? widest_in_crowd_m : std::numeric_limits<double>::infinity(); }
 };

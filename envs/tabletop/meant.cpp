@@ -8,6 +8,7 @@
 
 #include <common/objects.hpp>
 #include <tabletop/alike.hpp>
+#include <tabletop/cue.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/raster.hpp>
 
@@ -99,7 +100,9 @@ std::optional<std::vector<SceneObject>> sample(Draw& draw, double widest_m) {
     objects.push_back(object(one, in_words ? role::not_meant : role::distractor));
   }
   const auto plain = [&](const Features& one) {
-    return may_be_meant(one) && !draw.belongs(one) && !(content.words && content.words->belongs(one.type, one.texture));
+    return may_be_meant(one) && !draw.belongs(one) &&
+           !(content.words && content.words->belongs(one.type, one.texture)) &&
+           !(content.cue && content.cue->look.contains(one.type, one.texture));
   };
   const FeatureSet all{draw.scenario.space.object_types, draw.scenario.space.textures};
   if (content.near_miss) {
@@ -216,6 +219,7 @@ std::vector<SceneObject> meant_objects(const Scenario& scenario, const Task& tas
         break;  // other objects may fit
       }
       if (truth.which && !(is_plain(truth, objects) && shows(sketch(layout, objects), truth, content))) continue;
+      if (content.cue && !add_cue(task, layout, *content.cue, objects, stream("cue"))) continue;
       if (shows(picture(task, layout, objects), truth, content)) return objects;
     }
   }

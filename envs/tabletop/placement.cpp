@@ -101,6 +101,42 @@ bool place_last(const Room& room_of, std::vector<SceneObject>& objects, RandomSt
   return false;
 }
 
+bool place_beside(const Layout& layout, const Room& room_of, std::vector<SceneObject>& objects, std::size_t i,
+                  double near_m, double far_m, RandomStream& random) {
+  constexpr int directions = 64, steps = 20;
+  constexpr double least_margin_m = .002, least_step_m = 1e-4;
+  Taken taken;
+  for (std::size_t k = 0; k + 1 < objects.size(); ++k) {
+    if (k != i) taken.bodies.push_back(outline_of(objects[k]));
+    if (objects[k].role == role::target) taken.room.push_back(room_of(objects[k]));
+  }
+  if (layout.pallet) taken.room.push_back(placed_outline(object_model(goal_type), *layout.pallet, 0));
+  const SceneObject& other = objects[i];
+  const Outline there = outline_of(other);
+  SceneObject& placed = objects.back();
+  std::optional<SceneObject> nearest;
+  double nearest_m = near_m;
+  for (int n = 0; n < directions; ++n) {
+    const double direction = random.uniform(-pi, pi);
+    placed.yaw_rad = random.uniform(-pi, pi);
+    Outline outline;
+    double away_m = model_of(other).radius_m + model_of(placed).radius_m + least_margin_m, left_m = 1;
+    for (int step = 0; step < steps && left_m > least_step_m; ++step) {
+      placed.position_m = other.position_m + rotated({away_m, 0}, direction);
+      outline = outline_of(placed);
+      left_m = distance(outline, there) - least_margin_m;
+      away_m = std::max(0.0, away_m - left_m);
+    }
+    const double gap_m = distance(other.position_m, outline);
+    if (gap_m > nearest_m || (i > 0 && distance(objects[0].position_m, outline) < far_m)) continue;
+    if (!inside_picture(outline) || !clear_of(outline, taken.bodies) || !clear_of(outline, taken.room)) continue;
+    nearest_m = gap_m;
+    nearest = placed;
+  }
+  if (nearest) placed = *nearest;
+  return nearest.has_value();
+}
+
 void place_freely(const Layout& layout, const Room& room, const Patience& patience, std::vector<SceneObject>& objects,
                   const Streams& stream) {
   constexpr int tries = 10000;

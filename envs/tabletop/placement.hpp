@@ -50,6 +50,13 @@ bool has_room(const Room& room, const std::vector<SceneObject>& objects, std::si
 /// Places the last among the others, with the margin that all of a scene leave; false where no place is found.
 bool place_last(const Room& room, std::vector<SceneObject>& objects, RandomStream& random);
 
+/// Places the last beside objects[i]: with the usual margin to all others, and .002 m to that one, from the direction,
+/// of many that are drawn, in which it comes nearest to its centre. The nearest of it is then within `near_m` of that
+/// centre and, unless objects[i] is the target, objects[0], no nearer than `far_m` to the target's. False where no such
+/// place is found.
+bool place_beside(const Layout& layout, const Room& room, std::vector<SceneObject>& objects, std::size_t i,
+                  double near_m, double far_m, RandomStream& random);
+
 /// Places were tried for as long as is worth it.
 class NoRoom : public Error {
  public:

@@ -7,6 +7,7 @@
 #include <common/changed.hpp>
 #include <common/objects.hpp>
 #include <common/sampling.hpp>
+#include <tabletop/cue.hpp>
 #include <tabletop/meant.hpp>
 #include <tabletop/near_misses.hpp>
 #include <tabletop/task.hpp>
@@ -118,6 +119,7 @@ std::vector<Features> sample_distractors(const Request& request, const Features&
   exclude(request.meant);
   if (content.outside_all_commands)
     for (const ScenarioCommand& command : request.scenario.commands) exclude(command.truth);
+  if (content.cue) excluded.push_back(&content.cue->look);
   if (!request.training && content.never_distractor) excluded.push_back(&*content.never_distractor);
 
   // Where the earliest letter is asked for, a later one may stand beside it, never an earlier one or the same.
@@ -256,7 +258,7 @@ std::vector<SceneObject> placed_objects(const Request& request, const Streams& s
     std::vector<SceneObject> objects = sample_objects(request, stream, random);
     const std::size_t sampled = objects.size();
     try {
-      task.place(layout, content, objects, stream);
+      place_with_cue(task, layout, content, objects, stream);
     } catch (const NoRoom&) {
       if (!content.crowded() || draw == draws) throw;
       continue;
@@ -310,6 +312,7 @@ Scene sample_scene(const Scenario& scenario, const SceneRequest& request, int in
                                      : placed_objects(what, stream);
   if (layout.pallet) scene.objects.push_back({goal_type, goal_texture, role::goal, *layout.pallet, 0, 0});
   permute_ids(scene.objects, stream("ids"));
+  if (content.cue && content.cue->place == Cue::Place::gone) take_cue_away(*content.cue, scene.objects);
   return scene;
 }
 
