@@ -17,8 +17,8 @@ namespace {
 using namespace lgabench;
 namespace nn = torch::nn;
 
-constexpr int levels = 100, denoising_steps = 10;         // of noise; of DDIM
-constexpr int steps = 1200, batch_size = 16, noises = 8;  // noisy actions of each row in a batch
+constexpr int levels = 100, denoising_steps = 10;  // of noise; of DDIM
+constexpr int batch_size = 16, noises = 8;         // noisy actions of each row in a batch
 constexpr double learning_rate = 1e-3;
 constexpr std::int64_t channels = 32, time_features = 16, hidden = 256, text_features = 32;
 
@@ -121,8 +121,8 @@ double left_at(int level) {
 
 class Denoiser : public Learner {
  public:
-  Denoiser(const SampleShape& shape, std::uint64_t seed)
-      : shape_(shape), coding_(shape.actions), random_("diffusion/" + std::to_string(seed)) {
+  Denoiser(const SampleShape& shape, int updates, std::uint64_t seed)
+      : shape_(shape), updates_(updates), coding_(shape.actions), random_("diffusion/" + std::to_string(seed)) {
     torch::set_num_threads(1);  // a sum that is split among threads may differ in its last bit
     torch::manual_seed(seed);   // of the initial weights
     for (const SampleShape::Picture& picture : shape.pictures) planes_ += picture.channels;
@@ -136,7 +136,7 @@ class Denoiser : public Learner {
 
   TrainingOptions schedule(const TrainingOptions&, int samples) const override {
     const int batches = samples / std::min(batch_size, samples);
-    return {(steps + batches - 1) / batches, batch_size, learning_rate, Batches::shuffled, true};
+    return {(updates_ + batches - 1) / batches, batch_size, learning_rate, Batches::shuffled, true};
   }
 
   void begin(const Samples& samples) override {
@@ -278,6 +278,7 @@ class Denoiser : public Learner {
   }
 
   SampleShape shape_;
+  int updates_;
   Coding coding_;
   RandomStream random_;
   std::int64_t planes_ = 0, numbers_ = 0;
@@ -307,7 +308,7 @@ class Diffusion : public CloningMethod {
     return inputs;
   }
   std::unique_ptr<Learner> learner(const SampleShape& shape, const Services& services) const override {
-    return std::make_unique<Denoiser>(shape, services.seed);
+    return std::make_unique<Denoiser>(shape, services.options.at("updates").get<int>(), services.seed);
   }
 };
 
@@ -316,4 +317,5 @@ class Diffusion : public CloningMethod {
 LGABENCH_METHOD("diffusion", "0.1", "LGA with a policy that denoises an action (Diffusion Policy, DDIM)", Diffusion,
                 "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_TRAINING_OPTIONS R"(,
   "input": {"default": "mask", "values": ["mask", "object_mask", "rgb"],
-            "help": "what the policy sees: the goal mask, a mask of any object but the pallet, or picture and command", "source": "ours"}})")
+            "help": "what the policy sees: the goal mask, a mask of any object but the pallet, or picture and command", "source": "ours"},
+  "updates": {"default": 1200, "min": 1, "max": 1000000, "help": "optimiser steps of up to 16 demonstrated steps, each with 8 noisy actions", "source": "ours: 40 seconds of a core"}})")

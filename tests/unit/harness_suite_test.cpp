@@ -133,6 +133,16 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
               "/tests/2/arm: expected each arm once");
 }
 
+TEST(Suite, RowsWithoutASelectionArePlayedOnceWhateverItsErrors) {
+  const Suite suite = load_suite("knowledge");
+  std::map<std::string, std::set<std::string>> errors;
+  for (const Cell& cell : expand(suite, preset_design(suite, "smoke"), {}, scan_plugins({shipped_plugin_directory()})))
+    errors[cell.method.id].insert(cell.selection_errors.suffix());
+  EXPECT_EQ(errors.at("lga").size(), 2u);
+  EXPECT_EQ(errors.at("masked_bc").size(), 2u);
+  EXPECT_EQ(errors.at("object_dropout"), std::set<std::string>{""});
+}
+
 TEST(Suite, AVariantMayHaveArmsAndAScenarioAnswersOfItsOwn) {
   const Scratch scratch("suite");
   Json json = read_json(data_directory() / "suites/few_members.json");

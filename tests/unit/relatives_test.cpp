@@ -33,7 +33,7 @@ class Relatives : public testing::Test {
     options["epochs"] = 1;
     const Json all = resolve_options(plugin, options);
     method = load_method(plugin);
-    EXPECT_EQ(method->needs(all).shadows, id != "masked_rgb");
+    EXPECT_EQ(method->needs(all).shadows, id != "masked_rgb" && id != "diffusion");
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Services services{lm, human, all, seed, log, find_environment("tabletop").action_space()};
@@ -131,6 +131,24 @@ TEST_F(Relatives, AGateErasesWhatTheActionIsSensitiveTo) {
   shut->act(without, instruction);
   EXPECT_EQ(erased, read_by(*shut));
 }
+
+#if defined(LGABENCH_HAS_DIFFUSION)
+TEST_F(Relatives, DiffusionActsTheSameWhateverItSawBeforeAndMovesWithTheMask) {
+  for (const char* input : {"mask", "object_mask", "rgb"}) {
+    const auto policy = learned("diffusion", {{"updates", 30}, {"input", input}}),
+               again = learned("diffusion", {{"updates", 30}, {"input", input}});
+    const Action first = policy->act(probe, instruction);
+    EXPECT_EQ(first, again->act(probe, instruction));
+    const Observation other = demonstrations.front().steps.front().observation;
+    EXPECT_NE(policy->act(other, instruction), first) << input;
+    EXPECT_EQ(policy->act(probe, instruction), first) << input;
+    const Action label = demonstrations.front().steps.front().label;
+    for (const std::size_t copied : {2u, 9u, 10u})
+      EXPECT_NEAR(first[copied], label[copied], 1e-3) << "heights, no tilt";
+    EXPECT_EQ(executable(find_environment("tabletop").action_space(), first).size(), first.size());
+  }
+}
+#endif
 
 TEST_F(Relatives, OfMaskedColoursOneIsLeftBesideTheTarget) {
   const auto policy = learned("masked_rgb", Json::object());

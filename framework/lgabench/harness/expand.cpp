@@ -36,6 +36,10 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
+bool has(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
 // Which members of a meaning are seen is each training seed's own.
 void expect_own_scenes(const Suite& suite, const Design& design, const Scenario& scenario) {
   const Json& arms = scenario.json.at("tests");
@@ -228,7 +232,8 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
         for (const int n : design.demonstrations)
           for (const std::uint64_t seed : design.seeds) {
             for (const Competitor& method : methods)
-              for (const SelectionErrors& errors : all_errors) add(method, n, seed, errors);
+              for (const SelectionErrors& errors : all_errors)
+                if (errors.none() || !has(suite.selects_nothing, method.id)) add(method, n, seed, errors);
             for (const char* row : references)
               if (learns(reference(row))) add(reference(row), n, seed);
           }

@@ -175,8 +175,9 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
-                                 "scenes", "paraphrases", "answers", "variants", "groups", "references", "presets"});
+  members.insert(members.end(),
+                 {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss", "scenes",
+                  "paraphrases", "answers", "variants", "groups", "selects_nothing", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -241,6 +242,7 @@ Suite load_suite(const std::string& id) {
     if (std::adjacent_find(grouped.begin(), grouped.end()) != grouped.end())
       reader.at("groups").fail("each scenario in one group at most");
   }
+  if (reader.has("selects_nothing")) suite.selects_nothing = names(reader.at("selects_nothing"));
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
   if (reader.has("about")) expect_about(reader.at("about"));
