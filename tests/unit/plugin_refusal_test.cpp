@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"wrong_iterators", {"iterators \"debug\"", "(this program: \"plain\")"}},
                     Case{"wrong_library", {"standard library \"libc++ ", "(this program: \"libstdc++ "}},
                     Case{"wrong_sanitizer", {"sanitizer \"", "(this program: \""}},
-                    Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\" or \"engine\""}},
+                    Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\", \"engine\" or \"perturbation\""}},
                     Case{"short_descriptor", {"descriptor of 104 bytes", "(this program: 4664)"}},
                     Case{"newer_interface", {"plugin interface 1000", ours}},
                     Case{"older_interface", {"plugin interface 3", ours + ": build it with this lgabench's package"}},
