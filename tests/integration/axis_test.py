@@ -62,7 +62,7 @@ class PluginAxes(case.Case):
 
     def failure(self, level, *more, **options):
         """Why the cell failed; the other scenario's, in the same run, did not."""
-        self.run_axis(level, *more, expect=1, **options)
+        self.run_axis(level, *more, expect=3, **options)
         states = {cell["scenario"]["id"]: status for cell, status in self.cells("run").values()}
         self.assertEqual(states["tiger_colored_object"]["state"], "ok")
         self.assertEqual((states["heart"]["state"], states["heart"]["fault"]), ("failed", "plugin"))
@@ -112,7 +112,7 @@ class PluginAxes(case.Case):
             self.assertIn(reason, self.failure(level, "--fresh"))
 
     def test_one_that_hangs_is_stopped(self):
-        self.run_axis(6, "--timeout", "5", expect=1)
+        self.run_axis(6, "--timeout", "5", expect=3)
         reasons = {cell["scenario"]["id"]: status.get("reason") for cell, status in self.cells("run").values()}
         self.assertEqual(reasons, {"heart": "stopped after 5 s in phase evaluate", "tiger_colored_object": None})
 
@@ -150,7 +150,7 @@ class PluginAxes(case.Case):
 
     def test_it_is_listed(self):
         for plugin in (AXIS, "fog.py:Axis") if HAS_NUMPY else (AXIS,):
-            self.assertIn("fixture_axis", self.call("list", "perturbations", "--plugin-path", plugin).stdout.split())
+            self.assertIn("fixture_axis", self.call("list", "perturbations", "--plugin-path", plugin, "--python", PYTHON).stdout.split())
         said = self.call("info", "fixture_axis", "--plugin-path", AXIS).stdout
         self.assertIn("fixture_axis 0.1, a perturbation", said)
         self.assertIn("level 2     dead", said)

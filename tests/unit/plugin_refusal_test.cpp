@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "bad_asks",
                         {"asks \"everybody\"", "expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\""}},
                     Case{"bad_needs", {"options: /way/needs/plain/see/0: expected a value of option see, got \"rgb\""}},
+                    Case{"bad_axis", {"axis: /changes/0: expected rgb, ids or instances"}},
                     Case{"bad_id", {"id \"../bad id\"", "expected lower-case letters"}}),
     name_of);
 

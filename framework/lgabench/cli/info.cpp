@@ -156,8 +156,8 @@ bool known(const std::vector<std::string>& ids, const std::string& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-void info(const std::string& name, bool json, const std::vector<fs::path>& directories) {
-  const Catalogue catalogue = plugins_at(directories, "python3");
+void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
+  const Catalogue catalogue = plugins_at(directories, python);
   Json found = Json::array();  // an environment and a suite may have one name
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.id == name) {
@@ -212,7 +212,7 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
 
 void add_info(CLI::App& app, int& exit) {
   struct InfoArguments {
-    std::string name;
+    std::string name, python = "python3";
     bool json = false;
     std::vector<fs::path> directories;
   };
@@ -223,9 +223,12 @@ void add_info(CLI::App& app, int& exit) {
   verb->add_option("name", arguments->name, "A name that `lgabench list` prints")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "Print one JSON object, or an array where several things share the name");
   add_plugin_path(*verb, arguments->directories, any_plugin);
+  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
+      ->type_name("PROGRAM")
+      ->capture_default_str();
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
-    info(arguments->name, arguments->json, arguments->directories);
+    info(arguments->name, arguments->json, arguments->directories, arguments->python);
     exit = ok;
   });
 }

@@ -169,7 +169,7 @@ Json reference_rows() {
 void add_list(CLI::App& app, int& exit) {
   struct ListArguments {
     bool json = false;
-    std::string kind, of;
+    std::string kind, of, python = "python3";
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<ListArguments>();
@@ -186,9 +186,12 @@ void add_list(CLI::App& app, int& exit) {
   verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   add_plugin_path(*verb, arguments->directories, any_plugin);
+  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
+      ->type_name("PROGRAM")
+      ->capture_default_str();
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
-    const Json all = listing(plugins_at(arguments->directories, "python3"));
+    const Json all = listing(plugins_at(arguments->directories, arguments->python));
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
     if (!arguments->kind.empty())
       to_stdout("{}\n", fmt::join(words(arguments->kind, arguments->of, all), "\n"));
