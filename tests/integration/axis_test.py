@@ -6,6 +6,7 @@ import json
 import unittest
 
 import case
+from leaderboard_test import META
 from python_test import HAS_NUMPY, PYTHON
 
 AXIS = case.FIXTURES / "perturbations/fixture_axis.so"
@@ -121,7 +122,7 @@ class PluginAxes(case.Case):
 
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
     def test_what_fails_in_python(self):
-        for level, reason in ((2, "it is dead"), (3, "ids differs"), (4, "RuntimeError: its own failure (fog.py:20)"),
+        for level, reason in ((2, "it is dead"), (3, "ids differs"), (4, "RuntimeError: its own failure (fog.py:17)"),
                               (5, "perceive() returned rgb as int64 of shape (128, 256, 3), expected uint8 of shape (128, 256, 3)"),
                               (6, "ids: 200, expected 0 or an instance's")):
             self.assertIn(reason, self.failure(level, "--fresh", plugin="fog.py:Axis"))
@@ -159,10 +160,10 @@ class PluginAxes(case.Case):
 
     def test_no_leaderboard_takes_its_rows(self):
         self.run_axis(1)
-        (self.dir / "about.json").write_text(json.dumps({"by": "test"}))
-        (self.dir / "board").mkdir()
-        done = self.call("leaderboard", "add", "run", "--board", "board", "--about", "about.json", expect=1)
+        (self.dir / "me.json").write_text(json.dumps(META))
+        done = self.call("leaderboard", "add", "run", "--board", "board", "--entry", "me.json", expect=1)
         self.assertIn("arms under an axis of a plugin (fixture_axis), which no leaderboard ranks", done.stdout + done.stderr)
+        self.assertFalse(list(self.dir.glob("board/**/entry.json")))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/perturbations.hpp>
 #include <lgabench/host/hosted_perturbation.hpp>
-#include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
 namespace {
@@ -78,8 +77,13 @@ class AxisCheck {
   std::string run(const CheckPhase& phase) {
     std::string all;
     for (int level = 1; level <= axis_.most(); ++level) {
-      phase(fmt::format("level {}{}", level, in_));
-      all += judge_level(level);
+      const std::string doing = fmt::format("level {}{}", level, in_);
+      phase(doing);
+      try {
+        all += judge_level(level);
+      } catch (const MethodError& e) {
+        report_.problem(doing, e.what(), "this call must succeed: a run makes it too");
+      }
     }
     judge_sizes();
     if (is_library_) {
@@ -175,15 +179,7 @@ CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
     job.scratch = scratch / environment;
     fs::create_directory(job.scratch);
     phase("load");
-    try {
-      report.hashes["perceived, " + environment] = AxisCheck(job, axis, report).run(phase);
-    } catch (const PluginError&) {
-      throw;
-    } catch (const MethodGone&) {
-      throw;
-    } catch (const std::exception& e) {
-      report.problem("perceive, " + environment, e.what(), "this call must succeed: a run makes it too");
-    }
+    report.hashes["perceived, " + environment] = AxisCheck(job, axis, report).run(phase);
   }
   return report;
 }
