@@ -7,7 +7,7 @@ import unittest
 
 import case
 from leaderboard_test import META
-from python_test import HAS_NUMPY, PYTHON
+from python_test import EXAMPLES, HAS_NUMPY, PYTHON
 
 AXIS = case.FIXTURES / "perturbations/fixture_axis.so"
 IN_PYTHON = '''
@@ -158,6 +158,31 @@ class PluginAxes(case.Case):
         self.assertIn("level 2     dead", said)
         self.assertIn("changes     rgb", said)
         self.assertIn("sensor_noise, a perturbation axis", self.call("info", "sensor_noise").stdout)
+
+    def test_check_plugin_says_what_is_wrong(self):
+        report = json.loads(self.call("check-plugin", AXIS, "--environment", "tabletop", "--json", expect=1).stdout)
+        found = {finding["check"]: (finding["state"], finding["detail"]) for finding in report["findings"]}
+        self.assertEqual(found["process"][0], "problem")  # which level 5 ends
+        self.assertIn("signal 11", found["process"][1])
+        if HAS_NUMPY:
+            report = json.loads(self.call("check-plugin", "fog.py:Axis", "--python", PYTHON, "--environment", "tabletop", "--json",
+                                          expect=1).stdout)
+            found = {finding["check"]: (finding["state"], finding["detail"]) for finding in report["findings"]}
+            self.assertEqual(found["level 1, tabletop"][0], "ok")
+            self.assertEqual(found["level 2, tabletop"], ("problem", "rgb changes in 0 of 20 scenes: it is dead"))
+            self.assertEqual(found["level 3, tabletop"], ("problem", "ids changes, which is not declared"))
+            self.assertEqual(found["level 4, tabletop"], ("problem", "RuntimeError: its own failure (fog.py:17)"))
+            self.assertEqual(found["two processes"][0], "ok")
+
+    @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
+    def test_a_new_one_in_python(self):
+        self.call("new-plugin", "rain", "--kind", "perturbation", "--language", "python", "--directory", "rain")
+        for file in ("rain/rain.py:Rain", EXAMPLES / "lens_drop.py:LensDrop"):
+            report = json.loads(self.call("check-plugin", file, "--python", PYTHON, "--json").stdout)
+            self.assertEqual({finding["state"] for finding in report["findings"]}, {"ok"}, report)
+        self.call("run", "rain/rain_suite.json", "--plugin-path", "rain/rain.py:Rain", "--python", PYTHON, "--methods", "lga",
+                  "--episodes", "2", "--no-reference", "--set", "lga.epochs=2", "--out", "run")
+        self.assertIn("an engine is in C++", self.call("new-plugin", "x", "--kind", "engine", "--language", "python", expect=2).stderr)
 
     def test_no_leaderboard_takes_its_rows(self):
         self.run_axis(1)
