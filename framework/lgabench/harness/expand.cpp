@@ -149,12 +149,14 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   const Json scenes = suite.scenes.value(base, Json::object());
   if (!scenes.empty()) json["train"].update(scenes);
   if (suite.paraphrases.contains(base)) add_wordings(suite, base, json);
-  if (!variant.empty()) json["train"].update(suite.variants[variant].value("train", Json::object()));
-  if (!variant.empty() && suite.variants[variant].contains("commands"))
-    json["commands"] = first_commands(json["commands"], suite.variants[variant]["commands"].get<std::size_t>());
+  if (suite.answers.contains(base)) json["answers"] = {{"recorded", suite.answers[base]}};
+  const Json changes = variant.empty() ? Json::object() : suite.variants[variant];
+  json["train"].update(changes.value("train", Json::object()));
+  if (changes.contains("commands"))
+    json["commands"] = first_commands(json["commands"], changes["commands"].get<std::size_t>());
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
-  for (const Json& arm : suite.arms) {
+  for (const Json& arm : changes.value("arms", suite.arms)) {
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
     json["tests"].back().update(scenes);

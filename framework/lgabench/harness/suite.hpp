@@ -55,8 +55,9 @@ struct Suite {
   /// Scenario -> another one, of the same command: the words of its unseen commands are wordings 1, 2, ... here, and
   /// its recorded answers hold.
   Json paraphrases = Json::object();
+  Json answers = Json::object();  // scenario -> whose recorded answers hold, in place of those that it names
   /// Name -> {"train": members that replace those of every scenario's "train", "commands": how many of its demonstrated
-  /// commands are left, the first ones}: in place of each scenario ID there is one ID_NAME for each, with arms
+  /// commands are left, the first ones, "arms": in place of those above}: in place of each scenario ID there is one ID_NAME for each, with arms
   /// ARM_NAME.
   Json variants = Json::object();
   Json groups = Json::object();         // name -> scenarios, each in one group at most: tables have a mean of each

@@ -18,6 +18,7 @@ class HostedPerturbation : public ObservationPerturbation {
   ~HostedPerturbation() override;
 
   /// Pictures and ids have the size of the environment's; instances are as the plugin made them, their pixels counted.
+  /// Shadows are those of the instances that are left.
   Observation perceive(Observation seen, int level, RandomStream stream) override;
 
   /// Names of the system calls that its process was refused so far.

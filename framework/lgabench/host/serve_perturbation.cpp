@@ -57,7 +57,7 @@ class PerturbationHost {
  private:
   void perceive(const JsonReader& reader) {
     Observation seen;
-    protocol::read_observation(memory_, picture_, reader.at("instances"), seen);
+    protocol::read_observation(memory_, picture_, reader.at("instances"), false, seen);
     const int level = static_cast<int>(reader.at("level").integer(1, 1 << 16));
     if (!perturbation_) perturbation_ = load_perturbation(plugin_);  // check-plugin had the first destroyed
     const FlushDenormalsAgain on_every_way_out;

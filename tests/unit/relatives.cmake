@@ -1,0 +1,2 @@
+lgabench_unit_test(relatives_test SOURCES relatives_test.cpp LINK lgabench_harness lgabench_learning lgabench_tabletop)
+add_dependencies(relatives_test engines masked_rgb masked_bc texture_aug erase object_dropout keypoints embedding_select)
