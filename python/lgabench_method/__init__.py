@@ -13,6 +13,8 @@ A method is a class in a file; `lgabench run q1 --methods my_method.py:MyMethod`
         def learn(self, demonstrations, services): ...
             # an object with act(observation, instruction), and maybe reset() and shown(), a Shown
 
+A perturbation axis is a class too, with `levels` and perceive(seen, level, stream) (docs/add-a-perturbation.md).
+
 Needs NumPy alone. One thread; the same seed must give the same bytes.
 """
 from __future__ import annotations
@@ -25,8 +27,10 @@ from typing import Any, Literal, Optional, Protocol, Union
 import numpy
 import numpy.typing
 
+from lgabench_method.stream import RandomStream
+
 __all__ = ["Command", "Demonstration", "FeatureSet", "FeatureSpace", "HumanAnswers", "Hypothesis", "Instance", "Instruction",
-           "LanguageModel", "Meaning", "Method", "Needs", "Observation", "Policy", "Refused", "SecondRole", "SecondSet",
+           "LanguageModel", "Meaning", "Method", "Needs", "Observation", "Perturbation", "Policy", "RandomStream", "Refused", "SecondRole", "SecondSet",
            "Selection", "Services", "Shown", "Step", "TrainingLog", "Which", "goal_mask", "grounded", "select_features",
            "select_meaning", "taken"]
 
@@ -279,6 +283,22 @@ class Method(Protocol):
 
     def learn(self, demonstrations: list[Demonstration], services: Services) -> Policy:
         """Learns from the demonstrations, the cell's number of them for each seen command."""
+
+
+class Perturbation(Protocol):
+    """What is called of a perturbation axis' class. `levels` says what each is, level 1 first; `changes` which of "rgb", "ids" and
+    "instances" differ in nearly every episode; `may_change`, which may be left out, in some; `named = True`: levels without an order."""
+    version: str
+    summary: str
+    levels: list[str]
+    changes: list[str]
+
+    def perceive(self, seen: Observation, level: int, stream: RandomStream) -> Observation:
+        """What is perceived at that level, 1 or more, in place of `seen`: arrays of the same shapes, ids of listed instances alone.
+
+        `stream` is the scene's and the same at every level: it gives the direction of a change, and the level gives its size. The
+        same arguments give the same bytes. The arrays are yours to change; pixels of instances are counted by lgabench.
+        """
 
 
 def select_features(command: Command, space: FeatureSpace, lm: LanguageModel) -> Selection:

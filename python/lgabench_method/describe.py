@@ -84,6 +84,15 @@ def _text(found, name, default, file):
     return value
 
 
+def _axis(found, file):
+    """What a perturbation declares; lgabench checks it."""
+    declared = {name: found[name] for name in ("levels", "changes", "may_change", "named") if name in found}
+    try:
+        return json.loads(json.dumps(declared, allow_nan=False))
+    except (TypeError, ValueError) as error:
+        raise NoMethod(f"{file}: levels, changes, may_change, named: expected values that JSON has: {error}") from error
+
+
 def interpreter():
     """This one, and where it reads: asked without a method's file."""
     if sys.version_info < (3, 10):  # importlib.metadata.packages_distributions()
@@ -127,7 +136,9 @@ def describe(written):
     declares = found.get("questionnaire", False)
     if not isinstance(declares, bool):
         raise NoMethod(f"{file}: questionnaire: expected True or False")
-    return {"file": str(real), "class": class_name, "kind": "method",
+    functions = {node.name for node in classes[class_name].body if isinstance(node, ast.FunctionDef)}
+    kind = "perturbation" if "perceive" in functions else "method"
+    return {"file": str(real), "class": class_name, "kind": kind, "axis": _axis(found, file) if kind == "perturbation" else None,
             "id": _text(found, "id", file.stem, file), "version": _text(found, "version", "0", file),
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,

@@ -12,7 +12,7 @@ import sysconfig
 import time
 import traceback
 
-from lgabench_method import Needs, Refused, Services, Shown, values
+from lgabench_method import Needs, RandomStream, Refused, Services, Shown, values
 from lgabench_method.frames import MOST, Malformed
 
 PROTOCOL = 1
@@ -146,6 +146,7 @@ def load(file, name, sha256, versions):
 
 class Host:
     """One method from loading to its end. What answers a frame returns the reply's header and payload."""
+    FRAMES = ("hello", "needs", "select", "revise", "learn", "save", "restore", "act", "shown", "drop", "bye")
 
     def __init__(self, channel, hello, descriptor):
         self.channel = channel
@@ -239,6 +240,44 @@ class Host:
         self.channel.send(*reply)
 
 
+class PerturbationHost:
+    """Likewise, of a perturbation."""
+    FRAMES = ("hello", "perceive", "drop", "bye")
+
+    def __init__(self, channel, hello, descriptor):
+        self.channel = channel
+        if hello["protocol"] != PROTOCOL:
+            raise ImportError(f"protocol {hello['protocol']} (this package: {PROTOCOL})")
+        self.observation = values.ObservationMemory(descriptor, hello["observation"])
+        named = hello["perturbation"]
+        self.kind = load(named["file"], named["class"], named["sha256"], named["versions"])
+        self.perturbation = self.kind()
+
+    def hello(self, header):
+        self.channel.send({"type": "hello", "protocol": PROTOCOL})
+
+    def perceive(self, header):
+        if self.perturbation is None:
+            self.perturbation = self.kind()
+        seen = self.observation.read(header["instances"])
+        perceived = self.perturbation.perceive(seen, header["level"], RandomStream(header["stream"]))
+        for frame in values.perceived_frames(perceived, self.observation.shape):
+            self.channel.send(*frame)
+
+    def drop(self, header):
+        self.perturbation = None
+        self.channel.send({"type": "dropped"})
+
+    def bye(self, header):
+        self.perturbation = None
+        sys.stdout.flush()  # the worker ends this process once it has the answer
+        sys.stderr.flush()
+        self.channel.send({"type": "bye"})
+
+    def answer(self, frame):
+        getattr(self, frame[0]["type"])(frame[0])
+
+
 def _place(error):
     """The line of the method's own file from which the error came, as " (mine.py:19)"; "" for one from elsewhere."""
     of_others = (str(pathlib.Path(__file__).parent), sysconfig.get_path("stdlib"), "<")
@@ -266,12 +305,13 @@ def serve(channel):
     frame = channel.receive()
     if frame is None:
         return
-    host = _told(channel, "plugin", Host, channel, frame[0], frame[2])
+    of_kind = PerturbationHost if "perturbation" in frame[0] else Host
+    host = _told(channel, "plugin", of_kind, channel, frame[0], frame[2])
     if host is None:
         return
     while frame is not None:
         kind = frame[0]["type"]
-        if kind not in ("hello", "needs", "select", "revise", "learn", "save", "restore", "act", "shown", "drop", "bye"):
+        if kind not in host.FRAMES:
             raise Malformed(f"no frame of a worker: \"{kind}\"")
         _told(channel, "method", host.answer, frame)
         if kind == "bye":

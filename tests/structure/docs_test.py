@@ -136,7 +136,7 @@ class Pages(unittest.TestCase):
         """As cmake/LgabenchHelpers.cmake lists them."""
         listed = re.search(r"set\(lgabench_public_headers\n([^)]+)\)", (SOURCE / "cmake/LgabenchHelpers.cmake").read_text())
         there = set(listed[1].split())
-        for page in "add-a-method", "add-a-network", "add-an-engine":
+        for page in "add-a-method", "add-a-network", "add-an-engine", "add-a-perturbation":
             named = set(re.findall(r"[`<](?:lgabench/)?(\w+/\w+\.hpp)[`>]", (SOURCE / f"docs/{page}.md").read_text()))
             self.assertEqual(named - there, set(), page)
 
@@ -152,9 +152,19 @@ class Pages(unittest.TestCase):
         for example in (SOURCE / "examples").glob("*/*.cpp"):
             if "LGABENCH_METHOD(" in example.read_text():
                 self.assertIn(f"`{example.stem}`", self.page)
-        methods, scripts = ((SOURCE / "docs" / page).read_text() for page in ("add-a-method-in-python.md", "python.md"))
+        methods, axes, scripts = ((SOURCE / "docs" / page).read_text()
+                                  for page in ("add-a-method-in-python.md", "add-a-perturbation.md", "python.md"))
         for example in (SOURCE / "examples/python").glob("*.py"):
-            self.assertIn(f"`examples/python/{example.name}`", methods if "def select(" in example.read_text() else scripts)
+            code = example.read_text()
+            page = methods if "def select(" in code else axes if "def perceive(" in code else scripts
+            self.assertIn(f"`examples/python/{example.name}`", page)
+
+    def test_a_perturbations_page_shows_the_examples(self):
+        page = (SOURCE / "docs/add-a-perturbation.md").read_text()
+        for file, first in (("fog/fog.cpp", "#include"), ("python/lens_drop.py", "class LensDrop")):
+            code = (SOURCE / "examples" / file).read_text()
+            shown = "".join(f"    {line}\n" if line else "\n" for line in code[code.index(first):].splitlines())
+            self.assertIn(shown, page)
 
 
 class Documents(unittest.TestCase):

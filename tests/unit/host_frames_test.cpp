@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -272,6 +273,26 @@ TEST(Messages, an_observation_arrives_through_shared_memory) {
   Observation larger = observation(7);
   larger.size = {31, 40};
   EXPECT_SAYS(message_of<Error>([&] { protocol::write(larger, memory); }), "got 31 x 40");
+}
+
+TEST(Messages, what_is_perceived_arrives_with_its_pixels_counted) {
+  Observation sent = observation(7);
+  sent.instances.front().pixels = -5;
+  const Frame ids = protocol::ids_frame(sent), perceived = protocol::perceived_frame(sent);
+  const Observation read = protocol::read_perceived(ids, perceived, layout.picture);
+  EXPECT_EQ(read.rgb, sent.rgb);
+  EXPECT_EQ(read.ids, sent.ids);
+  ASSERT_EQ(read.instances.size(), sent.instances.size());
+  EXPECT_EQ(read.instances.front().object_type, sent.instances.front().object_type);
+  EXPECT_EQ(read.instances.front().pixels, std::count(sent.ids.begin(), sent.ids.end(), sent.instances.front().id));
+  const auto refusal = [](const Frame& some_ids, const Frame& some_perceived) {
+    return message_of<InputError>([&] { protocol::read_perceived(some_ids, some_perceived, layout.picture); });
+  };
+  EXPECT_SAYS(refusal({ids.header, "short"}, {perceived.header, perceived.payload}), "a byte for each pixel");
+  EXPECT_SAYS(refusal({ids.header, ids.payload}, {perceived.header, "short"}), "3 bytes for each pixel");
+  Json none = perceived.header;
+  none["instances"][0]["id"] = 0;
+  EXPECT_SAYS(refusal({ids.header, ids.payload}, {none, perceived.payload}), "/instances/0/id");
 }
 
 TEST(Messages, a_layout_arrives_as_it_was_said) {

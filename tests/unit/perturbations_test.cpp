@@ -5,6 +5,7 @@
 
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/abstraction/selection_errors.hpp>
+#include <lgabench/cell/hosted_axes.hpp>
 #include <lgabench/cell/perturbed.hpp>
 #include <lgabench/cell/steps.hpp>
 #include <lgabench/core/environments.hpp>
@@ -111,6 +112,32 @@ TEST(Perturbations, ALeakingAxisIsCaught) {
       }};
   EXPECT_SAYS(message_of<EngineError>([&] { expect_as_declared(leaking, 1); }),
               "perturbation leaking at level 1: instances differs from the control's in episode 0");
+}
+
+TEST(Perturbations, APluginIsAtFaultForItsOwnAxis) {
+  PerturbationAxis dead{
+      "dead", {"nothing"}, {EpisodePart::rgb}, {}, [](Observation seen, const Scenario&, int, RandomStream) {
+        return seen;
+      }};
+  dead.of_plugin = true;
+  EXPECT_SAYS(message_of<MethodError>([&] { expect_as_declared(dead, 1); }),
+              "plugin dead (perturbation): perturbation dead at level 1: rgb is the control's in 5 of 5 episodes");
+}
+
+TEST(Perturbations, WhatAPluginMakesOfAPictureIsLookedAt) {
+  const Scenario scenario = load_scenario("heart");
+  const Observation seen = drawn(scenario).front().seen;
+  const auto refusal = [&](const std::function<void(Observation&)>& change) {
+    Observation changed = seen;
+    change(changed);
+    return message_of<MethodError>([&] { expect_perceived(changed, scenario.space); });
+  };
+  EXPECT_NO_THROW(expect_perceived(seen, scenario.space));
+  EXPECT_SAYS(refusal([](Observation& o) { o.ids.front() = 200; }), "ids: 200, expected 0 or an instance's");
+  EXPECT_SAYS(refusal([](Observation& o) { o.instances.pop_back(); }), "expected 0 or an instance's");
+  EXPECT_SAYS(refusal([](Observation& o) { o.instances.back().id = o.instances.front().id; }), "expected each once");
+  EXPECT_SAYS(refusal([](Observation& o) { o.instances.front().object_type = "ghost"; }), "no object type \"ghost\"");
+  EXPECT_SAYS(refusal([](Observation& o) { o.instances.front().texture = "glass"; }), "no texture \"glass\"");
 }
 
 TEST(Perturbations, APolicyThatActsOtherwiseOnTheSameInputIsCaught) {
@@ -222,6 +249,33 @@ TEST(Perturbations, WhatThereIsNotIsRefusedInOneLine) {
   json["tests"].push_back({{"arm", "other"}, {"distractors", {2, 2}}, {"perturbation", {{"all", 1}}}});
   EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),
               "the members of the first arm, its control");
+}
+
+TEST(Perturbations, AScenarioCarriesWhatThePluginsOfItsArmsDeclare) {
+  const Json declared{{"version", "0.2"}, {"levels", {"thin", "thick"}}, {"changes", {"rgb"}}, {"may_change", {"ids"}}};
+  Json json = load_scenario("heart").json;
+  json["tests"].push_back(json["tests"].front());
+  json["tests"].back().update({{"arm", "fog_2"}, {"perturbation", {{"fog", 2}}}});
+  json["axes"] = {{"fog", declared}, {"rain", declared}};
+  const Scenario scenario = read_scenario(json, "mine.json");
+  ASSERT_EQ(scenario.axes.size(), 1u) << "rain is of no arm";
+  EXPECT_EQ(scenario.json.at("axes"), Json({{"fog", declared}}));
+  const PerturbationAxis& fog = *axes_of(scenario, *scenario.arm("fog_2").perturbation).front();
+  EXPECT_TRUE(fog.of_plugin && fog.touches(EpisodePart::ids) && fog.touches(EpisodePart::input));
+  EXPECT_FALSE(fog.touches(EpisodePart::instances) || fog.touches(EpisodePart::objects));
+  EXPECT_SAYS(message_of<InputError>([&] { fog.perceive({}, scenario, 1, RandomStream("x")); }),
+              "perturbation fog: a plugin's, whose process only cells of a run have");
+  EXPECT_EQ(axes_of(scenario, {"all", 1}), axes_of(load_scenario("heart"), {"all", 1})) << "which all does without";
+  json["axes"]["fog"]["changes"] = {"words"};
+  EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }),
+              "mine.json: /axes/fog/changes/0: expected rgb, ids or instances");
+  json["axes"]["fog"] = declared;
+  json["tests"].back()["perturbation"]["fog"] = 3;
+  EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }), "a level from 1 to 2 (thin; thick)");
+  json.erase("axes");
+  EXPECT_SAYS(message_of<InputError>([&] { read_scenario(json, "mine.json"); }), "no axis \"fog\"");
+  PerturbationAxis taken{"table", {"a"}, {EpisodePart::rgb}};
+  EXPECT_SAYS(message_of<InputError>([&] { add_plugin_axis(taken); }), "an axis has that id already");
 }
 
 TEST(Perturbations, ASuiteNamesThemInALineEach) {

@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"wrong_iterators", {"iterators \"debug\"", "(this program: \"plain\")"}},
                     Case{"wrong_library", {"standard library \"libc++ ", "(this program: \"libstdc++ "}},
                     Case{"wrong_sanitizer", {"sanitizer \"", "(this program: \""}},
-                    Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\" or \"engine\""}},
+                    Case{"wrong_kind", {"kind \"sampler\"", "expected \"method\", \"engine\" or \"perturbation\""}},
                     Case{"short_descriptor", {"descriptor of 104 bytes", "(this program: 4664)"}},
                     Case{"newer_interface", {"plugin interface 1000", ours}},
                     Case{"older_interface", {"plugin interface 3", ours + ": build it with this lgabench's package"}},
@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "bad_asks",
                         {"asks \"everybody\"", "expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\""}},
                     Case{"bad_needs", {"options: /way/needs/plain/see/0: expected a value of option see, got \"rgb\""}},
+                    Case{"bad_axis", {"axis: /changes/0: expected rgb, ids or instances"}},
                     Case{"bad_id", {"id \"../bad id\"", "expected lower-case letters"}}),
     name_of);
 

@@ -107,6 +107,22 @@ TEST(Plugin, LoadedMethodLearnsAndActs) {
   EXPECT_EQ(host.log.last_steps, 3);
 }
 
+TEST(Plugin, APerturbationSaysWhatItsAxisIsAndPerceives) {
+  const PluginInfo plugin = read_plugin(fixture("perturbations/fixture_axis"));
+  EXPECT_EQ(plugin.kind, "perturbation");
+  EXPECT_EQ(plugin.axis.at("levels").at(1), "dead");
+  EXPECT_EQ(plugin.axis.at("changes"), Json({"rgb"}));
+  EXPECT_EQ(plugin.axis.at("version"), plugin.version);
+  EXPECT_THROW(load_method(plugin), PluginError);
+  const auto perturbation = load_perturbation(plugin);
+  const Observation seen{{2, 2}, std::vector<std::uint8_t>(12, 100), {0, 1, 1, 0}, {{1, "heart", "red", 2}}};
+  EXPECT_EQ(perturbation->perceive(seen, 2, RandomStream("a")).rgb, seen.rgb);
+  const Observation brighter = perturbation->perceive(seen, 1, RandomStream("a"));
+  EXPECT_GT(brighter.rgb.front(), 100);
+  EXPECT_EQ(brighter.rgb, perturbation->perceive(seen, 1, RandomStream("a")).rgb);
+  EXPECT_NE(brighter.rgb, perturbation->perceive(seen, 1, RandomStream("b")).rgb);
+}
+
 TEST(Plugin, SameFileLoadsTwice) {
   const PluginInfo info = read_plugin(fixture("good/fixture_constant"));
   const auto a = load_method(info), b = load_method(info);

@@ -262,16 +262,19 @@ TEST(Views, AFailureInAMovedPictureIsPerceptionsWhereThePolicySucceedsInTheUsual
 
 TEST(Views, AnEnvironmentWithOneViewRefusesWhatMovesIt) {
   const Json json{{"camera_turn", 2}}, blur{{"sensor_noise", 2}}, all{{"all", 1}};
-  const auto refusal = [](const Json& perturbation) {
-    return message_of<InputError>(
-        [&] { expect_shown(JsonReader(perturbation, "mine.json", "/tests/1/perturbation"), "flat", false); });
+  const auto expect = [](const Json& perturbation, const char* environment, bool has_views) {
+    expect_shown(JsonReader(perturbation, "mine.json", "/tests/1/perturbation"), axes_named(perturbation.begin().key()),
+                 environment, has_views);
+  };
+  const auto refusal = [&expect](const Json& perturbation) {
+    return message_of<InputError>([&] { expect(perturbation, "flat", false); });
   };
   EXPECT_SAYS(refusal(json),
               "mine.json: /tests/1/perturbation: expected an axis that leaves the view as it is (camera_turn does "
               "not): environment flat has one alone");
   EXPECT_SAYS(refusal(all), "(light_direction does not)");
-  EXPECT_NO_THROW(expect_shown(JsonReader(blur, "mine.json"), "flat", false));
-  EXPECT_NO_THROW(expect_shown(JsonReader(json, "mine.json"), "tabletop", true));
+  EXPECT_NO_THROW(expect(blur, "flat", false));
+  EXPECT_NO_THROW(expect(json, "tabletop", true));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include <lgabench/host/hosted_method.hpp>
+#include <lgabench/host/host_session.hpp>
 #include <lgabench/job/check_report.hpp>
 #include <lgabench/plugin/loader.hpp>
 
@@ -23,6 +23,11 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
 /// Lets the oracle play scenes of every task of the environment ("": of all) on the engine, forwards and backwards,
 /// likewise.
 CheckReport check_engine(const PluginInfo& engine, const std::string& environment, const CheckPhase& phase);
+
+/// Lets the perturbation perceive scenes of the environment ("": of all) at each level, forwards and backwards,
+/// likewise.
+/// @throws PluginError, MethodGone likewise.
+CheckReport check_perturbation(HostJob job, const CheckPhase& phase);
 
 /// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came. Threads are
 /// given half a second to end.

@@ -19,6 +19,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/scenario.hpp>
+#include <lgabench/host/hosted_method.hpp>
 #include <lgabench/plugin/guarded.hpp>
 
 namespace lgabench {
@@ -116,17 +117,17 @@ struct Bench {
 // Whom the method may ask, as in a cell without people and with recorded answers, where there are any.
 struct Answering {
   Answering(const Scenario& scenario, const HostJob& job, bool always_no = false)
-      : recorded(scenario, recorded_source(scenario, "recorded", job.method.asks == "edit")),
+      : recorded(scenario, recorded_source(scenario, "recorded", job.plugin.asks == "edit")),
         truthful(scenario.commands),
         model(knows_all(scenario) ? static_cast<LanguageModel&>(recorded) : truthful, always_no),
-        human(std::make_unique<TruthAsHuman>(scenario.commands), job.method.asks),
+        human(std::make_unique<TruthAsHuman>(scenario.commands), job.plugin.asks),
         services{model,
                  human,
                  job.options,
                  seed,
                  log,
                  actions_of(scenario),
-                 declared_truth(scenario.commands, job.method.asks)} {}
+                 declared_truth(scenario.commands, job.plugin.asks)} {}
 
   RecordedLanguageModel recorded;
   TruthfulModel truthful;
@@ -172,7 +173,7 @@ void judge_restored(const HostJob& job, const Kept& kept, const Bench& bench, Ch
   try {
     HostedMethod method(job);
     const std::unique_ptr<Policy> policy = method.restore(*kept.bytes);
-    const Actor actor = policy_actor(*policy, kept.instructions, job.method.id);
+    const Actor actor = policy_actor(*policy, kept.instructions, job.plugin.id);
     for (std::size_t i = 0; i < kept.actions.size(); ++i)
       if (action_text(actor, bench, bench.sights[i]) != kept.actions[i])
         throw MethodError("once restored, act() gives another action");
@@ -216,7 +217,7 @@ class MethodCheck {
 
  private:
   // A library can be looked at in its process. Python's has threads, files and a heap of the interpreter's.
-  bool is_library() const { return job_.method.python.is_null(); }
+  bool is_library() const { return job_.plugin.python.is_null(); }
 
   // Says what comes, does it, notes how long it took.
   template <class Call>
@@ -286,7 +287,7 @@ class MethodCheck {
       use.training += asked.log.lines;
       phase_(doing_ = "destroy the method");
       method_.drop_method();  // a policy may outlive it
-      const Actor actor = policy_actor(*policy, selected.instructions, job_.method.id);
+      const Actor actor = policy_actor(*policy, selected.instructions, job_.plugin.id);
       std::vector<std::string> actions;
       for (const Sight& sight : bench->sights)
         actions.push_back(act(bench->is_seen(sight) ? "act" : "act on an unseen command", actor, *bench, sight));
@@ -304,7 +305,7 @@ class MethodCheck {
   }
 
   Selected select_all(const Scenario& scenario, Answering& asked, const std::string& what) {
-    return timed(what, [&] { return select(&method_, job_.method.id, scenario, asked.services); });
+    return timed(what, [&] { return select(&method_, job_.plugin.id, scenario, asked.services); });
   }
 
   // What is to be demonstrated; nothing where a run would end the cell as abstraction_empty.
@@ -332,8 +333,8 @@ class MethodCheck {
     std::vector<Demonstration> shown = instructed(
         demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
     phase_(doing_ = "revise");
-    revise(method_, job_.method.id, bench.scenario, shown, scenes, asked.services, selected);
-    return timed("learn", [&] { return learn(method_, job_.method.id, shown, asked.services, selected); });
+    revise(method_, job_.plugin.id, bench.scenario, shown, scenes, asked.services, selected);
+    return timed("learn", [&] { return learn(method_, job_.plugin.id, shown, asked.services, selected); });
   }
 
   std::string act(const std::string& what, const Actor& actor, const Bench& bench, const Sight& sight) {
@@ -386,7 +387,7 @@ class MethodCheck {
   // A cell with nothing selected for a command that is only tested.
   void judge_without_selection(Policy& policy, const Bench& bench) {
     const std::vector<Instruction> nothing(bench.scenario.commands.size(), {bench.scenario.command(0).utterance, {}});
-    const Actor actor = policy_actor(policy, nothing, job_.method.id);
+    const Actor actor = policy_actor(policy, nothing, job_.plugin.id);
     const std::string fault = thrown([&] { act("act with an empty Selection", actor, bench, bench.sights.front()); });
     report_.judge("act with an empty Selection", fault, "a finite action", "the host may give an empty Selection");
   }
@@ -460,7 +461,7 @@ std::optional<Scenario> with_unseen_commands(const std::string& environment) {
 
 CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase& phase) {
   job.seed = seed;
-  job.hidden = runs_below(job.method.file.parent_path());
+  job.hidden = runs_below(job.plugin.file.parent_path());
   std::optional<Scenario> unseen = with_unseen_commands(job.environment);
   if (job.environment.empty()) job.environment = unseen ? unseen->environment : environment_ids().front();
   std::vector<std::unique_ptr<Bench>> benches;

@@ -12,8 +12,6 @@
 namespace lgabench {
 namespace {
 
-constexpr double fewest_changed = .95;
-
 std::string hash_of(const std::string& bytes) { return hex(hash64(bytes)); }
 std::string hash_of(const Json& json) { return hash_of(canonical(json)); }
 
@@ -26,6 +24,13 @@ Json pose_json(const Pose& pose) {
 std::string bytes_of(const std::vector<std::uint8_t>& values) { return {values.begin(), values.end()}; }
 
 using Key = std::pair<std::string, int>;  // arm, index
+
+// Of axes that are not as they declare.
+[[noreturn]] void fail(const std::vector<const PerturbationAxis*>& axes, const std::string& what) {
+  for (const PerturbationAxis* axis : axes)
+    if (axis->of_plugin) throw MethodError(fmt::format("plugin {} (perturbation): {}", axis->id, what));
+  throw EngineError(what);
+}
 
 }  // namespace
 
@@ -83,8 +88,11 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
   for (const Episode& e : episodes)
     if (!e.action.empty()) acted[{e.arm, e.index}] = &e.action;
   std::map<int, const PerturbedEpisode*> control;
-  std::map<std::tuple<std::string, int, std::size_t>, std::pair<int, int>>
-      changed;  // of how many, by axis, level, part
+  struct Changed {
+    int of_all = 0, differing = 0;
+    std::vector<const PerturbationAxis*> axes{};
+  };
+  std::map<std::tuple<std::string, int, std::size_t>, Changed> changed;  // by axis, level, part
   for (const PerturbedEpisode& e : all) {
     if (e.axis.empty()) {
       control.emplace(e.index, &e);  // of the first arm
@@ -99,17 +107,17 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
         return axis->touches(static_cast<EpisodePart>(part));
       };
       if (differs && std::none_of(axes.begin(), axes.end(), touches))
-        throw EngineError(
-            fmt::format("perturbation {} at level {}: {} differs from the control's in episode {}, which "
-                        "the axis does not declare",
-                        e.axis, e.level, part_names[part], e.index));
+        fail(axes, fmt::format("perturbation {} at level {}: {} differs from the control's in episode {}, which "
+                               "the axis does not declare",
+                               e.axis, e.level, part_names[part], e.index));
       const auto changes = [part](const PerturbationAxis* axis) {
         return std::count(axis->changes.begin(), axis->changes.end(), static_cast<EpisodePart>(part)) > 0;
       };
       if (e.hashes[part].empty() || std::none_of(axes.begin(), axes.end(), changes)) continue;
-      auto& [of_all, differing] = changed[{e.axis, e.level, part}];
-      ++of_all;
-      differing += differs;
+      Changed& one = changed[{e.axis, e.level, part}];
+      ++one.of_all;
+      one.differing += differs;
+      one.axes = axes;
     }
     constexpr auto input = static_cast<std::size_t>(EpisodePart::input);
     const auto one = acted.find({e.arm, e.index}), other = acted.find({found->second->arm, e.index});
@@ -119,12 +127,12 @@ void expect_declared(const std::vector<PerturbedEpisode>& all, const std::vector
                                     e.index, e.arm));
   }
   for (const auto& [what, counts] : changed)
-    if (counts.second < fewest_changed * counts.first)
-      throw EngineError(fmt::format(
-          "perturbation {} at level {}: {} is the control's in {} of {} episodes, where the axis declares a "
-          "change: it is dead",
-          std::get<0>(what), std::get<1>(what), part_names[std::get<2>(what)], counts.first - counts.second,
-          counts.first));
+    if (counts.differing < fewest_changed * counts.of_all)
+      fail(counts.axes,
+           fmt::format("perturbation {} at level {}: {} is the control's in {} of {} episodes, where the axis declares "
+                       "a change: it is dead",
+                       std::get<0>(what), std::get<1>(what), part_names[std::get<2>(what)],
+                       counts.of_all - counts.differing, counts.of_all));
 }
 
 }  // namespace lgabench

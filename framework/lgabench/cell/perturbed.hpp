@@ -10,6 +10,9 @@
 
 namespace lgabench {
 
+/// In what share of episodes a part that an axis changes is another one, at least.
+constexpr double fewest_changed = .95;
+
 /// The axes that changed an episode; none for the control's.
 using AxesOf = std::function<std::vector<const PerturbationAxis*>(const PerturbedEpisode&)>;
 /// Those of the scenario's arms. @pre it outlives what is returned.
@@ -30,7 +33,8 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
 /// Expects of every axis that parts which it does not declare are the control's, to the bit, and that a part which it
 /// changes is another one in at least 95 % of its arm's episodes. `actions`: whether a policy acts, whose action must
 /// be the control's, to the bit, where its input is. `episodes` as evaluate() returned them, those of the control
-/// first. @throws EngineError that names axis, part and episode; MethodError where the policy is at fault.
+/// first. @throws EngineError that names axis, part and episode; MethodError where the policy is at fault, or a plugin
+/// whose axis it is.
 void expect_declared(const std::vector<PerturbedEpisode>& parts, const std::vector<Episode>& episodes, bool actions,
                      const AxesOf& axes);
 

@@ -13,8 +13,8 @@
 #include <lgabench/cell/constant_action.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/evaluator.hpp>
+#include <lgabench/cell/hosted_axes.hpp>
 #include <lgabench/cell/perturbed.hpp>
-#include <lgabench/cell/runs_below.hpp>
 #include <lgabench/cell/selected_by.hpp>
 #include <lgabench/cell/showing.hpp>
 #include <lgabench/cell/steps.hpp>
@@ -69,17 +69,7 @@ class Phases {
 // A plugin's method in a process of its own.
 std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugin, const Json& options,
                                      const fs::path& scratch) {
-  HostJob host{plugin,
-               job.cell.environment,
-               options,
-               job.cell.training_seed,
-               scratch,
-               job.confined,
-               {job.directory.parent_path().parent_path(), job.cache, job.answers, job.scratch.parent_path()},
-               job.limits.data_bytes};
-  const std::vector<fs::path> earlier = runs_below(plugin.file.parent_path());
-  host.hidden.insert(host.hidden.end(), earlier.begin(), earlier.end());
-  if (job.live) host.hidden.push_back(job.live->cassette);
+  HostJob host = host_job(job, plugin, options, scratch);
   host.debugger = job.debugger;
   host.task = job.cell.scenario->at("task").get<std::string>();
   return std::make_unique<HostedMethod>(host);
@@ -87,14 +77,16 @@ std::unique_ptr<HostedMethod> hosted(const CellJob& job, const PluginInfo& plugi
 
 // The cell's method, or two of which one selects; the constant action, or none for a row that learns nothing.
 std::unique_ptr<Method> make_method(const CellJob& job) {
+  const auto own = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
+    fs::create_directory(job.scratch / name);
+    return hosted(job, plugin, options, job.scratch / name);
+  };
   if (job.method && job.acts) {
-    const auto own = [&job](const PluginInfo& plugin, const Json& options, const char* name) {
-      fs::create_directory(job.scratch / name);
-      return hosted(job, plugin, options, job.scratch / name);
-    };
     return std::make_unique<SelectedBy>(own(*job.method, job.cell.method.options, "selects"),
                                         [&job, own] { return own(*job.acts, job.cell.method.acts->options, "acts"); });
   }
+  // A plugin's axis has a directory of its own: what the one writes the other does not read.
+  if (job.method && !job.axes.empty()) return own(*job.method, job.cell.method.options, "method");
   if (job.method) return hosted(job, *job.method, job.cell.method.options, job.scratch);
   if (job.cell.method.id == "constant_action") return std::make_unique<ConstantAction>();
   return nullptr;
@@ -331,6 +323,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
 
   // 1 select: which features does each command make matter?
   phases.begin("select");
+  host_axes(scenario, job);
   const std::unique_ptr<Method> method = make_method(job);
   const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);

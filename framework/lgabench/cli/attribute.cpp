@@ -101,7 +101,7 @@ int attribute(AttributeArguments a) {
   for (const Recorded& recorded : cells) again.push_back(recorded.cell);
   RunPlan plan = plan_again(a.run, record, std::move(again), a.jobs, a.timeout_s);
   plan.command = "lgabench attribute";
-  Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  Catalogue catalogue = plugins_at(a.plugin_path, a.python);
   for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
   const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
   if (!recomputed) return interrupted;
@@ -134,8 +134,8 @@ void add_attribute(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "Methods in Python, as FILE.py:Class; separate several with commas")
       ->delimiter(',');
-  verb->add_option("--python", a->python, "The interpreter for methods in Python")->capture_default_str();
-  add_plugin_path(*verb, a->plugin_path);
+  verb->add_option("--python", a->python, "The interpreter for plugins in Python")->capture_default_str();
+  add_plugin_path(*verb, a->plugin_path, any_plugin);
   arrange(*verb, "", {{"RUN", "RUN"}, {"--rows", "ROW,..."}, {"--out", "DIR"}});
   arrange(*verb, "How cells are computed",
           {{"--jobs", "N"}, {"--timeout", "SECONDS"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});

@@ -18,7 +18,14 @@ void check(const JsonReader& reader, const Messages& messages) {
     method.perturb = job.perturb;
     return check_method(method, job.engine, phase);
   };
-  const CheckReport report = job.method ? on_method() : check_engine(job.engine, job.environment, phase);
+  const auto on_perturbation = [&] {
+    HostJob perturbation{*job.perturbation, job.environment, Json::object(), 0, job.scratch};
+    perturbation.perturb = job.perturb;
+    return check_perturbation(perturbation, phase);
+  };
+  const CheckReport report = job.perturbation ? on_perturbation()
+                             : job.method     ? on_method()
+                                              : check_engine(job.engine, job.environment, phase);
   write_file(job.report, canonical(to_json(report)) + '\n');
 }
 

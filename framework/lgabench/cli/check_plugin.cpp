@@ -11,6 +11,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -48,6 +49,11 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
       report.problem("id", fmt::format("{} is also the id of {}", plugin.id, other.file.string()),
                      "take another: of two with one id the later is refused");
 
+  const std::vector<std::string> own = perturbation_ids({});
+  if (plugin.kind == "perturbation" && std::find(own.begin(), own.end(), plugin.id) != own.end())
+    report.problem("id", fmt::format("{} is an axis of lgabench's own", plugin.id),
+                   "take another: it would be refused");
+
   const Scratch scratch("check");
   const PoolOptions pool{1, a.timeout_s, 0};
   const PluginInfo& engine = plugin.kind == "engine" ? plugin : usual_engine(catalogue);
@@ -58,6 +64,7 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     CheckJob job;
     job.engine = engine;
     if (plugin.kind == "method") job.method = plugin;
+    if (plugin.kind == "perturbation") job.perturbation = plugin;
     job.options = options;
     job.scratch = scratch.path / fmt::format("method{}", i);
     job.perturb = i == 0 ? 0 : 165;
@@ -126,10 +133,11 @@ int check_plugin(const CheckPluginArguments& a) {
 void add_check_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<CheckPluginArguments>();
   CLI::App* verb = app.add_subcommand("check-plugin", "Check a plugin for mistakes, and say how to fix them");
-  verb->add_option("file", a->file, "The plugin's library, FILE.so, or a method in Python, FILE.py:CLASS")
+  verb->add_option("file", a->file,
+                   "The plugin's library, FILE.so, or a method or perturbation in Python, FILE.py:CLASS")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--python", a->python, "The interpreter for a method in Python")->capture_default_str();
+  verb->add_option("--python", a->python, "The interpreter for a plugin in Python")->capture_default_str();
   verb->add_option("--set", a->settings, "An option of the plugin; can be repeated")->allow_extra_args(false);
   verb->add_option("--environment", a->environment, "The environment to check it in")
       ->check(one_of("environment", environment_ids()));
@@ -141,7 +149,8 @@ void add_check_plugin(CLI::App& app, int& exit) {
           {{"--python", "PROGRAM"}, {"--set", "OPTION=VALUE"}, {"--environment", "ID"}, {"--timeout", "SECONDS"}});
   verb->footer(
       "Two fresh processes use the plugin as cells do, with the same seed. Exit 1 if there is a problem.\nWithout "
-      "--environment, an engine is checked in every environment, and a method in the first that has a scenario with a "
+      "--environment, an engine or a perturbation is checked in every environment, and a method in the first that has "
+      "a scenario with a "
       "command that is tested but never demonstrated.\nExample: lgabench check-plugin build/my_method.so");
   verb->callback([a, &exit] { exit = check_plugin(*a); });
 }

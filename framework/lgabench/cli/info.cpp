@@ -9,13 +9,22 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::cli {
 namespace {
+
+// What it declares.
+void print(const PerturbationAxis& axis) {
+  for (std::size_t i = 0; i < axis.levels.size(); ++i) to_stdout("  level {:<4}  {}\n", i + 1, axis.levels[i]);
+  to_stdout("  changes     {}\n", fmt::join(part_words(axis.changes), ", "));
+  if (!axis.may_change.empty()) to_stdout("  sometimes   {}\n", fmt::join(part_words(axis.may_change), ", "));
+}
 
 void print(const PluginInfo& plugin) {
   to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
@@ -25,6 +34,7 @@ void print(const PluginInfo& plugin) {
     to_stdout("  asks        {}\n", plugin.asks == "truth"    ? "for the truth: a diagnosis"
                                     : plugin.asks == "accept" ? "people to accept objects that they are shown"
                                                               : "people to " + plugin.asks);
+  if (plugin.kind == "perturbation") print(read_axis(plugin.id, JsonReader(plugin.axis, plugin.file.string())));
   if (plugin.options.empty()) return;
   to_stdout("options, set with --set {}.NAME=VALUE\n", plugin.id);
   for (const auto& [name, option] : plugin.options.items()) {
@@ -130,17 +140,34 @@ void print_reference_row(const Json& row) {
       row.at("id").get<std::string>(), row.at("summary").get<std::string>());
 }
 
+void print_own(const PerturbationAxis& axis) {
+  to_stdout("{}, a perturbation axis\n", axis.id);
+  print(axis);
+}
+
+Json to_json(const PerturbationAxis& axis) {
+  Json json = axis_json(axis);
+  json.erase("version");
+  json.update({{"kind", "perturbation"}, {"id", axis.id}});
+  return json;
+}
+
 bool known(const std::vector<std::string>& ids, const std::string& id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-void info(const std::string& name, bool json, const std::vector<fs::path>& directories) {
-  const Catalogue catalogue = scan_plugins(plugin_directories(directories));
+void info(const std::string& name, bool json, const std::vector<fs::path>& directories, const std::string& python) {
+  const Catalogue catalogue = plugins_at(directories, python);
   Json found = Json::array();  // an environment and a suite may have one name
   for (const PluginInfo& plugin : catalogue.plugins)
     if (plugin.id == name) {
       if (!json) print(plugin);
       found.push_back(to_json(plugin));
+    }
+  for (const PerturbationAxis& axis : perturbation_axes())
+    if (axis.id == name) {
+      if (!json) print_own(axis);
+      found.push_back(to_json(axis));
     }
   if (known(scenario_ids(), name)) {
     const Scenario scenario = load_scenario(name);
@@ -171,33 +198,37 @@ void info(const std::string& name, bool json, const std::vector<fs::path>& direc
   for (const PluginInfo& plugin : catalogue.plugins) known.push_back(plugin.id);
   for (const std::string& environment : environment_ids()) known.push_back(environment);
   for (const Json& row : reference_rows()) known.push_back(row.at("id"));
+  for (const PerturbationAxis& axis : perturbation_axes()) known.push_back(axis.id);
   std::error_code none_to_list;
   for (const std::string& suite : json_names(data_directory() / "suites", none_to_list)) known.push_back(suite);
-  throw InputError(
-      fmt::format("no method, engine, suite, scenario or environment \"{}\"{}; lgabench list shows them, those of "
-                  "other plugins with "
-                  "--plugin-path DIR",
-                  name, suggestion(name, known)));
+  throw InputError(fmt::format(
+      "no method, engine, perturbation, suite, scenario or environment \"{}\"{}; lgabench list shows them, those of "
+      "other plugins with "
+      "--plugin-path DIR",
+      name, suggestion(name, known)));
 }
 
 }  // namespace
 
 void add_info(CLI::App& app, int& exit) {
   struct InfoArguments {
-    std::string name;
+    std::string name, python = "python3";
     bool json = false;
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* verb =
-      app.add_subcommand("info", "Show everything known about a method, engine, suite, scenario or environment");
+  CLI::App* verb = app.add_subcommand(
+      "info", "Show everything known about a method, engine, perturbation, suite, scenario or environment");
   verb->footer("Example: lgabench info lga");
   verb->add_option("name", arguments->name, "A name that `lgabench list` prints")->required()->type_name("NAME");
   verb->add_flag("--json", arguments->json, "Print one JSON object, or an array where several things share the name");
-  add_plugin_path(*verb, arguments->directories);
+  add_plugin_path(*verb, arguments->directories, any_plugin);
+  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
+      ->type_name("PROGRAM")
+      ->capture_default_str();
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
-    info(arguments->name, arguments->json, arguments->directories);
+    info(arguments->name, arguments->json, arguments->directories, arguments->python);
     exit = ok;
   });
 }

@@ -10,17 +10,20 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/harness/answers.hpp>
 #include <lgabench/harness/suite.hpp>
+#include <lgabench/host/python_method.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/record/answer_source.hpp>
 
 namespace lgabench::cli {
 namespace {
 
-constexpr const char* sections[] = {"methods", "reference rows", "engines", "environments", "suites", "scenarios"};
+constexpr const char* sections[] = {"methods",      "reference rows", "engines",  "perturbations",
+                                    "environments", "suites",         "scenarios"};
 
 // Shipped suites with what each says it is for, sorted by id.
 Json suites() {
@@ -33,6 +36,14 @@ Json suites() {
     const JsonReader reader(suite, file.string());
     all.push_back({{"id", id}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
   }
+  return all;
+}
+
+// lgabench's own axes.
+Json perturbations() {
+  Json all = Json::array();
+  for (const PerturbationAxis& axis : perturbation_axes())
+    all.push_back({{"id", axis.id}, {"summary", fmt::format("{}", fmt::join(axis.levels, "; "))}});
   return all;
 }
 
@@ -56,10 +67,10 @@ Json scenarios() {
 }
 
 Json listing(const Catalogue& catalogue) {
-  Json all{{"methods", Json::array()}, {"reference rows", reference_rows()},
-           {"engines", Json::array()}, {"environments", environments()},
-           {"suites", suites()},       {"scenarios", scenarios()},
-           {"refused", Json::array()}};
+  Json all{{"methods", Json::array()},       {"reference rows", reference_rows()},
+           {"engines", Json::array()},       {"perturbations", perturbations()},
+           {"environments", environments()}, {"suites", suites()},
+           {"scenarios", scenarios()},       {"refused", Json::array()}};
   for (const PluginInfo& plugin : catalogue.plugins)
     all[plugin.kind + "s"].push_back(
         {{"id", plugin.id}, {"version", plugin.version}, {"summary", plugin.summary}, {"file", plugin.file.string()}});
@@ -82,8 +93,8 @@ void print_list(const Json& all) {
     to_stderr("refused: {}: {}\n", row["file"].get<std::string>(), row["reason"].get<std::string>());
 }
 
-constexpr std::array kinds{"methods", "rows",    "engines", "environments", "suites", "scenarios",
-                           "layouts", "presets", "sources", "axes",         "kinds"};
+constexpr std::array kinds{"methods",   "rows",    "engines", "perturbations", "environments", "suites",
+                           "scenarios", "layouts", "presets", "sources",       "axes",         "kinds"};
 
 std::vector<std::string> layouts_of_all(const Suite& suite) {
   std::vector<std::string> common = layouts_of(load_scenario(suite.design.scenarios.front()));
@@ -158,12 +169,13 @@ Json reference_rows() {
 void add_list(CLI::App& app, int& exit) {
   struct ListArguments {
     bool json = false;
-    std::string kind, of;
+    std::string kind, of, python = "python3";
     std::vector<fs::path> directories;
   };
   const auto arguments = std::make_shared<ListArguments>();
   CLI::App* verb = app.add_subcommand(
-      "list", "List methods, engines, environments, suites and scenarios, and any plugins that were refused");
+      "list",
+      "List methods, engines, perturbations, environments, suites and scenarios, and any plugins that were refused");
   verb->add_option("KIND", arguments->kind,
                    fmt::format("Print only the names of one kind, one per line: {}", fmt::join(kinds, ", ")))
       ->type_name("KIND")
@@ -173,10 +185,13 @@ void add_list(CLI::App& app, int& exit) {
       ->type_name("SUITE");
   verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
-  add_plugin_path(*verb, arguments->directories);
+  add_plugin_path(*verb, arguments->directories, any_plugin);
+  verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
+      ->type_name("PROGRAM")
+      ->capture_default_str();
   add_scenario_path(*verb);
   verb->callback([arguments, &exit] {
-    const Json all = listing(scan_plugins(plugin_directories(arguments->directories)));
+    const Json all = listing(plugins_at(arguments->directories, arguments->python));
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
     if (!arguments->kind.empty())
       to_stdout("{}\n", fmt::join(words(arguments->kind, arguments->of, all), "\n"));

@@ -17,7 +17,7 @@ namespace lgabench::cli {
 namespace {
 
 struct NewPluginArguments {
-  std::string name, kind = "method";
+  std::string name, kind = "method", language = "c++";
   fs::path directory;
 };
 
@@ -42,6 +42,8 @@ void expect_name(const std::string& name) {
 
 void new_plugin(const NewPluginArguments& a) {
   expect_name(a.name);
+  if (a.language == "python" && a.kind == "engine")
+    throw InputError("new-plugin: --language python: expected a method or a perturbation, an engine is in C++");
   const fs::path directory = a.directory.empty() ? fs::path(a.name) : a.directory;
   if (std::error_code error; fs::exists(directory, error))
     throw InputError(fmt::format("{}: exists already; nothing was written", directory.string()));
@@ -58,9 +60,11 @@ void new_plugin(const NewPluginArguments& a) {
                                                                     {"@PREFIX@", prefix.string()}}));
     to_stdout("{}\n", (directory / to).string());
   };
-  if (a.kind == "python") {
-    write("python.py.in", a.name + ".py");
-    write("python.README.md.in", "README.md");
+  if (a.kind == "perturbation") write("perturbation_suite.json.in", a.name + "_suite.json");
+  if (a.kind == "python" || a.language == "python") {
+    const bool is_axis = a.kind == "perturbation";
+    write(is_axis ? "perturbation.py.in" : "python.py.in", a.name + ".py");
+    write(is_axis ? "python_perturbation.README.md.in" : "python.README.md.in", "README.md");
     return;
   }
   if (a.kind == "engine") {  // a copy of the smallest engine that fulfils the contract
@@ -70,7 +74,7 @@ void new_plugin(const NewPluginArguments& a) {
                                                                 {"KinematicWorld", class_name(a.name)}}));
     to_stdout("{}\n", (directory / (a.name + ".cpp")).string());
   } else {
-    write("method.cpp.in", a.name + ".cpp");
+    write(a.kind + ".cpp.in", a.name + ".cpp");
   }
   write(a.kind + ".README.md.in", "README.md");
   write("CMakeLists." + a.kind + ".txt.in", "CMakeLists.txt");
@@ -83,11 +87,15 @@ void add_new_plugin(CLI::App& app, int& exit) {
   auto a = std::make_shared<NewPluginArguments>();
   CLI::App* verb = app.add_subcommand("new-plugin", "Write a working project for a new plugin, for you to change");
   verb->add_option("name", a->name, "Its id: lower-case letters, digits, underscores")->required()->type_name("NAME");
-  verb->add_option("--kind", a->kind, "method, engine, or python for a method in Python")
-      ->check(one_of("kind", {"method", "engine", "python"}))
+  verb->add_option("--kind", a->kind, "method, engine or perturbation; python: a method in Python")
+      ->check(one_of("kind", {"method", "engine", "perturbation", "python"}))
+      ->capture_default_str();
+  verb->add_option("--language", a->language, "c++, or python for a method or a perturbation")
+      ->check(one_of("language", {"c++", "python"}))
       ->capture_default_str();
   verb->add_option("--directory", a->directory, "Where to write it (default: ./NAME); it must not exist yet");
-  arrange(*verb, "", {{"--kind", "method|engine|python"}, {"--directory", "DIR"}});
+  arrange(*verb, "",
+          {{"--kind", "method|engine|perturbation|python"}, {"--language", "c++|python"}, {"--directory", "DIR"}});
   verb->footer("Example: lgabench new-plugin my_method && cd my_method && cmake --workflow --preset release");
   verb->callback([a, &exit] {
     new_plugin(*a);

@@ -14,6 +14,7 @@
 #include <lgabench/cli/verbs.hpp>
 #include <lgabench/core/base64.hpp>
 #include <lgabench/core/environments.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/job/job.hpp>
 #include <lgabench/report/pictures.hpp>
 
@@ -62,6 +63,12 @@ std::string targets(const Scene& scene, const Observation& seen) {
   });
 }
 
+// Its axis perceives in cells of a run alone: such an arm is drawn as its control.
+bool is_of_plugin(const Scenario& scenario, const Arm& arm) {
+  const auto axes = arm.perturbation ? axes_of(scenario, *arm.perturbation) : std::vector<const PerturbationAxis*>();
+  return std::any_of(axes.begin(), axes.end(), [](const PerturbationAxis* axis) { return axis->of_plugin; });
+}
+
 class Pictures {
  public:
   // {"picture": PNG, "masks": [PNG, ...], "ends": [PNG, ...], "perturbed": [PNG, PNG], "targets": path,
@@ -75,8 +82,10 @@ class Pictures {
     const Scene scene = PlayedScenes::scene(played, request.arm, request.index, request.scene);
     const EnvironmentType& type = find_environment(played.scenario.environment);
     const Observation seen = type.draw(scene);
-    const Perception perception =
-        perception_of(played.scenario, played.scenario.arm(request.arm), played.cell.scenes_of_seed());
+    const Arm& arm = played.scenario.arm(request.arm);
+    const Perception perception = is_of_plugin(played.scenario, arm)
+                                      ? nullptr
+                                      : perception_of(played.scenario, arm, played.cell.scenes_of_seed());
     const View view = view_of(played.scenario, scene, played.cell.scenes_of_seed());
     Observation perceived = view == View() ? seen : type.draw(scene, view);
     if (perception) perceived = perception(perceived, scene);

@@ -185,7 +185,7 @@ fs::path run_to_resume(const RunPlan& plan, const std::string& suffix) {
 PlannedRun plan_run(RunArguments a) {
   PlannedRun planned;
   Catalogue& catalogue = planned.catalogue;
-  catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  catalogue = plugins_at(a.plugin_path, a.python);
   for (std::string& word : a.methods) word = with_python_method(word, a.python, catalogue);
   const Suite suite = load_suite(a.suite);
   const Design design = design_of(a, suite);
@@ -271,9 +271,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--memory", a.memory_gib,
                   "Memory limit of a cell, in GiB (default: its share of the machine's memory, at least 4)")
       ->check(within(.1, 1e6));
-  verb.add_option("--python", a.python, "The interpreter for methods in Python")->capture_default_str();
+  verb.add_option("--python", a.python, "The interpreter for plugins in Python")->capture_default_str();
   verb.add_option("--shard", a.shard, "Compute only part I of N of the cells; lgabench merge combines the parts");
-  add_plugin_path(verb, a.plugin_path);
+  add_plugin_path(verb, a.plugin_path, any_plugin);
   add_scenario_path(verb);
   verb.add_option("--out", a.out, "Run directory (default: runs/SUITE-PRESET-HASH, with -IofN appended for a shard)");
   verb.add_option("--cache", a.cache,

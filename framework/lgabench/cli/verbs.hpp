@@ -84,9 +84,13 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
       "", "");
 }
 
+/// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
+inline constexpr const char* any_plugin = "a directory, a .so file, or FILE.py:CLASS";
+
 /// --plugin-path, as every verb has it.
-inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths) {
-  verb.add_option("--plugin-path", paths, "Also look for plugins here: a directory or a .so file; can be repeated")
+inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths,
+                            const std::string& takes = "a directory or a .so file") {
+  verb.add_option("--plugin-path", paths, fmt::format("Also look for plugins here: {}; can be repeated", takes))
       ->type_name("PATH")
       ->allow_extra_args(false);
 }

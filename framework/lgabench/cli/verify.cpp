@@ -208,7 +208,7 @@ int verify(const VerifyArguments& a) {
     RunPlan plan = plan_again(a.run, record, std::move(present), a.jobs, a.timeout_s);
     plan.command = "lgabench verify";
     plan.attributes_others = false;
-    Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+    Catalogue catalogue = plugins_at(a.plugin_path, a.python);
     for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
     const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
     if (!recomputed) return interrupted;
@@ -250,8 +250,8 @@ void add_verify(CLI::App& app, int& exit) {
       ->capture_default_str();
   verb->add_option("--methods", a->methods, "Methods in Python, as FILE.py:Class; separate several with commas")
       ->delimiter(',');
-  verb->add_option("--python", a->python, "The interpreter for methods in Python")->capture_default_str();
-  add_plugin_path(*verb, a->plugin_path);
+  verb->add_option("--python", a->python, "The interpreter for plugins in Python")->capture_default_str();
+  add_plugin_path(*verb, a->plugin_path, any_plugin);
   verb->add_flag("--json", a->json, "Print JSON instead of lines");
   arrange(*verb, "", {{"RUN", "RUN"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
   arrange(*verb, "Which cells", {{"--sample", "N"}, {"--seed", "N"}, {"--all", ""}});

@@ -31,6 +31,31 @@ std::vector<BodyVariants> bodies_of_arms(const Scenario& scenario) {
   return all;
 }
 
+PluginAxes& added_axes() {
+  static PluginAxes axes;
+  return axes;
+}
+
+const PerturbationAxis* find_axis(const PluginAxes& axes, const std::string& id) {
+  const auto found = std::find_if(axes.begin(), axes.end(), [&id](const auto& axis) { return axis->id == id; });
+  return found == axes.end() ? nullptr : found->get();
+}
+
+EpisodePart perceived_part(const JsonReader& name) {
+  for (const EpisodePart part : {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances})
+    if (name.string() == part_names.at(static_cast<std::size_t>(part))) return part;
+  name.fail("rgb, ids or instances, the parts of what is perceived");
+}
+
+std::vector<EpisodePart> perceived_parts(const JsonReader& list) {
+  std::vector<EpisodePart> some;
+  for (const JsonReader& element : list.elements()) {
+    some.push_back(perceived_part(element));
+    if (std::count(some.begin(), some.end(), some.back()) > 1) element.fail("each part once");
+  }
+  return some;
+}
+
 }  // namespace
 
 bool PerturbationAxis::touches(EpisodePart part) const {
@@ -58,18 +83,72 @@ const std::vector<PerturbationAxis>& perturbation_axes() {
   return *axes;
 }
 
-std::vector<std::string> perturbation_ids() {
+const PluginAxes& plugin_axes() { return added_axes(); }
+
+void add_plugin_axis(PerturbationAxis axis) {
+  const std::vector<std::string> taken = perturbation_ids();
+  if (std::find(taken.begin(), taken.end(), axis.id) != taken.end())
+    throw InputError(fmt::format("perturbation \"{}\": an axis has that id already", axis.id));
+  added_axes().push_back(std::make_shared<PerturbationAxis>(std::move(axis)));
+}
+
+std::vector<std::string> part_words(const std::vector<EpisodePart>& some) {
+  std::vector<std::string> names;
+  for (const EpisodePart part : some) names.emplace_back(part_names.at(static_cast<std::size_t>(part)));
+  return names;
+}
+
+Json axis_json(const PerturbationAxis& axis) {
+  Json json{{"version", axis.version}, {"levels", axis.levels}, {"changes", part_words(axis.changes)}};
+  if (!axis.may_change.empty()) json["may_change"] = part_words(axis.may_change);
+  if (axis.named) json["named"] = true;
+  return json;
+}
+
+PerturbationAxis read_axis(const std::string& id, const JsonReader& reader) {
+  reader.only({"version", "levels", "changes", "may_change", "named"});
+  PerturbationAxis axis{id, reader.at("levels").strings(), perceived_parts(reader.at("changes"))};
+  if (axis.levels.empty()) reader.at("levels").fail("what each level is, from the first");
+  if (axis.changes.empty()) reader.at("changes").fail("at least one part");
+  if (reader.has("may_change")) axis.may_change = perceived_parts(reader.at("may_change"));
+  if (reader.has("named")) axis.named = reader.at("named").boolean();
+  axis.of_plugin = true;
+  if (reader.has("version")) axis.version = reader.at("version").string();
+  axis.perceive = [id](Observation, const Scenario&, int, RandomStream) -> Observation {
+    throw InputError(fmt::format("perturbation {}: a plugin's, whose process only cells of a run have", id));
+  };
+  return axis;
+}
+
+PluginAxes read_plugin_axes(const JsonReader& scenario) {
+  PluginAxes all;
+  if (scenario.has("axes")) {
+    const JsonReader axes = scenario.at("axes");
+    if (!axes.json().is_object()) axes.fail("an object");
+    for (const auto& [id, ignored] : axes.json().items()) {
+      axes.at(id).at("version").string();
+      all.push_back(std::make_shared<PerturbationAxis>(read_axis(id, axes.at(id))));
+    }
+  }
+  for (const auto& axis : plugin_axes())
+    if (!find_axis(all, axis->id)) all.push_back(std::make_shared<PerturbationAxis>(*axis));
+  return all;
+}
+
+std::vector<std::string> perturbation_ids(const PluginAxes& more) {
   std::vector<std::string> ids;
   for (const PerturbationAxis& axis : perturbation_axes()) ids.push_back(axis.id);
+  for (const auto& axis : more) ids.push_back(axis->id);
   ids.emplace_back(all_axes);
   return ids;
 }
 
-std::vector<const PerturbationAxis*> axes_named(const std::string& id) {
+std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more) {
   std::vector<const PerturbationAxis*> axes;
   for (const PerturbationAxis& axis : perturbation_axes())
     if (id == axis.id || id == all_axes) axes.push_back(&axis);
-  if (axes.empty()) throw InputError(none_named("axis", id, perturbation_ids()));
+  if (const PerturbationAxis* added = find_axis(more, id); axes.empty() && added) axes.push_back(added);
+  if (axes.empty()) throw InputError(none_named("axis", id, perturbation_ids(more)));
   return axes;
 }
 
@@ -79,12 +158,12 @@ bool operator==(const BodyVariant& a, const BodyVariant& b) {
 
 std::string lacking(const Scenario& scenario, const Perturbation& perturbation) {
   if (perturbation.axis == all_axes) return "";
-  const PerturbationAxis& axis = *axes_named(perturbation.axis).front();
+  const PerturbationAxis& axis = *axes_named(perturbation.axis, scenario.axes).front();
   return axis.lacks ? axis.lacks(scenario, perturbation.level) : "";
 }
 
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation) {
-  std::vector<const PerturbationAxis*> axes = axes_named(perturbation.axis);
+  std::vector<const PerturbationAxis*> axes = axes_named(perturbation.axis, scenario.axes);
   axes.erase(std::remove_if(axes.begin(), axes.end(),
                             [&](const PerturbationAxis* axis) {
                               return !lacking(scenario, {axis->id, perturbation.level}).empty();
@@ -119,16 +198,16 @@ Scene perturbed(Scene scene, const Scenario& scenario, std::optional<std::uint64
   return scene;
 }
 
-Perturbation read_perturbation(const JsonReader& reader) {
+Perturbation read_perturbation(const JsonReader& reader, const PluginAxes& more) {
   const Json& json = reader.json();
   if (!json.is_object() || json.size() != 1)
     reader.fail(fmt::format("an object with one axis and its level (two at once: {}), one of: {}", all_axes,
-                            fmt::join(perturbation_ids(), ", ")));
+                            fmt::join(perturbation_ids(more), ", ")));
   const std::string id = json.begin().key();
   const JsonReader level = reader.at(id);
   std::vector<const PerturbationAxis*> axes;
   try {
-    axes = axes_named(id);
+    axes = axes_named(id, more);
   } catch (const InputError& e) {
     throw InputError(fmt::format("{}: {}: {}", reader.file(), reader.place(), e.what()));
   }
@@ -141,8 +220,9 @@ Perturbation read_perturbation(const JsonReader& reader) {
   return {id, level.json().get<int>()};
 }
 
-void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views) {
-  for (const PerturbationAxis* axis : axes_named(perturbation.json().begin().key()))
+void expect_shown(const JsonReader& perturbation, const std::vector<const PerturbationAxis*>& axes,
+                  const std::string& environment, bool has_views) {
+  for (const PerturbationAxis* axis : axes)
     if (axis->look && !has_views)
       perturbation.fail(fmt::format("an axis that leaves the view as it is ({} does not): environment {} has one alone",
                                     axis->id, environment));

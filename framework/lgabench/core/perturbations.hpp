@@ -55,6 +55,8 @@ struct PerturbationAxis {
   /// Why scenes of the scenario cannot have it at that level, in a few words; "" where they can. Null: all can.
   std::function<std::string(const Scenario&, int level)> lacks = nullptr;
   bool named = false;  // its levels are kinds without an order: no curve, no area
+  bool of_plugin = false;
+  std::string version = "";  // the plugin's
 
   int most() const { return static_cast<int>(levels.size()); }
   /// Whether the part may differ from the control's. The policy's input may wherever a part of it may.
@@ -70,10 +72,24 @@ inline constexpr const char* perturbation_library = "liblgabench_perturbations.s
 /// All that are installed, in the order in which `all` applies them: that library beside
 /// lgabench's own, loaded when it is first asked for. @throws InputError where it is not there.
 const std::vector<PerturbationAxis>& perturbation_axes();
-/// Their ids and, last, `all`.
-std::vector<std::string> perturbation_ids();
-/// The axis of that id, or every axis for `all`. @throws InputError that lists the known ones.
-std::vector<const PerturbationAxis*> axes_named(const std::string& id);
+
+/// Those that were added, in that order.
+const PluginAxes& plugin_axes();
+/// Adds one for what is read from now on; `all` does without it. @throws InputError for an id that is taken.
+void add_plugin_axis(PerturbationAxis axis);
+/// The parts' names.
+std::vector<std::string> part_words(const std::vector<EpisodePart>& some);
+/// {"version", "levels", "changes", "may_change", "named"}, the last two where they say something: what a plugin's axis
+/// declares.
+Json axis_json(const PerturbationAxis& axis);
+/// Of that, or of a plugin's declaration, which has no version. Until it is set, what perceives throws InputError.
+/// @throws InputError with file and place, also for a part that is not perceived.
+PerturbationAxis read_axis(const std::string& id, const JsonReader& reader);
+
+/// Ids of all axes, those of plugins behind lgabench's own, and last `all`.
+std::vector<std::string> perturbation_ids(const PluginAxes& more = plugin_axes());
+/// The axis of that id, or every one of lgabench's own for `all`. @throws InputError that lists the known ones.
+std::vector<const PerturbationAxis*> axes_named(const std::string& id, const PluginAxes& more = plugin_axes());
 
 /// Those by which the arm's scenes differ: of `all`, the ones that the scenario can have.
 std::vector<const PerturbationAxis*> axes_of(const Scenario& scenario, const Perturbation& perturbation);
@@ -86,9 +102,14 @@ int more_bodies(const Scenario& scenario);
 
 /// {"AXIS": LEVEL}, an axis or `all`. @throws InputError with file and place for an unknown axis, a level that it
 /// lacks, two axes.
-Perturbation read_perturbation(const JsonReader& reader);
-/// @throws InputError with file and place where an axis changes views, and the environment has its usual one alone.
-void expect_shown(const JsonReader& perturbation, const std::string& environment, bool has_views);
+Perturbation read_perturbation(const JsonReader& reader, const PluginAxes& more = plugin_axes());
+/// What a scenario's "axes" declare, {"AXIS": axis_json()}, where it has them, and behind them those that were added.
+/// @throws InputError likewise.
+PluginAxes read_plugin_axes(const JsonReader& scenario);
+/// @throws InputError with file and place where one of the axes changes views, and the environment has its usual one
+/// alone.
+void expect_shown(const JsonReader& perturbation, const std::vector<const PerturbationAxis*>& axes,
+                  const std::string& environment, bool has_views);
 /// "AXIS_LEVEL": an arm's name.
 std::string arm_of(const Perturbation& perturbation);
 

@@ -80,7 +80,7 @@ double read_probability(const JsonReader& reader) {
 }
 
 // With what the environment's own members are read by.
-Arm read_arm(const JsonReader& reader, std::vector<std::string> members,
+Arm read_arm(const JsonReader& reader, std::vector<std::string> members, const PluginAxes& axes,
              const std::function<std::shared_ptr<const SceneContent>()>& read_content) {
   members.insert(members.end(), {"arm", "unseen", "label_noise", "missed_segment", "perturbation"});
   reader.only(members);
@@ -96,7 +96,7 @@ Arm read_arm(const JsonReader& reader, std::vector<std::string> members,
   if (reader.has("unseen")) arm.unseen = reader.at("unseen").boolean();
   if (reader.has("label_noise")) arm.label_noise = read_probability(reader.at("label_noise"));
   if (reader.has("missed_segment")) arm.missed_segment = read_probability(reader.at("missed_segment"));
-  if (reader.has("perturbation")) arm.perturbation = read_perturbation(reader.at("perturbation"));
+  if (reader.has("perturbation")) arm.perturbation = read_perturbation(reader.at("perturbation"), axes);
   return arm;
 }
 
@@ -115,6 +115,18 @@ void read_change(const JsonReader& arm, const Scenario& scenario, Arm& read) {
         fmt::format("{}: {}: {}: {}", arm.file(), arm.at("perturbation").place(), read.perturbation->axis, lack));
   for (const PerturbationAxis* axis : axes_of(scenario, *read.perturbation))
     if (axis->rewords) read.wording = read.perturbation->level;
+}
+
+// Those of plugins that arms have, and no others: what they declare is part of the scenario.
+void keep_axes_of_arms(Scenario& scenario) {
+  PluginAxes& axes = scenario.axes;
+  const auto is_of_no_arm = [&scenario](const auto& axis) {
+    return std::none_of(scenario.tests.begin(), scenario.tests.end(),
+                        [&axis](const Arm& arm) { return arm.perturbation && arm.perturbation->axis == axis->id; });
+  };
+  axes.erase(std::remove_if(axes.begin(), axes.end(), is_of_no_arm), axes.end());
+  scenario.json.erase("axes");
+  for (const auto& axis : axes) scenario.json["axes"][axis->id] = axis_json(*axis);
 }
 
 void read_train(const JsonReader& file, std::vector<std::string> members, const EnvironmentType& environment,
@@ -175,7 +187,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   const std::vector<std::string> own = environment.scenario_members(task), of_scenes = environment.scene_members(task);
   std::vector<std::string> members = own;
   members.insert(members.end(), {"id", "environment", "task", "feature_space", "commands", "answers_of", "answers",
-                                 "train", "tests", "truth", "printed", "note"});
+                                 "train", "tests", "axes", "truth", "printed", "note"});
   reader.only(members);
   if (reader.has("printed")) {
     std::vector<std::string> replaced = own;
@@ -188,13 +200,16 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   s.answers_of = reader.has("answers_of") ? reader.at("answers_of").string() : s.id;
   if (reader.has("answers")) read_answers(reader.at("answers"), s);
   read_train(reader, of_scenes, environment, s);
+  s.axes = read_plugin_axes(reader);
   for (const JsonReader& arm : reader.at("tests").elements()) {
-    s.tests.push_back(read_arm(arm, of_scenes, [&] { return environment.read_content(s, reader, &arm, false); }));
+    s.tests.push_back(
+        read_arm(arm, of_scenes, s.axes, [&] { return environment.read_content(s, reader, &arm, false); }));
     const auto same = [&](const Arm& other) { return other.id == s.tests.back().id; };
     if (std::count_if(s.tests.begin(), s.tests.end(), same) > 1) arm.at("arm").fail("each arm once");
     if (s.tests.back().perturbation) {
       expect_control(reader, arm);
-      expect_shown(arm.at("perturbation"), s.environment, environment.has_views());
+      expect_shown(arm.at("perturbation"), axes_named(s.tests.back().perturbation->axis, s.axes), s.environment,
+                   environment.has_views());
       read_change(arm, s, s.tests.back());
     }
     if (s.commands_of(s.tests.back().id).empty()) arm.fail("a scenario with commands for this arm");
@@ -203,6 +218,7 @@ Scenario read_scenario(const Json& json, const std::string& file) {
   if (s.tests.empty()) reader.at("tests").fail("at least one arm");
   if (s.commands_of("train").empty()) reader.at("commands").fail("at least one seen command");
   s.json = json;
+  keep_axes_of_arms(s);
   return s;
 }
 

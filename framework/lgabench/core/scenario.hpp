@@ -45,6 +45,10 @@ struct Arm {
 /// those that the paper's appendix prints.
 enum class Truth { released, printed };
 
+struct PerturbationAxis;
+/// Axes that plugins add. What perceives through one is set by whoever runs its plugin.
+using PluginAxes = std::vector<std::shared_ptr<PerturbationAxis>>;
+
 /// A task with its commands, what is shown and what is tested. A value; read from scenarios/ID.json.
 struct Scenario {
   std::string id, environment;
@@ -59,7 +63,8 @@ struct Scenario {
   std::shared_ptr<const SceneContent> train;  // never null
   bool as_method_asks = true;  // training targets and second sets come from the Selection, if the method wants that
   std::vector<Arm> tests;
-  Json json;  // as read: goes into a cell's configuration whole
+  PluginAxes axes;  // of plugins, that arms have
+  Json json;        // as read, with what the plugins' axes declare: goes into a cell's configuration whole
 
   /// Command number `i` as a method is given it. @pre 0 <= i < commands.size()
   Command command(int i) const { return {commands[static_cast<std::size_t>(i)].utterance, task, second}; }

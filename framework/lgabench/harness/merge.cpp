@@ -117,6 +117,9 @@ Json build_of(const Part& part, const Cell& cell) {
   };
   plugin("engine", cell.engine);
   if (!cell.method.is_reference()) plugin("method", cell.method.id);
+  for (const std::string& id : cell.plugin_axes())
+    if (const auto found = part.programs().find("perturbation " + id); found != part.programs().end())
+      build[axis_in_build(id)] = *found;
   return build;
 }
 

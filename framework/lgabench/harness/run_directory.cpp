@@ -61,6 +61,16 @@ Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes)
   return build;
 }
 
+std::string axis_in_build(const std::string& id) { return "perturbation " + id; }
+
+void add_axis(Json& build, const PluginInfo& axis) {
+  build[axis_in_build(axis.id)] = axis.sha256;
+  if (axis.python.is_null()) return;
+  Json versions = build.contains("python") ? parse_json(build["python"].get<std::string>(), "build") : Json::object();
+  versions[axis_in_build(axis.id)] = axis.python.at("versions");
+  build["python"] = canonical(versions);
+}
+
 bool is_unconfined(const fs::path& run) { return is_run(run) && read_run_record(run).confinement == unconfined_run; }
 
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request) {

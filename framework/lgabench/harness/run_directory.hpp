@@ -18,6 +18,11 @@ namespace lgabench {
 /// no "method" for a reference row); the library of perturbations where the cell needs its `axes`.
 Json build_hashes(const PluginInfo& engine, const PluginInfo* method, bool axes);
 
+/// What the file of a plugin's axis is called there: "perturbation fog".
+std::string axis_in_build(const std::string& id);
+/// Adds it and, of one in Python, what it was described with.
+void add_axis(Json& build, const PluginInfo& axis);
+
 /// The run of those settings, started last, in a directory beside `wanted` whose name differs from its in the hash
 /// before `suffix` alone: another build's. "" if there is none.
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);

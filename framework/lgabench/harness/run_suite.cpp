@@ -33,9 +33,16 @@ const PluginInfo* acting_plugin(const Cell& cell, const Catalogue& catalogue) {
   return cell.method.acts ? &catalogue.find("method", cell.method.acts->id) : nullptr;
 }
 
+std::vector<PluginInfo> axis_plugins(const Cell& cell, const Catalogue& catalogue) {
+  std::vector<PluginInfo> plugins;
+  for (const std::string& id : cell.plugin_axes()) plugins.push_back(catalogue.find("perturbation", id));
+  return plugins;
+}
+
 Json build_of(const Cell& cell, const Catalogue& catalogue) {
   Json build = build_hashes(catalogue.find("engine", cell.engine), method_plugin(cell, catalogue), cell.needs_axes());
   if (const PluginInfo* acts = acting_plugin(cell, catalogue)) build["acts"] = acts->sha256;
+  for (const PluginInfo& axis : axis_plugins(cell, catalogue)) add_axis(build, axis);
   return build;
 }
 
@@ -116,6 +123,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
   for (const Cell& cell : plan.cells) {
     run.cells.push_back(key(cell));
     name(catalogue.find("engine", cell.engine));
+    for (const PluginInfo& axis : axis_plugins(cell, catalogue)) name(axis);
     if (const PluginInfo* method = method_plugin(cell, catalogue)) {
       name(*method);
       if (const PluginInfo* acts = acting_plugin(cell, catalogue)) name(*acts);
@@ -126,6 +134,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
       }
     }
     run.build.update(build_of(cell, catalogue));
+    for (const std::string& id : cell.plugin_axes()) run.build.erase(axis_in_build(id));
   }
   for (const char* plugin : {"engine", "method", "python", "acts"}) run.build.erase(plugin);
   run.suite = plan.request.at("suite");
@@ -308,6 +317,7 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
               plan.confined, worker_limits(plan.pool),
               plan.live};
   job.keeps_policy = plan.keeps_policies;
+  job.axes = axis_plugins(cell, catalogue);
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {
     job.method = *method;
     const PluginInfo* acts = acting_plugin(cell, catalogue);  // which alone is told the truth

@@ -69,8 +69,19 @@ std::vector<std::string> environment_of(const HostCommand& command) {
   return all;
 }
 
-std::vector<pid_t> descendants() {
+// Processes of plugins that this worker has. One thread.
+std::vector<pid_t>& hosts() {
+  static std::vector<pid_t> all;
+  return all;
+}
+
+// Of the host, and what others left behind: not the other hosts, nor what is below them.
+std::vector<pid_t> descendants(pid_t host) {
+  const auto is_others = [host](pid_t pid) {
+    return pid != host && std::find(hosts().begin(), hosts().end(), pid) != hosts().end();
+  };
   std::vector<pid_t> all = children_of(::getpid());
+  all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const pid_t pid : children_of(all[i])) all.push_back(pid);
   return all;
@@ -138,6 +149,7 @@ HostProcess::HostProcess(const HostCommand& command)
     return !command.confinement || command.confinement->apply(theirs.fd);
   };
   pid_ = start_process(start);
+  hosts().push_back(pid_);
   theirs.close();
   if (command.confinement && has_seccomp()) refused_ = RefusedCalls(socket_.fd);
 }
@@ -166,7 +178,7 @@ void HostProcess::watch_use() {
   const Clock::time_point start = Clock::now();
   if (reaped_ || start < look_again_) return;
   Use use;
-  for (const pid_t pid : descendants()) {
+  for (const pid_t pid : descendants(pid_)) {
     use.memory += memory_of(pid);
     add_descriptors(pid, use);
   }
@@ -213,7 +225,8 @@ void HostProcess::stop() {
   }
   ::waitpid(pid_, nullptr, 0);
   reaped_ = true;
-  for (std::vector<pid_t> left = descendants(); !left.empty(); left = descendants())
+  hosts().erase(std::remove(hosts().begin(), hosts().end(), pid_), hosts().end());
+  for (std::vector<pid_t> left = descendants(pid_); !left.empty(); left = descendants(pid_))
     for (const pid_t pid : left) {
       ::kill(pid, SIGKILL);
       ::waitpid(pid, nullptr, 0);

@@ -3,163 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <functional>
 #include <limits>
-#include <new>
+#include <utility>
 
-#include <lgabench/core/environments.hpp>
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/host/answer_ledger.hpp>
-#include <lgabench/host/host_process.hpp>
-#include <lgabench/host/messages.hpp>
-#include <lgabench/host/reach.hpp>
-#include <lgabench/plugin/guarded.hpp>
+#include <lgabench/host/host_session.hpp>
 
 namespace lgabench {
-namespace {
-
-HostCommand command_of(const HostJob& job, const Confinement* confinement) {
-  HostCommand command{
-      {(program_directory() / "lgabench-method").string()}, job.scratch, {}, confinement, job.memory_bytes};
-  if (const Json& python = job.method.python; !python.is_null()) {
-    command.words = {python.at("interpreter").get<std::string>(), "-m", "lgabench_method", "--serve"};
-    command.also_set = {"PYTHONPATH=" + python_package().string(), "PYTHONUNBUFFERED=1"};
-    if (const auto base = python.at("user_base").get<std::string>(); !base.empty())  // HOME is another one there
-      command.also_set.push_back("PYTHONUSERBASE=" + base);
-  } else if (job.perturb != 0) {
-    command.words.insert(command.words.end(), {"--perturb", std::to_string(job.perturb)});
-  }
-  if (job.debugger) {
-    command.words.insert(command.words.begin(), job.debugger->begin(), job.debugger->end());
-    command.in_foreground = true;
-    if (const char* terminal = std::getenv("TERM")) command.also_set.push_back(std::string("TERM=") + terminal);
-  }
-  return command;
-}
-
-protocol::Layout layout_of(const HostJob& job) {
-  const EnvironmentType& type = find_environment(job.environment);
-  return {type.picture_size(),
-          job.task.empty() ? type.action_space() : type.action_space_of(find_task(type, job.task))};
-}
-
-Json method_json(const PluginInfo& method) {
-  Json json{{"file", fs::absolute(method.file).string()}, {"sha256", method.sha256}};
-  if (!method.python.is_null())
-    for (const char* member : {"class", "versions"}) json[member] = method.python.at(member);
-  return json;
-}
-
-// What a method's process may read: what it starts with, its own folder, and the data that learners use.
-Reach reach_of(const HostJob& job) {
-  const fs::path data = data_directory();
-  Reach reach = system_reach();
-  reach.network = job.method.asks == "network";
-  reach.reads.push_back(job.method.file.parent_path());
-  reach.writes.push_back(job.scratch);
-  reach.hidden = job.hidden;
-  if (!job.method.python.is_null()) add_python(reach, job.method.python);
-  reach.reads.push_back(encoder_directory());
-  std::error_code none_there;
-  for (const auto& entry : fs::directory_iterator(data, none_there)) {
-    const std::string name = entry.path().filename();
-    const bool readable = name == "spaces" || name == "embeddings" || name == "encoder" || name == "python";
-    std::vector<fs::path>& list = readable ? reach.reads : reach.unread;
-    list.push_back(entry.path());
-    for (const auto& file : fs::directory_iterator(entry.path(), none_there))
-      if (file.is_symlink()) list.push_back(file.path());  // in a build tree, to the sources
-  }
-  return reach;
-}
-
-}  // namespace
-
-// The connection, which the method and its policy share.
-class HostSession {
- public:
-  explicit HostSession(const HostJob& job)
-      : layout_(layout_of(job)),
-        confinement_(job.confined ? std::make_unique<Confinement>(reach_of(job)) : nullptr),
-        process_(command_of(job, confinement_.get())),
-        channel_(process_.take_socket(), [this](short events) { process_.wait(channel_.socket(), events); }),
-        observation_(protocol::observation_bytes(layout_.picture)) {
-    Json hello{{"type", "hello"},
-               {"protocol", protocol_version},
-               {"method", method_json(job.method)},
-               {"options", job.options},
-               {"seed", job.seed},
-               {"limits", {{"header_bytes", most_header_bytes}, {"payload_bytes", most_payload_bytes}}}};
-    hello.update(protocol::to_json(layout_));
-    const Frame answer = call(hello, "hello", {}, &observation_.file());
-    read([&] { return JsonReader(answer.header, "hello").at("protocol").integer(protocol_version, protocol_version); });
-  }
-
-  using Meanwhile = std::function<bool(const Frame& frame, Channel& channel)>;
-
-  /// Sends the request and returns the reply of that type. `meanwhile` takes the frames that come before it; one that
-  /// it does not know breaks the protocol.
-  Frame call(const Json& request, const char* reply, const Meanwhile& meanwhile = {},
-             const Descriptor* file = nullptr) {
-    return guarded_by_protocol([&] {
-      channel_.send(request, {}, file);
-      for (;;) {
-        std::optional<Frame> frame = channel_.receive();
-        if (!frame) process_.explain();
-        if (frame->type() == reply) return std::move(*frame);
-        if (frame->type() == "error") raise(JsonReader(frame->header, "error"));
-        broken_ = "was left in the middle of a call";  // by what the next line may throw
-        if (!meanwhile || !meanwhile(*frame, channel_))
-          throw Malformed(fmt::format("\"{}\", expected \"{}\"", frame->type().substr(0, 40), reply));
-        broken_.clear();
-      }
-    });
-  }
-
-  /// What a reply holds, or MethodGone.
-  template <class Call>
-  auto read(Call&& call) -> decltype(call()) {
-    return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });
-  }
-
-  const protocol::Layout& layout() const { return layout_; }
-  const std::vector<std::string>& refused_calls() const { return process_.refused_calls(); }
-  protocol::SharedMemory& observation() { return observation_; }
-
- private:
-  template <class Call>
-  auto guarded_by_protocol(Call&& call) -> decltype(call()) {
-    if (!broken_.empty()) throw MethodGone(broken_, 0);
-    try {
-      return call();
-    } catch (const MethodGone& e) {
-      broken_ = e.what();
-      throw;
-    } catch (const Malformed& e) {
-      broken_ = fmt::format("sent a malformed frame: {}", e.what());
-      throw MethodGone(broken_, 0);
-    }
-  }
-
-  [[noreturn]] static void raise(const JsonReader& error) {
-    constexpr std::size_t longest = 2000;
-    const auto [kind, reason] = protocol::read_or_malformed(
-        [&] { return std::pair(error.at("kind").string(), error.at("reason").string().substr(0, longest)); });
-    if (kind == "memory") throw std::bad_alloc();
-    if (kind == "plugin") throw PluginError(reason);
-    throw MethodError(reason);
-  }
-
-  const protocol::Layout layout_;
-  std::unique_ptr<Confinement> confinement_;
-  HostProcess process_;
-  Channel channel_;
-  protocol::SharedMemory observation_;
-  std::string broken_;  // why nothing can be asked any more
-};
-
 namespace {
 
 fs::path made(const fs::path& directory) {
@@ -327,9 +179,6 @@ void HostedMethod::drop_method() { session_->call({{"type", "drop"}, {"what", "m
 
 void HostedMethod::drop_policy() { session_->call({{"type", "drop"}, {"what", "policy"}}, "dropped"); }
 
-ProcessState HostedMethod::state() const {
-  const Frame frame = session_->call({{"type", "state"}}, "state");
-  return session_->read([&] { return protocol::read_state(JsonReader(frame.header, "state")); });
-}
+ProcessState HostedMethod::state() const { return session_->state(); }
 
 }  // namespace lgabench

@@ -1,36 +1,16 @@
 // A method whose code runs in a process of its own. The worker asks it over a socket (docs/formats/method-protocol.md),
 // and says of each Selection where it comes from and what it cost: by what was asked.
 #pragma once
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <lgabench/core/method.hpp>
 #include <lgabench/core/plain_directory.hpp>
-#include <lgabench/host/process_state.hpp>
-#include <lgabench/plugin/loader.hpp>
+#include <lgabench/host/host_session.hpp>
 
 namespace lgabench {
-
-/// What a method's process is started with.
-struct HostJob {
-  PluginInfo method;
-  std::string environment;                      // the cell's
-  Json options;                                 // every one
-  std::uint64_t seed;                           // as Services::seed
-  std::filesystem::path scratch;                // an empty directory of its own
-  bool confined = true;                         // see confine.hpp
-  std::vector<std::filesystem::path> hidden{};  // unreadable to it wherever they lie, beside lgabench's own data
-  long long memory_bytes = 0;                   // 0: no limit
-  int perturb = 0;                              // as perturb_heap(), of a plugin's process
-  /// Words before the process's own, an absolute path first or none at all: it runs in the foreground
-  /// (host_process.hpp).
-  std::optional<std::vector<std::string>> debugger{};
-  std::string task{};  // of the environment, whose stations the method is told; "": it is told of none
-};
 
 /// The most that is kept of a policy.
 constexpr std::size_t most_saved_bytes = 64 << 20;
@@ -43,8 +23,6 @@ class MethodInProcesses : public Method {
   /// Destroys policy and method in their process, which ends. @throws MethodGone where that fails.
   virtual void end() = 0;
 };
-
-class HostSession;
 
 /// Options and seed are those of the job, whatever the calls' Services say. What the method throws is thrown here as
 /// MethodError (std::bad_alloc where its memory ran out). Where its process ends, is stopped or breaks the protocol,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstring>
 
 namespace lgabench::protocol {
@@ -252,13 +253,40 @@ Json to_json(const Layout& layout) {
           {"action", to_json(layout.actions)}};
 }
 
-Layout read_layout(const JsonReader& hello) {
+PictureSize read_picture_size(const JsonReader& hello) {
   constexpr int longest = 1 << 14;
   const JsonReader observation = hello.at("observation");
   observation.at("channels").integer(3, 3);
-  return {{static_cast<int>(observation.at("rows").integer(1, longest)),
-           static_cast<int>(observation.at("columns").integer(1, longest))},
-          read_action_space(hello.at("action"))};
+  return {static_cast<int>(observation.at("rows").integer(1, longest)),
+          static_cast<int>(observation.at("columns").integer(1, longest))};
+}
+
+Layout read_layout(const JsonReader& hello) {
+  return {read_picture_size(hello), read_action_space(hello.at("action"))};
+}
+
+Frame ids_frame(const Observation& perceived) {
+  return {{{"type", "ids"}}, {perceived.ids.begin(), perceived.ids.end()}};
+}
+
+Frame perceived_frame(const Observation& perceived) {
+  return {{{"type", "perceived"}, {"instances", instances_json(perceived)}},
+          {perceived.rgb.begin(), perceived.rgb.end()}};
+}
+
+Observation read_perceived(const Frame& ids, const Frame& perceived, PictureSize picture) {
+  const JsonReader reader(perceived.header, "perceived");
+  if (ids.payload.size() != picture.pixels()) reader.fail("\"ids\" before it with a byte for each pixel");
+  if (perceived.payload.size() != 3 * picture.pixels()) reader.fail("a payload of 3 bytes for each pixel");
+  Observation all{
+      picture, {perceived.payload.begin(), perceived.payload.end()}, {ids.payload.begin(), ids.payload.end()}, {}};
+  std::array<int, 256> pixels{};
+  for (const std::uint8_t id : all.ids) ++pixels[id];
+  for (const JsonReader& one : reader.at("instances").elements()) {
+    const auto id = static_cast<std::uint8_t>(one.at("id").integer(1, 255));
+    all.instances.push_back({id, one.at("object_type").string(), one.at("texture").string(), pixels[id]});
+  }
+  return all;
 }
 
 }  // namespace lgabench::protocol

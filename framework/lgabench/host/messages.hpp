@@ -78,6 +78,8 @@ struct Layout {
 };
 Json to_json(const Layout& layout);
 Layout read_layout(const JsonReader& hello);
+/// The first of them alone.
+PictureSize read_picture_size(const JsonReader& hello);
 
 /// A file in memory, mapped. The last of its maps and descriptors frees it.
 class SharedMemory {
@@ -110,6 +112,11 @@ Json instances_json(const Observation& observation);
 /// Into `observation`, whose memory it uses again. `shadows`: whether they are there.
 void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances, bool shadows,
                       Observation& observation);
+
+/// What a perturbation made of an observation: rgb in the payload, and before it a frame "ids" with these.
+Frame ids_frame(const Observation& perceived);
+Frame perceived_frame(const Observation& perceived);
+Observation read_perceived(const Frame& ids, const Frame& perceived, PictureSize picture);
 
 /// All demonstrations as arrays in one sealed file, and the JSON that says where each lies.
 struct DemonstrationFile {

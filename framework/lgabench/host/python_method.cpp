@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 
 #include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
@@ -118,6 +119,17 @@ std::vector<std::string> classes_of(const fs::path& file) {
   return names;
 }
 
+// Once; @throws PluginError for an id that another plugin of the kind has.
+void add(const PluginInfo& plugin, Catalogue& catalogue) {
+  const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == plugin.kind && p.id == plugin.id; };
+  const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
+  if (known == catalogue.plugins.end())
+    catalogue.plugins.push_back(plugin);
+  else if (known->file != plugin.file || known->python != plugin.python)
+    throw PluginError(
+        fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
+}
+
 }  // namespace
 
 bool is_python_method(const std::string& word) {
@@ -137,13 +149,14 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
     const Json json = description_of(interpreter, fs::absolute(written).string());
     const JsonReader reader(json, written);
     plugin.file = reader.at("file").string();
-    plugin.kind = "method";
+    plugin.kind = reader.at("kind").string();
     plugin.id = reader.at("id").string();
     plugin.version = reader.at("version").string();
     plugin.summary = reader.at("summary").string();
     plugin.asks = reader.at("asks").string();
     plugin.sha256 = reader.at("sha256").string();
     plugin.questionnaire = reader.at("questionnaire").boolean();
+    if (plugin.kind == "perturbation") plugin.axis = read_declared_axis(plugin, canonical(reader.at("axis").json()));
     plugin.options = read_options(canonical(reader.at("options").json())).options;
     for (const auto& option : plugin.options.items())  // a CloningMethod's alone
       JsonReader(option.value(), "options", "/" + option.key())
@@ -169,14 +182,21 @@ std::string with_python_method(const std::string& row, const std::string& interp
   if (!is_python_method(row)) return row;
   const std::string written = row_words(row).front();
   const PluginInfo plugin = describe_python(written, interpreter);
-  const auto same_id = [&plugin](const PluginInfo& p) { return p.kind == "method" && p.id == plugin.id; };
-  const auto known = std::find_if(catalogue.plugins.begin(), catalogue.plugins.end(), same_id);
-  if (known == catalogue.plugins.end())
-    catalogue.plugins.push_back(plugin);
-  else if (known->file != plugin.file || known->python != plugin.python)
-    throw PluginError(
-        fmt::format("{}: {} is also the id of {}", plugin.file.string(), plugin.id, known->file.string()));
+  if (plugin.kind != "method")
+    throw PluginError(fmt::format("{}: expected a method, it is a {}", written, plugin.kind));
+  add(plugin, catalogue);
   return plugin.id + row.substr(written.size());
+}
+
+Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& interpreter) {
+  std::vector<fs::path> in_python = paths, others;
+  const auto is_other = [](const fs::path& path) { return path.string().find(".py:") == std::string::npos; };
+  std::copy_if(paths.begin(), paths.end(), std::back_inserter(others), is_other);
+  in_python.erase(std::remove_if(in_python.begin(), in_python.end(), is_other), in_python.end());
+  Catalogue catalogue = scan_plugins(plugin_directories(others));
+  for (const fs::path& path : in_python) add(describe_python(path.string(), interpreter), catalogue);
+  add_axes(catalogue);
+  return catalogue;
 }
 
 }  // namespace lgabench

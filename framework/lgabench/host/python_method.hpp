@@ -1,4 +1,4 @@
-// A method in Python: FILE.py:Class, described without running it.
+// A method or a perturbation in Python: FILE.py:Class, described without running it.
 #pragma once
 #include <string>
 
@@ -6,7 +6,7 @@
 
 namespace lgabench {
 
-/// The word names a method in Python: its part before the first '+' holds ".py:".
+/// The word names a plugin in Python: its part before the first '+' holds ".py:".
 bool is_python_method(const std::string& word);
 
 /// Asks the interpreter's own parser what the file says of the class (python/lgabench_method/describe.py).
@@ -16,5 +16,9 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
 /// A row as the suite's reader knows it: where it is written FILE.py:Class+OPTION=VALUE, the method is described, added
 /// to the catalogue, and named by its id. @throws PluginError likewise, and for an id that another plugin has.
 std::string with_python_method(const std::string& row, const std::string& interpreter, Catalogue& catalogue);
+
+/// Plugins of the usual places and of these paths, some of which may be FILE.py:Class, for that interpreter; axes of
+/// perturbations are added (add_axes). @throws PluginError likewise.
+Catalogue plugins_at(const std::vector<fs::path>& paths, const std::string& interpreter);
 
 }  // namespace lgabench

@@ -8,13 +8,12 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <lgabench/host/messages.hpp>
-#include <lgabench/plugin/guarded.hpp>
+#include <lgabench/host/serving.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
@@ -173,14 +172,11 @@ class Host {
         layout_(protocol::read_layout({hello.header, "hello"})),
         memory_(hello.file, protocol::observation_bytes(layout_.picture)) {
     const JsonReader reader(hello.header, "hello");
-    reader.at("protocol").integer(protocol_version, protocol_version);
     options_ = reader.at("options").json();
     const JsonReader seed = reader.at("seed");
     if (!seed.json().is_number_unsigned()) seed.fail("a whole number, 0 or more");
     seed_ = seed.json().get<std::uint64_t>();
-    plugin_ = read_plugin(reader.at("method").at("file").string());
-    if (plugin_.sha256 != reader.at("method").at("sha256").string())
-      throw PluginError(fmt::format("{}: changed since the run began", plugin_.file.string()));
+    plugin_ = named_plugin(hello, "method");
     method_ = load_method(plugin_);
     channel_.send(
         {{"type", "hello"}, {"protocol", protocol_version}, {"id", plugin_.id}, {"version", plugin_.version}});
@@ -328,30 +324,22 @@ class Host {
   std::optional<std::string> saved_;  // asked for in parts
 };
 
-// Tells the worker what `call` throws; true if nothing was thrown.
-template <class Call>
-bool told(Channel& channel, Call&& call) {
-  const auto tell = [&channel](const char* kind, const std::string& reason) {
-    channel.send({{"type", "error"}, {"kind", kind}, {"reason", reason.substr(0, 2000)}});
-  };
-  try {
-    call();
-    return true;
-  } catch (const std::bad_alloc&) {
-    tell("memory", "out of memory");
-  } catch (const PluginError& e) {
-    tell("plugin", e.what());
-  } catch (...) {
-    tell("method", current_exception_text());
-  }
-  return false;
-}
-
 }  // namespace
+
+PluginInfo named_plugin(const Frame& hello, const char* kind) {
+  const JsonReader reader(hello.header, "hello");
+  reader.at("protocol").integer(protocol_version, protocol_version);
+  const JsonReader named = reader.at(kind);
+  PluginInfo plugin = read_plugin(named.at("file").string());
+  if (plugin.sha256 != named.at("sha256").string())
+    throw PluginError(fmt::format("{}: changed since the run began", plugin.file.string()));
+  return plugin;
+}
 
 void serve(Channel& channel) {
   std::optional<Frame> hello = channel.receive();
   if (!hello) return;
+  if (hello->header.contains("perturbation")) return serve_perturbation(channel, std::move(*hello));
   std::optional<Host> host;
   if (!told(channel, [&] { host.emplace(channel, *hello); })) return;
   hello.reset();  // its file is mapped by now

@@ -15,10 +15,15 @@ std::string full_path(const fs::path& path) { return fs::absolute(path).string()
 
 Json to_json(const Limits& limits) { return {{"cpu_s", limits.cpu_s}, {"data_bytes", limits.data_bytes}}; }
 
-// A method in Python cannot be read again without its interpreter: what was read of it goes along.
+// A plugin in Python cannot be read again without its interpreter: what was read of it goes along.
 Json plugin_json(const PluginInfo& plugin) {
   Json json{{"file", full_path(plugin.file)}, {"sha256", plugin.sha256}};
-  if (!plugin.python.is_null()) json.update({{"id", plugin.id}, {"asks", plugin.asks}, {"python", plugin.python}});
+  if (!plugin.python.is_null())
+    json.update({{"kind", plugin.kind},
+                 {"id", plugin.id},
+                 {"asks", plugin.asks},
+                 {"axis", plugin.axis},
+                 {"python", plugin.python}});
   return json;
 }
 
@@ -26,10 +31,11 @@ PluginInfo plugin_of(const JsonReader& reader) {
   PluginInfo info;
   if (reader.has("python")) {
     info.file = reader.at("file").string();
-    info.kind = "method";
+    info.kind = reader.at("kind").string();
     info.id = reader.at("id").string();
     info.asks = reader.at("asks").string();
     info.sha256 = sha256_file(info.file);
+    info.axis = reader.at("axis").json();
     info.python = reader.at("python").json();
   } else {
     info = read_plugin(reader.at("file").string());
@@ -89,6 +95,7 @@ Json to_json(const CellJob& job) {
             {"limits", to_json(job.limits)}};
   if (job.method) json["method"] = plugin_json(*job.method);
   if (job.acts) json["acts"] = plugin_json(*job.acts);
+  for (const PluginInfo& axis : job.axes) json["axes"].push_back(plugin_json(axis));
   if (job.live) json["live"] = to_json(*job.live);
   if (job.debugger) json["debugger"] = *job.debugger;
   return json;
@@ -112,6 +119,8 @@ CellJob read_cell_job(const JsonReader& reader) {
   if (job.cell.method.acts.has_value() != job.acts.has_value()) reader.at("cell").fail("a plugin for what acts");
   job.attributed = reader.at("attributed").boolean();
   job.keeps_policy = reader.at("keeps_policy").boolean();
+  if (reader.has("axes"))
+    for (const JsonReader& axis : reader.at("axes").elements()) job.axes.push_back(plugin_of(axis));
   if (reader.has("live")) job.live = live_of(reader.at("live"));
   if (reader.has("debugger")) job.debugger = reader.at("debugger").strings();
   return job;
@@ -123,6 +132,7 @@ Json to_json(const CheckJob& job) {
             {"report", job.report.string()},     {"limits", to_json(job.limits)},
             {"environment", job.environment}};
   if (job.method) json["method"] = plugin_json(*job.method);
+  if (job.perturbation) json["perturbation"] = plugin_json(*job.perturbation);
   return json;
 }
 
@@ -136,6 +146,7 @@ CheckJob read_check_job(const JsonReader& reader) {
                read_limits(reader),
                reader.at("environment").string()};
   if (reader.has("method")) job.method = plugin_of(reader.at("method"));
+  if (reader.has("perturbation")) job.perturbation = plugin_of(reader.at("perturbation"));
   return job;
 }
 

@@ -48,6 +48,7 @@ struct CellJob {
   bool attributed = true;            // whether the method is told the truth in the end, to find causes
   std::optional<std::vector<std::string>> debugger{};  // of HostJob
   bool keeps_policy = false;                           // what is learned stays with the cell
+  std::vector<PluginInfo> axes{};                      // perturbations that its scenario has of plugins
 };
 Json to_json(const CellJob& job);
 /// @throws InputError; PluginError where a plugin is refused, or another one by now.
@@ -62,7 +63,8 @@ struct CheckJob {
   int perturb = 0;                   // as perturb_heap()
   std::filesystem::path report;      // gets a CheckReport
   Limits limits{};
-  std::string environment{};  // to play in; "": check_method() and check_engine() say which
+  std::string environment{};                 // to play in; "": check_method() and the like say which
+  std::optional<PluginInfo> perturbation{};  // that is checked instead
 };
 Json to_json(const CheckJob& job);
 /// @throws as read_cell_job().

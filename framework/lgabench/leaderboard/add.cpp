@@ -1,6 +1,7 @@
 #include <lgabench/leaderboard/add.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -234,6 +235,11 @@ void expect_run_of_the_board(const RunResults& run, Reasons& reasons) {
   if (run.record.confinement.rfind("none", 0) == 0) reasons.add("methods were not confined (--unconfined)");
   if (run.not_run > 0)
     reasons.add(fmt::format("{} cell{} of the run not played yet", run.not_run, run.not_run == 1 ? "" : "s"));
+  std::set<std::string> axes;
+  for (const CellResult& cell : run.cells)
+    for (const std::string& id : cell.configuration.plugin_axes()) axes.insert(id);
+  if (!axes.empty())
+    reasons.add(fmt::format("arms under an axis of a plugin ({}), which no leaderboard ranks", fmt::join(axes, ", ")));
   for (const CellResult& cell : run.cells)
     if (!cell.participant.empty()) {
       reasons.add("answers of people (--humans), for which the board has no place");

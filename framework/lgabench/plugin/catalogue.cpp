@@ -7,23 +7,26 @@
 #include <sstream>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/core/suggest.hpp>
 #include <lgabench/plugin/reader.hpp>
 
 namespace lgabench {
 
 Json to_json(const PluginInfo& plugin) {
-  return {{"file", plugin.file.string()},
-          {"kind", plugin.kind},
-          {"id", plugin.id},
-          {"version", plugin.version},
-          {"summary", plugin.summary},
-          {"fingerprint", plugin.fingerprint},
-          {"asks", plugin.asks},
-          {"options", plugin.options},
-          {"sha256", plugin.sha256},
-          {"questionnaire", plugin.questionnaire},
-          {"kinematic", plugin.kinematic}};
+  Json json{{"file", plugin.file.string()},
+            {"kind", plugin.kind},
+            {"id", plugin.id},
+            {"version", plugin.version},
+            {"summary", plugin.summary},
+            {"fingerprint", plugin.fingerprint},
+            {"asks", plugin.asks},
+            {"options", plugin.options},
+            {"sha256", plugin.sha256},
+            {"questionnaire", plugin.questionnaire},
+            {"kinematic", plugin.kinematic}};
+  if (!plugin.axis.is_null()) json["axis"] = plugin.axis;
+  return json;
 }
 
 const PluginInfo& Catalogue::find(const std::string& kind, const std::string& id) const {
@@ -82,6 +85,21 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories) {
     }
   }
   return catalogue;
+}
+
+void add_axes(Catalogue& catalogue) {
+  auto& plugins = catalogue.plugins;
+  const auto refused = [&catalogue](const PluginInfo& plugin) {
+    if (plugin.kind != "perturbation") return false;
+    try {
+      add_plugin_axis(read_axis(plugin.id, JsonReader(plugin.axis, plugin.file.string())));
+      return false;
+    } catch (const InputError& e) {
+      catalogue.refused.push_back({plugin.file, e.what()});
+      return true;
+    }
+  };
+  plugins.erase(std::remove_if(plugins.begin(), plugins.end(), refused), plugins.end());
 }
 
 }  // namespace lgabench

@@ -15,7 +15,7 @@ namespace lgabench {
 struct PluginDescriptor {
   char magic[16];
   std::uint32_t struct_size, abi;
-  char kind[16];  // "method" or "engine"
+  char kind[16];  // "method", "engine" or "perturbation"
   char asks[16];  // whom a method asks beside the language model: "specify", "edit", "accept", "truth", "network", ""
   char id[64];    // lower-case letters, digits, underscores; starts with a letter
   char version[32];  // the plugin's own
@@ -23,12 +23,14 @@ struct PluginDescriptor {
   char fingerprint[256];  // LGABENCH_FINGERPRINT where the plugin was compiled
   // {"name": {"default": value, "help": text, "source": text, "values": [...], "min": n, "max": n,
   // "needs": {...}, "framework": true}, ...}; beside them "questionnaire": true, see LGABENCH_QUESTIONNAIRE,
-  // and of an engine "kinematic": true, see LGABENCH_KINEMATIC_ENGINE
+  // and of an engine "kinematic": true, see LGABENCH_KINEMATIC_ENGINE. Of a perturbation what its axis declares, see
+  // LGABENCH_PERTURBATION
   char options_json[4096];
 };
 static_assert(sizeof(PluginDescriptor) == 4664, "the descriptor has no padding");
 
-/// Exported as `lga_plugin_v1`. The host owns what create() returns: a Method* or PhysicsWorld* as void*.
+/// Exported as `lga_plugin_v1`. The host owns what create() returns: a Method*, PhysicsWorld* or
+/// ObservationPerturbation* as void*.
 struct PluginEntry {
   const PluginDescriptor* descriptor;
   void* (*create)();

@@ -82,4 +82,8 @@ std::unique_ptr<Method> load_method(const PluginInfo& plugin) { return load<Meth
 
 std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin) { return load<PhysicsWorld>(plugin, "engine"); }
 
+std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin) {
+  return load<ObservationPerturbation>(plugin, "perturbation");
+}
+
 }  // namespace lgabench

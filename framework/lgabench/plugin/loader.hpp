@@ -7,6 +7,7 @@
 
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/method.hpp>
+#include <lgabench/core/observation_perturbation.hpp>
 #include <lgabench/core/physics_world.hpp>
 
 namespace lgabench {
@@ -26,6 +27,7 @@ struct PluginInfo {
   Json python{};
   bool questionnaire = false;  // of a method: see LGABENCH_QUESTIONNAIRE
   bool kinematic = false;      // of an engine: see LGABENCH_KINEMATIC_ENGINE
+  Json axis{};                 // of a perturbation, as axis_json() of core/perturbations.hpp; else null
 };
 
 /// Every member, under its name.
@@ -46,8 +48,8 @@ struct Catalogue {
   std::vector<PluginInfo> plugins;
   std::vector<Refusal> refused;
 
-  /// `kind` is "method" or "engine". @throws PluginError that lists the known ids and repeats the refusal of a file
-  /// of that name.
+  /// `kind` is "method", "engine" or "perturbation". @throws PluginError that lists the known ids and repeats the
+  /// refusal of a file of that name.
   const PluginInfo& find(const std::string& kind, const std::string& id) const;
 };
 
@@ -65,6 +67,10 @@ Catalogue scan_plugins(const std::vector<fs::path>& directories);
 /// factory throws or returns nothing.
 std::unique_ptr<Method> load_method(const PluginInfo& plugin);
 std::unique_ptr<PhysicsWorld> load_engine(const PluginInfo& plugin);
+std::unique_ptr<ObservationPerturbation> load_perturbation(const PluginInfo& plugin);
+
+/// Adds the axes of its perturbations (add_plugin_axis). One whose id is taken is refused.
+void add_axes(Catalogue& catalogue);
 
 /// An option's value as written on a command line: a number, or true or false, where the whole word is one; else a
 /// text.

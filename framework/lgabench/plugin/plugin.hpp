@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include <lgabench/core/method.hpp>
+#include <lgabench/core/observation_perturbation.hpp>
 #include <lgabench/core/physics_world.hpp>
 #include <lgabench/plugin/descriptor.hpp>
 #include <lgabench/plugin/fingerprint.hpp>
@@ -49,6 +50,14 @@
 /// Likewise, whose bodies have neither mass nor friction: perturbations of these are refused.
 #define LGABENCH_KINEMATIC_ENGINE(id, version, summary, Class) \
   LGABENCH_PLUGIN_("engine", "", id, version, summary, ::lgabench::PhysicsWorld, Class, R"({"kinematic": true})")
+
+/// A perturbation axis that changes what is perceived: `Class` derives from lgabench::ObservationPerturbation and has a
+/// default constructor. Once in a library. `axis_json`: {"levels": [what each is, in a few words, level 1 first],
+/// "changes": [parts that differ in nearly every episode], "may_change": [in some]}, parts being "rgb", "ids" and
+/// "instances", the last of the members only where there are any; "named": true where levels are kinds without an
+/// order.
+#define LGABENCH_PERTURBATION(id, version, summary, Class, axis_json) \
+  LGABENCH_PLUGIN_("perturbation", "", id, version, summary, ::lgabench::ObservationPerturbation, Class, axis_json)
 
 // The descriptor stands in a section of its own, so that `readelf -p .lgabench` shows it too.
 // NOLINTBEGIN(bugprone-macro-parentheses): Interface and Class are types.

@@ -10,6 +10,7 @@
 
 #include <lgabench/core/files.hpp>
 #include <lgabench/core/hash.hpp>
+#include <lgabench/core/perturbations.hpp>
 #include <lgabench/plugin/fingerprint.hpp>
 #include <lgabench/plugin/reader.hpp>
 
@@ -171,9 +172,21 @@ DeclaredOptions read_options(const std::string& options_json) {
   }
 }
 
+Json read_declared_axis(const PluginInfo& plugin, const std::string& declared) {
+  try {
+    Json json = parse_json(declared, "axis");
+    if (json.is_object() && json.contains("version"))
+      JsonReader(json, "axis").fail("no \"version\": it is the plugin's");
+    json["version"] = plugin.version;
+    return axis_json(read_axis(plugin.id, JsonReader(json, "axis")));
+  } catch (const InputError& e) {
+    throw PluginError(e.what());
+  }
+}
+
 void check_asks(const std::string& kind, const std::string& asks) {
   constexpr std::array<const char*, 6> known{"", "specify", "edit", "accept", "truth", "network"};
-  if (std::find(known.begin(), known.end(), asks) == known.end() || (kind == "engine" && !asks.empty()))
+  if (std::find(known.begin(), known.end(), asks) == known.end() || (kind != "method" && !asks.empty()))
     throw PluginError(
         fmt::format("descriptor: asks \"{}\", expected \"specify\", \"edit\", \"accept\", \"truth\" or \"network\" of "
                     "a method, or \"\"",
@@ -223,8 +236,9 @@ PluginInfo inspect_plugin(const fs::path& file) {
   plugin.fingerprint = text(d.fingerprint, "fingerprint");
   check_fingerprint(plugin.fingerprint);
   plugin.kind = text(d.kind, "kind");
-  if (plugin.kind != "method" && plugin.kind != "engine")
-    throw PluginError(fmt::format("descriptor: kind \"{}\", expected \"method\" or \"engine\"", plugin.kind));
+  if (plugin.kind != "method" && plugin.kind != "engine" && plugin.kind != "perturbation")
+    throw PluginError(
+        fmt::format("descriptor: kind \"{}\", expected \"method\", \"engine\" or \"perturbation\"", plugin.kind));
   plugin.asks = text(d.asks, "asks");
   check_asks(plugin.kind, plugin.asks);
   plugin.id = text(d.id, "id");
@@ -233,10 +247,16 @@ PluginInfo inspect_plugin(const fs::path& file) {
         fmt::format("descriptor: id \"{}\", expected lower-case letters, digits and underscores", plugin.id));
   plugin.version = text(d.version, "version");
   plugin.summary = text(d.summary, "summary");
-  DeclaredOptions declared = read_options(text(d.options_json, "options"));
-  plugin.options = std::move(declared.options);
-  plugin.questionnaire = declared.questionnaire;
-  plugin.kinematic = declared.kinematic;
+  const std::string declarations = text(d.options_json, "options");
+  if (plugin.kind == "perturbation") {
+    plugin.options = Json::object();
+    plugin.axis = read_declared_axis(plugin, declarations);
+  } else {
+    DeclaredOptions declared = read_options(declarations);
+    plugin.options = std::move(declared.options);
+    plugin.questionnaire = declared.questionnaire;
+    plugin.kinematic = declared.kinematic;
+  }
   plugin.sha256 = sha256(bytes);
   return plugin;
 }

@@ -19,6 +19,10 @@ struct DeclaredOptions {
 /// Checked. @throws PluginError with the place of what is wrong.
 DeclaredOptions read_options(const std::string& options_json);
 
+/// What a perturbation's axis declares, checked, with the plugin's version: as PluginInfo::axis. @throws PluginError
+/// likewise.
+Json read_declared_axis(const PluginInfo& plugin, const std::string& declared);
+
 /// Lower-case letters, digits and underscores, a letter first: a plugin's id.
 bool is_name(const std::string& id);
 

@@ -39,6 +39,13 @@ bool Cell::perturbs() const {
          std::any_of(tests->begin(), tests->end(), [](const Json& arm) { return arm.contains("perturbation"); });
 }
 
+std::vector<std::string> Cell::plugin_axes() const {
+  std::vector<std::string> ids;
+  if (const auto axes = scenario->find("axes"); axes != scenario->end() && axes->is_object())
+    for (const auto& [id, ignored] : axes->items()) ids.push_back(id);
+  return ids;
+}
+
 std::optional<std::uint64_t> Cell::scenes_of_seed() const {
   return test_scenes == TestScenes::per_seed ? std::optional(training_seed) : std::nullopt;
 }

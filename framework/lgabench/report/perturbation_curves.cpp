@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <tuple>
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/perturbations.hpp>
+#include <lgabench/core/terminal.hpp>
 #include <lgabench/report/bootstrap.hpp>
 #include <lgabench/report/names.hpp>
 #include <lgabench/report/pairs.hpp>
@@ -15,13 +17,17 @@
 namespace lgabench::report {
 namespace {
 
-// nullptr for `all`, and where it is not installed.
-const PerturbationAxis* installed(const std::string& id) try {
+// None for `all`, and where it is neither installed nor a plugin's, which the cells' scenarios declare.
+std::optional<PerturbationAxis> axis_of(const RunResults& run, const std::string& id) try {
   for (const PerturbationAxis& axis : perturbation_axes())
-    if (axis.id == id) return &axis;
-  return nullptr;
+    if (axis.id == id) return axis;
+  for (const CellResult& cell : run.cells)
+    if (const JsonReader scenario(*cell.configuration.scenario, cell.key);
+        scenario.has("axes") && scenario.at("axes").has(id))
+      return read_axis(id, scenario.at("axes").at(id));
+  return std::nullopt;
 } catch (const InputError&) {
-  return nullptr;
+  return std::nullopt;
 }
 
 bool has_curve(const Row& row) {
@@ -43,8 +49,8 @@ std::string arm_of(const CellResult& cell, const std::string& axis, int level) {
 PerturbationCurve::Level level_of(const RunResults& run, const PerturbationCurve& curve, const Row& row) {
   PerturbationCurve::Level level;
   level.level = row.perturbation->level;
-  if (const PerturbationAxis* axis = installed(curve.axis); axis && level.level <= axis->most())
-    level.name = axis->levels[static_cast<std::size_t>(level.level) - 1];
+  if (const auto axis = axis_of(run, curve.axis); axis && level.level <= axis->most())
+    level.name = one_line(axis->levels[static_cast<std::size_t>(level.level) - 1]);
   level.success = *row.success;
   level.interval = row.interval;
   level.change = {row.shift->difference, row.shift->interval, row.shift->p};
@@ -158,7 +164,7 @@ std::vector<PerturbationCurve> curves_of(const RunResults& run, const Table& tab
       one.layout = row.layout, one.engine = row.engine, one.method = row.method, one.kind = row.kind;
       one.axis = row.perturbation->axis;
       one.demonstrations = row.demonstrations;
-      const PerturbationAxis* axis = installed(one.axis);
+      const auto axis = axis_of(run, one.axis);
       one.named = axis && axis->named;
       one.control = *row.success - row.shift->difference;
       if (table.scenarios_with(row.arm) == table.scenarios_with(row.shift->against))

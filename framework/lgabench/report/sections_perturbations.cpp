@@ -243,6 +243,16 @@ List losses_list(const Material& material, const std::vector<Part>& all) {
   return list;
 }
 
+// Whose axes they are, where some are plugins'; "" where none is.
+std::string plugins_text(const RunResults& run) {
+  std::vector<std::string> plugins;
+  for (const RunRecord::Plugin& plugin : run.record.plugins)
+    if (plugin.kind == "perturbation") plugins.push_back(plugin.id + " " + plugin.version);
+  return plugins.empty()
+             ? ""
+             : fmt::format("Axes of plugins, under which no leaderboard ranks a row: {}.", fmt::join(plugins, ", "));
+}
+
 }  // namespace
 
 Section perturbations(const Material& material) {
@@ -281,6 +291,10 @@ Section perturbations(const Material& material) {
   section.add(in_terminal, Paragraph{{fmt::format("* beyond chance, after Holm’s correction over the {} levels of all "
                                                   "axes of a row.",
                                                   tests)}});
+  if (const std::string plugins = plugins_text(material.run); !plugins.empty()) {
+    section.add(in_terminal, Paragraph{{plugins}});
+    section.add(reading, Paragraph{{plugins}});
+  }
   section.add(reading, curves_grid(material, all, false));
   for (const Part& part : with_areas) {
     Grid areas = areas_grid(material, part);

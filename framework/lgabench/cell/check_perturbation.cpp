@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+
+#include <lgabench/abstraction/scenes.hpp>
+#include <lgabench/cell/check.hpp>
+#include <lgabench/cell/hosted_axes.hpp>
+#include <lgabench/cell/perturbed.hpp>
+#include <lgabench/cell/runs_below.hpp>
+#include <lgabench/core/environments.hpp>
+#include <lgabench/core/hash.hpp>
+#include <lgabench/core/perturbations.hpp>
+#include <lgabench/host/hosted_perturbation.hpp>
+
+namespace lgabench {
+namespace {
+
+constexpr int scenes_a_level = 20;
+constexpr std::uint64_t check_seed = 7;
+
+struct SeenScene {
+  Scene scene;
+  Observation observation;
+};
+
+std::string perceived_bytes(const Observation& seen) {
+  std::string text(seen.ids.begin(), seen.ids.end());
+  text.append(seen.rgb.begin(), seen.rgb.end());
+  for (const Instance& one : seen.instances) text += fmt::format("{} {} {}\n", one.id, one.object_type, one.texture);
+  return hex(hash64(text));
+}
+
+bool same_names(const Observation& a, const Observation& b) {
+  return std::equal(a.instances.begin(), a.instances.end(), b.instances.begin(), b.instances.end(),
+                    [](const Instance& one, const Instance& other) {
+                      return one.id == other.id && one.object_type == other.object_type && one.texture == other.texture;
+                    });
+}
+
+bool part_differs(EpisodePart part, const Observation& a, const Observation& b) {
+  if (part == EpisodePart::rgb) return a.rgb != b.rgb;
+  if (part == EpisodePart::ids) return a.ids != b.ids;
+  return !same_names(a, b);
+}
+
+// Of a channel of a pixel, of 255.
+double mean_change(const Observation& a, const Observation& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) sum += std::abs(a.rgb[i] - b.rgb[i]);
+  return sum / static_cast<double>(a.rgb.size());
+}
+
+// One axis in one environment.
+class AxisCheck {
+ public:
+  AxisCheck(const HostJob& job, const PerturbationAxis& axis, CheckReport& report)
+      : axis_(axis),
+        environment_(find_environment(job.environment)),
+        scenario_(load_scenario(environment_.tasks().front().example)),
+        report_(report),
+        in_(", " + job.environment),
+        is_library_(job.plugin.python.is_null()),
+        process_(job) {
+    const std::string layout = environment_.tasks().front().layouts.front();
+    for (int i = 0; i < scenes_a_level; ++i) {
+      Scene scene = test_scene(scenario_, layout, scenario_.tests.front().id, check_seed, i);
+      Observation seen = environment_.draw(scene);
+      scenes_.push_back({std::move(scene), std::move(seen)});
+    }
+  }
+
+  /// Returns a hash of all that was perceived.
+  std::string run(const CheckPhase& phase) {
+    std::string all;
+    for (int level = 1; level <= axis_.most(); ++level) {
+      const std::string doing = fmt::format("level {}{}", level, in_);
+      phase(doing);
+      try {
+        all += judge_level(level);
+      } catch (const MethodError& e) {
+        report_.problem(doing, e.what(), "this call must succeed: a run makes it too");
+      }
+    }
+    judge_sizes();
+    if (is_library_) {
+      process_.drop();
+      judge_leftovers(report_, [this] { return process_.state(); });
+    }
+    const std::vector<std::string> refused = process_.refused_calls();
+    if (!refused.empty())
+      report_.note("system calls", fmt::format("refused: {}", fmt::join(refused, ", ")),
+                   "a plugin's process has those of the list in docs/trust.md alone; bear it, or do without");
+    report_.ok("time" + in_, fmt::format("{:.1f} ms a picture", 1e3 * seconds_ / calls_));
+    return sha256(all);
+  }
+
+ private:
+  Observation perceive(const SeenScene& one, int level) {
+    const auto start = std::chrono::steady_clock::now();
+    Observation perceived = process_.perceive(one.observation, level, perturbation_stream(axis_.id, one.scene, {}));
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ++calls_;
+    expect_perceived(perceived, scenario_.space);
+    return perceived;
+  }
+
+  std::string judge_level(int level) {
+    std::array<int, parts> changed{};
+    std::vector<std::string> bytes;
+    double change = 0;
+    for (const SeenScene& one : scenes_) {
+      const Observation perceived = perceive(one, level);
+      for (const EpisodePart part : {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances})
+        changed[static_cast<std::size_t>(part)] += part_differs(part, one.observation, perceived);
+      change += mean_change(one.observation, perceived) / scenes_a_level;
+      bytes.push_back(perceived_bytes(perceived));
+    }
+    changes_.push_back(change);
+    std::vector<std::string> faults;
+    for (const EpisodePart part : {EpisodePart::rgb, EpisodePart::ids, EpisodePart::instances}) {
+      const int n = changed[static_cast<std::size_t>(part)];
+      const char* name = part_names[static_cast<std::size_t>(part)];
+      const bool must = std::count(axis_.changes.begin(), axis_.changes.end(), part) > 0;
+      if (n > 0 && !axis_.touches(part)) faults.push_back(fmt::format("{} changes, which is not declared", name));
+      if (must && n < fewest_changed * scenes_a_level)
+        faults.push_back(fmt::format("{} changes in {} of {} scenes: it is dead", name, n, scenes_a_level));
+    }
+    for (std::size_t i = scenes_.size(); i-- > 0;)
+      if (perceived_bytes(perceive(scenes_[i], level)) != bytes[i]) {
+        faults.emplace_back("a scene seen again, in another order, is another picture");
+        break;
+      }
+    report_.judge(fmt::format("level {}{}", level, in_), fmt::format("{}", fmt::join(faults, "; ")),
+                  "changes what it declares, and the same again",
+                  "declare in \"changes\" what differs in at least 95 % of scenes, in \"may_change\" what differs in "
+                  "some; draw all that is random from the stream, and keep nothing from one call to the next");
+    return fmt::format("{}\n", fmt::join(bytes, "\n"));
+  }
+
+  // What a level does to the colours: where levels have an order, a higher one should do more.
+  void judge_sizes() {
+    std::vector<std::string> words;
+    for (const double change : changes_) words.push_back(fmt::format("{:.1f}", change));
+    const std::string detail = fmt::format("mean change of a colour, of 255: {}", fmt::join(words, ", "));
+    if (axis_.named || !axis_.touches(EpisodePart::rgb) || std::is_sorted(changes_.begin(), changes_.end()))
+      report_.ok("sizes" + in_, detail);
+    else
+      report_.note("sizes" + in_, detail, "a higher level should change more; levels without an order are \"named\"");
+  }
+
+  const PerturbationAxis& axis_;
+  const EnvironmentType& environment_;
+  const Scenario scenario_;
+  CheckReport& report_;
+  const std::string in_;
+  const bool is_library_;
+  HostedPerturbation process_;
+  std::vector<SeenScene> scenes_;
+  std::vector<double> changes_;  // by level
+  double seconds_ = 0;
+  int calls_ = 0;
+};
+
+}  // namespace
+
+CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
+  CheckReport report;
+  job.hidden = runs_below(job.plugin.file.parent_path());
+  const PerturbationAxis axis = read_axis(job.plugin.id, JsonReader(job.plugin.axis, job.plugin.file.string()));
+  const std::vector<std::string> environments =
+      job.environment.empty() ? environment_ids() : std::vector{job.environment};
+  const fs::path scratch = job.scratch;
+  for (const std::string& environment : environments) {
+    job.environment = environment;
+    job.scratch = scratch / environment;
+    fs::create_directory(job.scratch);
+    phase("load");
+    report.hashes["perceived, " + environment] = AxisCheck(job, axis, report).run(phase);
+  }
+  return report;
+}
+
+}  // namespace lgabench

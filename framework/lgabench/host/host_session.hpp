@@ -1,0 +1,83 @@
+// The worker's end of a conversation with a plugin's process (docs/formats/method-protocol.md).
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <lgabench/host/host_process.hpp>
+#include <lgabench/host/messages.hpp>
+#include <lgabench/plugin/guarded.hpp>
+#include <lgabench/plugin/loader.hpp>
+
+namespace lgabench {
+
+/// What a plugin's process is started with.
+struct HostJob {
+  PluginInfo plugin;                            // a method or a perturbation
+  std::string environment;                      // the cell's
+  Json options;                                 // every one
+  std::uint64_t seed;                           // as Services::seed
+  std::filesystem::path scratch;                // an empty directory of its own
+  bool confined = true;                         // see confine.hpp
+  std::vector<std::filesystem::path> hidden{};  // unreadable to it wherever they lie, beside lgabench's own data
+  long long memory_bytes = 0;                   // 0: no limit
+  int perturb = 0;                              // as perturb_heap(), of a plugin's process
+  /// Words before the process's own, an absolute path first or none at all: it runs in the foreground
+  /// (host_process.hpp).
+  std::optional<std::vector<std::string>> debugger{};
+  std::string task{};  // of the environment, whose stations a method is told; "": it is told of none
+};
+
+/// The connection, from the process's start to its end. Once the process ended, was stopped or broke the protocol,
+/// every call throws MethodGone.
+class HostSession {
+ public:
+  /// @throws PluginError where the plugin is refused, MethodGone.
+  explicit HostSession(const HostJob& job);
+
+  using Meanwhile = std::function<bool(const Frame& frame, Channel& channel)>;
+
+  /// Sends the request and returns the reply of that type. `meanwhile` takes the frames that come before it; one that
+  /// it does not know breaks the protocol. @throws MethodError, std::bad_alloc, PluginError as the reply says.
+  Frame call(const Json& request, const char* reply, const Meanwhile& meanwhile = {}, const Descriptor* file = nullptr);
+
+  /// What a reply holds, or MethodGone.
+  template <class Call>
+  auto read(Call&& call) -> decltype(call()) {
+    return guarded_by_protocol([&] { return protocol::read_or_malformed(call); });
+  }
+
+  const protocol::Layout& layout() const { return layout_; }
+  const std::vector<std::string>& refused_calls() const { return process_.refused_calls(); }
+  protocol::SharedMemory& observation() { return observation_; }
+  /// As ProcessState, of a C++ plugin's process beyond what it held before the plugin came.
+  ProcessState state();
+
+ private:
+  template <class Call>
+  auto guarded_by_protocol(Call&& call) -> decltype(call()) {
+    if (!broken_.empty()) throw MethodGone(broken_, 0);
+    try {
+      return call();
+    } catch (const MethodGone& e) {
+      broken_ = e.what();
+      throw;
+    } catch (const Malformed& e) {
+      broken_ = std::string("sent a malformed frame: ") + e.what();
+      throw MethodGone(broken_, 0);
+    }
+  }
+
+  const protocol::Layout layout_;
+  std::unique_ptr<Confinement> confinement_;
+  HostProcess process_;
+  Channel channel_;
+  protocol::SharedMemory observation_;
+  std::string broken_;  // why nothing can be asked any more
+};
+
+}  // namespace lgabench

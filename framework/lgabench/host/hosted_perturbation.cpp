@@ -1,0 +1,61 @@
+#include <lgabench/host/hosted_perturbation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace lgabench {
+namespace {
+
+// Bits of the rows as they are now: an object that left them throws none.
+std::vector<std::uint16_t> shadows_of(const std::vector<std::uint16_t>& shadows, const std::vector<Instance>& before,
+                                      const std::vector<Instance>& now) {
+  std::array<std::size_t, 256> row{};
+  row.fill(most_shadows);
+  for (std::size_t k = 0; k < std::min(before.size(), most_shadows); ++k) row.at(before[k].id) = k;
+  std::vector<std::uint16_t> all(shadows.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t k = 0; k < std::min(now.size(), most_shadows); ++k)
+      if (row.at(now[k].id) < most_shadows)
+        all[i] |= static_cast<std::uint16_t>((shadows[i] >> row.at(now[k].id) & 1U) << k);
+  return all;
+}
+
+}  // namespace
+
+HostedPerturbation::HostedPerturbation(const HostJob& job) : session_(std::make_unique<HostSession>(job)) {}
+HostedPerturbation::~HostedPerturbation() = default;
+
+Observation HostedPerturbation::perceive(Observation seen, int level, RandomStream stream) {
+  const std::vector<std::uint16_t> shadows = std::exchange(seen.shadows, {});  // of no picture: they stay
+  protocol::write(seen, session_->observation());
+  std::optional<Frame> ids;
+  const auto takes_ids = [&ids](const Frame& frame, Channel&) {
+    if (frame.type() != "ids" || ids) return false;
+    ids = Frame{frame.header, frame.payload};
+    return true;
+  };
+  const std::uint64_t first = stream.next(), second = stream.next();  // a stream of its own, whose name tells nothing
+  const Frame frame = session_->call({{"type", "perceive"},
+                                      {"level", level},
+                                      {"stream", fmt::format("{:08x}{:08x}", first, second)},
+                                      {"instances", protocol::instances_json(seen)}},
+                                     "perceived", takes_ids);
+  Observation perceived = session_->read([&] {
+    if (!ids) throw InputError("\"perceived\", expected \"ids\" before it");
+    return protocol::read_perceived(*ids, frame, session_->layout().picture);
+  });
+  perceived.shadows = shadows_of(shadows, seen.instances, perceived.instances);
+  return perceived;
+}
+
+std::vector<std::string> HostedPerturbation::refused_calls() const { return session_->refused_calls(); }
+
+void HostedPerturbation::drop() { session_->call({{"type", "drop"}, {"what", "perturbation"}}, "dropped"); }
+
+ProcessState HostedPerturbation::state() const { return session_->state(); }
+
+}  // namespace lgabench

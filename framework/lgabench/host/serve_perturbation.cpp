@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <lgabench/host/messages.hpp>
+#include <lgabench/host/serving.hpp>
+
+namespace lgabench {
+namespace {
+
+void expect_size(const Observation& perceived, PictureSize picture) {
+  const std::size_t pixels = picture.pixels();
+  if (perceived.rgb.size() != 3 * pixels || perceived.ids.size() != pixels)
+    throw MethodError(fmt::format("perceive() returned {} bytes of rgb and {} of ids, expected {} and {}",
+                                  perceived.rgb.size(), perceived.ids.size(), 3 * pixels, pixels));
+}
+
+// One plugin from loading to its end.
+class PerturbationHost {
+ public:
+  PerturbationHost(Channel& channel, const Frame& hello)
+      : channel_(channel),
+        picture_(protocol::read_picture_size({hello.header, "hello"})),
+        memory_(hello.file, protocol::observation_bytes(picture_)),
+        plugin_(named_plugin(hello, "perturbation")),
+        perturbation_(load_perturbation(plugin_)) {
+    channel_.send(
+        {{"type", "hello"}, {"protocol", protocol_version}, {"id", plugin_.id}, {"version", plugin_.version}});
+  }
+
+  void answer(const Frame& frame) {
+    const JsonReader reader(frame.header, frame.type());
+    if (frame.type() == "perceive") return perceive(reader);
+    if (frame.type() == "drop") {
+      perturbation_.reset();
+      return channel_.send({{"type", "dropped"}});
+    }
+    if (frame.type() != "state") throw MethodError(fmt::format("no frame of a worker: \"{}\"", frame.type()));
+    ProcessState state = ProcessState::now().beyond(before_);
+    state.flushed = flushed_;
+    Json reply = protocol::to_json(state);
+    reply["type"] = "state";
+    channel_.send(reply);
+  }
+
+  void end() {
+    perturbation_.reset();
+    std::cout.flush();
+    std::fflush(nullptr);  // the worker ends this process once it has the answer
+    channel_.send({{"type", "bye"}});
+  }
+
+ private:
+  void perceive(const JsonReader& reader) {
+    Observation seen;
+    protocol::read_observation(memory_, picture_, reader.at("instances"), false, seen);
+    const int level = static_cast<int>(reader.at("level").integer(1, 1 << 16));
+    if (!perturbation_) perturbation_ = load_perturbation(plugin_);  // check-plugin had the first destroyed
+    const FlushDenormalsAgain on_every_way_out;
+    const Observation perceived =
+        perturbation_->perceive(std::move(seen), level, RandomStream(reader.at("stream").string()));
+    flushed_ = flushed_ && denormals_flushed();
+    expect_size(perceived, picture_);
+    for (const Frame& frame : {protocol::ids_frame(perceived), protocol::perceived_frame(perceived)})
+      channel_.send(frame.header, frame.payload);
+  }
+
+  Channel& channel_;
+  const PictureSize picture_;
+  const protocol::SharedMemory memory_;
+  const ProcessState before_ = ProcessState::now();  // the plugin came
+  bool flushed_ = true;                              // subnormal numbers, at the end of every call
+  PluginInfo plugin_;
+  std::unique_ptr<ObservationPerturbation> perturbation_;
+};
+
+}  // namespace
+
+void serve_perturbation(Channel& channel, Frame hello) {
+  std::optional<PerturbationHost> host;
+  if (!told(channel, [&] { host.emplace(channel, hello); })) return;
+  hello = {};  // its file is mapped by now
+  while (const std::optional<Frame> frame = channel.receive()) {
+    if (frame->type() == "bye") return host->end();
+    told(channel, [&] { host->answer(*frame); });
+  }
+}
+
+}  // namespace lgabench
