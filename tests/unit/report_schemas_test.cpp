@@ -104,6 +104,20 @@ TEST(Schemas, DescribeASuitesOwnClaims) {
   }
 }
 
+TEST(Schemas, DescribeACue) {
+  Json scenario = read_json(data_directory() / "scenarios" / "heart.json");
+  scenario["train"] = {{"cue", {{"object_type", "block"}, {"texture", "blue"}, {"count", 2}}},
+                       {"as_method_asks", false}};
+  scenario["tests"] = {{{"arm", "moved"}, {"cue", "moved"}}};
+  EXPECT_EQ(complaints("scenario", scenario), Complaints());
+  for (const char* patch : {R"({"train": {"cue": {"count": 4}}})", R"({"train": {"cue": {"texture": null}}})",
+                            R"({"train": {"cue": "moved"}})", R"({"tests": [{"arm": "moved", "cue": true}]})"}) {
+    Json broken = scenario;
+    broken.merge_patch(Json::parse(patch));
+    EXPECT_NE(complaints("scenario", broken), Complaints()) << patch;
+  }
+}
+
 TEST(Schemas, AcceptTheShippedLexicon) {
   const Json document = read_json(data_directory() / "lexicons" / "household.json");
   EXPECT_EQ(complaints("lexicon", document), Complaints());
