@@ -64,7 +64,7 @@ function(lgabench_link_data)
   set(share ${PROJECT_BINARY_DIR}/share/lgabench)
   file(MAKE_DIRECTORY ${share})
   # Of all environments together: ids are the files' names.
-  foreach(kind scenarios suites spaces lexicons)
+  foreach(kind scenarios suites suites/claims spaces lexicons)
     file(REMOVE_RECURSE ${share}/${kind})
     file(MAKE_DIRECTORY ${share}/${kind})
     file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/envs/*/${kind}/*.json)

@@ -29,6 +29,7 @@ std::string taken(const Scenario& scenario, const Content& content, const std::s
   if (content.words && content.words->belongs(type, texture)) return "\"words\"";
   if (holds(content.undecided)) return "\"undecided\"";
   if (holds(content.near_miss_sets)) return "\"near_miss_sets\"";
+  if (content.never_distractor && content.never_distractor->contains(type, texture)) return "\"never_distractor\"";
   return type == goal_type ? "what things are brought to" : "";
 }
 

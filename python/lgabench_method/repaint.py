@@ -12,56 +12,12 @@ from typing import Union
 import numpy
 import numpy.typing
 
-from lgabench_method import Bytes, Demonstration, Numbers, Observation, Selection, Step, goal_mask
+from lgabench_method import Bytes, Demonstration, Numbers, Observation, RandomStream, Selection, Step, goal_mask
 
-__all__ = ["Background", "Colour", "Noise", "RandomStream", "RandomTextures", "augmented", "most_frequent_colour", "repaint",
+__all__ = ["Background", "Colour", "Noise", "RandomTextures", "augmented", "most_frequent_colour", "repaint",
            "unselected", "usual_background"]
 
 SHADOW = 141  # of a colour in the light, in 1/256, what it has in the shadow of an object
-WORD = numpy.uint64(0xFFFFFFFF)
-
-
-class RandomStream:
-    """Philox4x32-10, as lgabench::RandomStream: named, not advanced to. "mine/7/3" and "mine/7/4" share no numbers."""
-
-    def __init__(self, name: str) -> None:
-        key = 0xCBF29CE484222325
-        for byte in name.encode():
-            key = (key ^ byte) * 0x100000001B3 % 2**64
-        for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
-            key = (key ^ (key >> shift)) * factor % 2**64
-        self._key = key ^ (key >> 31)
-        self._drawn = 0  # 32-bit numbers so far
-
-    def next(self, count: int) -> numpy.typing.NDArray[numpy.uint32]:
-        """The next `count` numbers of 32 uniform bits."""
-        first, last = self._drawn // 4, (self._drawn + count + 3) // 4
-        blocks = numpy.arange(first, last, dtype=numpy.uint64)
-        c = [blocks & WORD, blocks >> numpy.uint64(32), numpy.zeros_like(blocks), numpy.zeros_like(blocks)]
-        k = [self._key % 2**32, self._key >> 32]
-        for _ in range(10):
-            one, other = numpy.uint64(0xD2511F53) * c[0], numpy.uint64(0xCD9E8D57) * c[2]
-            c = [(other >> numpy.uint64(32)) ^ c[1] ^ numpy.uint64(k[0]), other & WORD,
-                 (one >> numpy.uint64(32)) ^ c[3] ^ numpy.uint64(k[1]), one & WORD]
-            k = [(k[0] + 0x9E3779B9) % 2**32, (k[1] + 0xBB67AE85) % 2**32]
-        skipped = self._drawn - 4 * first
-        self._drawn += count
-        return numpy.stack(c, 1).reshape(-1)[skipped:skipped + count].astype(numpy.uint32)
-
-    def uniform(self, low: float = 0, high: float = 1) -> float:
-        """Uniform in [low, high), 53 bits."""
-        one, other = map(int, self.next(2))
-        return low + (high - low) * (((one >> 5) << 26 | other >> 6) * 2.0**-53)
-
-    def below(self, n: int) -> int:
-        """Uniform in [0, n), without bias; n > 0."""
-        while True:
-            product = int(self.next(1)[0]) * n
-            if product % 2**32 >= (2**32 - n) % n:
-                return product >> 32
-
-    def coin(self) -> bool:
-        return self.below(2) == 0
 
 
 @dataclass(frozen=True)
@@ -139,7 +95,7 @@ def most_frequent_colour(background: Background) -> Colour:
 
 
 def _random_colour(stream: RandomStream) -> Bytes:
-    return _unpacked(stream.next(1)[0] >> 8)
+    return _unpacked(stream.next() >> 8)
 
 
 def _pattern(stream: RandomStream, rows: Numbers, columns: Numbers) -> Bytes:
@@ -178,7 +134,7 @@ def repaint(observation: Observation, which: Sequence[int], how: How) -> Observa
         rgb[dark] = (rgb[dark].astype(int) * SHADOW + 128) >> 8
     elif isinstance(how, Noise):
         covered |= shaded & (observation.ids == 0)
-        rgb[covered] = _unpacked(how.stream.next(int(covered.sum())) >> 8)
+        rgb[covered] = _unpacked(how.stream.next(int(covered.sum())) >> numpy.uint64(8))
     else:
         alone = shaded & ((shadows & ~numpy.uint16(bits)) == 0)
         rgb[alone] = numpy.minimum(255, (rgb[alone].astype(int) * 256 + SHADOW // 2) // SHADOW)

@@ -46,9 +46,14 @@ class RandomStream:
         self._used += count
         return numpy.stack(c, 1).reshape(-1)[start:start + count]
 
-    def next(self) -> int:
+    @overload
+    def next(self, size: None = ...) -> int: ...
+    @overload
+    def next(self, size: int) -> numpy.typing.NDArray[numpy.uint64]: ...
+
+    def next(self, size: Optional[int] = None) -> Any:
         """32 uniform bits."""
-        return int(self._bits(1)[0])
+        return int(self._bits(1)[0]) if size is None else self._bits(size)
 
     @overload
     def uniform(self, low: float = ..., high: float = ..., size: None = ...) -> float: ...

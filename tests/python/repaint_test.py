@@ -7,8 +7,8 @@ import unittest
 import numpy
 
 import lgabench
-from lgabench_method import Demonstration, Instruction, Needs, Selection, Step, testing
-from lgabench_method.repaint import (Background, Colour, Noise, RandomStream, RandomTextures, augmented, most_frequent_colour,
+from lgabench_method import Demonstration, Instruction, Needs, RandomStream, Selection, Step, testing
+from lgabench_method.repaint import (Background, Colour, Noise, RandomTextures, augmented, most_frequent_colour,
                                      repaint, unselected, usual_background)
 
 GOLDEN = json.loads((pathlib.Path(__file__).parents[1] / "unit/golden/repaint.json").read_text())

@@ -91,6 +91,7 @@ TEST(Readers, ThePageSaysWhatTheSuiteAsksAndWhatItsArmsAre) {
 
 TEST(Readers, EveryShippedSuiteHasAQuestionAndWordsForEachOfItsArms) {
   for (const auto& file : fs::directory_iterator(data_directory() / "suites")) {
+    if (file.is_directory()) continue;  // their claims
     const report::AboutSuite about = report::about_suite(file.path().stem().string());
     EXPECT_FALSE(about.question.empty()) << file.path();
     const Json suite = read_json(file.path());

@@ -74,6 +74,7 @@ TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
   for (const auto& [folder, schema] : {std::pair{"scenarios", "scenario"}, std::pair{"suites", "suite"}}) {
     int files = 0;
     for (const auto& entry : fs::directory_iterator(data_directory() / folder)) {
+      if (entry.is_directory()) continue;  // suites' claims
       ++files;
       Json document = read_json(entry.path());
       EXPECT_EQ(complaints(schema, document), Complaints()) << entry.path();
@@ -81,6 +82,39 @@ TEST(Schemas, AcceptEveryShippedScenarioAndSuite) {
       EXPECT_NE(complaints(schema, document), Complaints());
     }
     EXPECT_GT(files, 3);
+  }
+}
+
+TEST(Schemas, DescribeASuitesOwnClaims) {
+  const Json one{{"id", "K"},
+                 {"statement", "LGA loses less."},
+                 {"refuted_if", "it loses more"},
+                 {"test", "slope"},
+                 {"above", "lga"},
+                 {"below", "gcbc_seg"},
+                 {"option", "missing"},
+                 {"levels", {0, .1}}};
+  const Json good{{"claims", {one}}};
+  EXPECT_EQ(complaints("suite_claims", good), Complaints());
+  for (const char* patch : {R"({"test": "ordering"})", R"({"margin": 0.1})", R"({"levels": null})",
+                            R"({"surprise": 1})", R"({"refuted_if": null})"}) {
+    Json broken = good;
+    broken["claims"][0].merge_patch(Json::parse(patch));
+    EXPECT_NE(complaints("suite_claims", broken), Complaints()) << patch;
+  }
+}
+
+TEST(Schemas, DescribeACue) {
+  Json scenario = read_json(data_directory() / "scenarios" / "heart.json");
+  scenario["train"] = {{"cue", {{"object_type", "block"}, {"texture", "blue"}, {"count", 2}}},
+                       {"as_method_asks", false}};
+  scenario["tests"] = {{{"arm", "moved"}, {"cue", "moved"}}};
+  EXPECT_EQ(complaints("scenario", scenario), Complaints());
+  for (const char* patch : {R"({"train": {"cue": {"count": 4}}})", R"({"train": {"cue": {"texture": null}}})",
+                            R"({"train": {"cue": "moved"}})", R"({"tests": [{"arm": "moved", "cue": true}]})"}) {
+    Json broken = scenario;
+    broken.merge_patch(Json::parse(patch));
+    EXPECT_NE(complaints("scenario", broken), Complaints()) << patch;
   }
 }
 

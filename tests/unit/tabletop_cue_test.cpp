@@ -195,6 +195,8 @@ TEST(Cue, RefusesWhatItCannotBe) {
   EXPECT_SAYS(of_heart(R"({"train": {"cue": {"texture": "plaid"}}})"), "/train/cue/texture: expected a texture");
   EXPECT_SAYS(of_heart(R"({"train": {"cue": {"object_type": "heart"}}})"),
               "/train/cue: expected an object outside of what \"Bring me the heart.\" means");
+  EXPECT_SAYS(of_heart(R"({"never_distractor": {"object_types": ["small block"], "textures": "ALL"}})"),
+              "/train/cue: expected an object outside of \"never_distractor\"");
   EXPECT_SAYS(of_heart(R"({"train": {"cue": {"object_type": "pallet"}}})"), "what things are brought to");
   EXPECT_SAYS(of_heart(R"({"train": {"cue": {"count": 4}}})"), "/train/cue/count");
   EXPECT_SAYS(of_heart(R"({"train": {"cue": {"colour": "red"}}})"), "colour");

@@ -36,7 +36,7 @@ void print_section(const std::vector<report::Claim>& claims, const std::string& 
 int print_claims(const report::Report& report, const std::string& format) {
   const auto& claims = report.claims;
   if (format == "text")
-    print_section(claims, "The paper's claims");
+    print_section(claims, report::claims_title(claims));
   else if (format == "json")
     to_stdout("{}\n", canonical(report::to_json(report.summary.suite, claims)));
   else
@@ -115,9 +115,9 @@ void add_report(CLI::App& app, int& exit) {
   verb->add_option("--format", options->format, "What to print; latex is every table")
       ->check(one_of("format", {"text", "md", "latex", "json", "csv"}))
       ->capture_default_str();
-  CLI::Option* const claims =
-      verb->add_flag("--claims", options->claims,
-                     "Test the paper's claims instead of printing tables (text or json); exit 1 if one is reversed");
+  CLI::Option* const claims = verb->add_flag("--claims", options->claims,
+                                             "Test the suite's own claims, or else the paper's, instead of printing "
+                                             "tables (text or json); exit 1 if one is reversed");
   verb->add_option("--difference", options->difference,
                    "Test row A against row B, paired, instead of printing tables (text or json); exit 1 if B is "
                    "above A beyond chance")

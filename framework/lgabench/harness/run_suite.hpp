@@ -26,6 +26,7 @@ struct RunPlan {
   std::vector<AnswerFile> answers{};  // that the cells name
   std::optional<LiveModel> live{};    // that the cells ask
   Json live_about{};                  // {"model", "provider", "prompt"}: who that is, for run.json
+  Json claims = nullptr;              // the suite's own, for run.json; null: none
   Existing existing = Existing::same;
   PoolOptions pool;
   bool confined = true;         // methods' processes, see host/confine.hpp

@@ -11,6 +11,7 @@
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/core/scenario_files.hpp>
 #include <lgabench/core/suggest.hpp>
+#include <lgabench/record/suite_claims.hpp>
 
 namespace lgabench {
 namespace {
@@ -246,6 +247,7 @@ Suite load_suite(const std::string& id) {
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
   if (reader.has("about")) expect_about(reader.at("about"));
+  suite.claims = claims_beside(file);
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");
   for (const auto& preset : suite.presets.items()) preset_design(suite, preset.key());

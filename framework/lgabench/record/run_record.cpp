@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <lgabench/record/layout.hpp>
+#include <lgabench/record/suite_claims.hpp>
 
 namespace lgabench {
 namespace {
@@ -76,6 +77,10 @@ RunRecord read_run_record(const Json& json, const std::string& file) {
   reader.at("machine").at("processor").string();
   record.machine = reader.at("machine").json();
   if (reader.has("answers")) record.answers = reader.at("answers").json();
+  if (reader.has("claims")) {
+    record.claims = reader.at("claims").json();
+    read_suite_claims(record.claims, file + ": /claims");
+  }
   record.shard = shard_at(reader, record.cells.size());
   if (reader.has("merged")) record.merged = reader.at("merged").json();
   return record;
@@ -93,6 +98,7 @@ Json to_json(const RunRecord& record) {
             {"plugins", plugins},        {"build", record.build},       {"version", record.version},
             {"program", record.program}, {"command", record.command},   {"confinement", record.confinement},
             {"answers", record.answers}, {"started", record.started},   {"machine", record.machine}};
+  if (!record.claims.is_null()) json["claims"] = record.claims;
   if (record.shard)
     json["shard"] = {{"index", record.shard->index}, {"count", record.shard->count}, {"cells", record.shard->cells}};
   if (!record.merged.is_null()) json["merged"] = record.merged;

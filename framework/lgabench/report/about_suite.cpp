@@ -15,13 +15,18 @@ std::string AboutSuite::arm(const std::string& name) const {
   return text;
 }
 
-AboutSuite about_suite(const std::string& id) {
-  AboutSuite about;
+fs::path installed_suite(const std::string& id) {
   const bool is_name = !id.empty() && std::all_of(id.begin(), id.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-';
   });
   const fs::path file = data_directory() / "suites" / (id + ".json");
-  if (!is_name || !fs::exists(file)) return about;
+  return is_name && fs::exists(file) ? file : fs::path();
+}
+
+AboutSuite about_suite(const std::string& id) {
+  AboutSuite about;
+  const fs::path file = installed_suite(id);
+  if (file.empty()) return about;
   const Json json = read_json(file);
   const JsonReader suite(json, file.string());
   if (suite.has("options")) about.options = suite.at("options").json();

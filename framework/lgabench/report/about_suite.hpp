@@ -19,6 +19,9 @@ struct AboutSuite {
   std::string arm(const std::string& name) const;
 };
 
+/// The file of an installed suite; empty where there is none of that name.
+fs::path installed_suite(const std::string& id);
+
 /// That of an installed suite; empty for one that is not installed, such as a file of the user's own.
 AboutSuite about_suite(const std::string& id);
 

@@ -68,18 +68,6 @@ std::string reasons(const std::vector<ClaimedDifference>& differences, Test test
   return all.empty() ? "no method's cell has been played" : fmt::format("{}", fmt::join(all, "; "));
 }
 
-void conclude(Claim& claim, const Field& field) {
-  claim.rehearsal = field.rehearsal && std::any_of(claim.differences.begin(), claim.differences.end(),
-                                                   [](const auto& d) { return d.participants > 0; });
-  const bool refused = !claim.reason.empty();  // before any row was looked at
-  claim.verdict = worst(claim.differences, &ClaimedDifference::these);
-  claim.alike = worst(claim.differences, &ClaimedDifference::alike);
-  if (claim.verdict == Verdict::not_tested && !refused)
-    claim.reason = reasons(claim.differences, &ClaimedDifference::these);
-  if (claim.alike == Verdict::not_tested)
-    claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
-}
-
 // Arms that give only commands without demonstrations.
 std::vector<std::string> unseen_arms(const Field& field) {
   std::set<std::string> seen;
@@ -267,14 +255,36 @@ std::map<std::pair<std::string, std::string>, Field> fields_of(const RunResults&
 
 }  // namespace
 
+void conclude(Claim& claim, const Field& field) {
+  claim.rehearsal = field.rehearsal && std::any_of(claim.differences.begin(), claim.differences.end(),
+                                                   [](const auto& d) { return d.participants > 0; });
+  const bool refused = !claim.reason.empty();  // before any row was looked at
+  claim.verdict = worst(claim.differences, &ClaimedDifference::these);
+  claim.alike = worst(claim.differences, &ClaimedDifference::alike);
+  if (claim.verdict == Verdict::not_tested && !refused)
+    claim.reason = reasons(claim.differences, &ClaimedDifference::these);
+  if (claim.alike == Verdict::not_tested)
+    claim.reason_alike = refused ? claim.reason : reasons(claim.differences, &ClaimedDifference::alike);
+}
+
 std::string to_string(Verdict verdict) {
   constexpr const char* words[] = {"held", "reversed", "undecided", "not tested"};
   return words[static_cast<int>(verdict)];
 }
 
+std::string claims_title(const std::vector<Claim>& claims) {
+  return !claims.empty() && !claims.front().refuted_if.empty() ? "The suite's claims" : "The paper's claims";
+}
+
 std::vector<Claim> test_claims(const RunResults& run) {
-  const std::vector<PaperClaim> paper = paper_claims();
   const auto fields = fields_of(run);
+  if (const std::vector<SuiteClaim> own = own_claims(run); !own.empty()) {
+    std::vector<Claim> claims;
+    for (const auto& item : fields)
+      for (Claim& claim : test_own(own, item.second)) claims.push_back(std::move(claim));
+    return claims;
+  }
+  const std::vector<PaperClaim> paper = paper_claims();
   std::vector<std::pair<const Field*, const PaperClaim*>> tests;
   for (const auto& item : fields)
     for (const PaperClaim& claim : paper) tests.emplace_back(&item.second, &claim);

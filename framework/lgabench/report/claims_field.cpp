@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/pairs.hpp>
@@ -29,10 +30,20 @@ std::set<std::string> participants(const Field::People& one, const Field::People
   return names;
 }
 
+// A method's option, or an error that was made in what it selected.
+Json value_of(const CellResult& cell, const std::string& option) {
+  if (cell.options.contains(option)) return cell.options.at(option);
+  if (option == "missing") return cell.configuration.selection_errors.missing;
+  if (option == "added") return cell.configuration.selection_errors.added;
+  return nullptr;
+}
+
 bool is_method(const CellResult& cell, const ClaimedMethod& method) {
   if (cell.id != method.id) return false;
-  for (const auto& [option, value] : method.options)
-    if (!cell.options.contains(option) || option_text(cell.options.at(option)) != value) return false;
+  for (const auto& [option, text] : method.options) {
+    const Json value = value_of(cell, option), wanted = json_or_null(text);
+    if (value.is_null() || (option_text(value) != text && !(value.is_number() && value == wanted))) return false;
+  }
   const std::vector<std::string> words = row_words(cell.method);  // the id, then the options that the row's name tells
   return std::all_of(words.begin() + 1, words.end(), [&method](const std::string& word) {
     return method.options.count(word.substr(0, word.find('='))) != 0;
@@ -154,6 +165,75 @@ ClaimedDifference measured_rows(const Field& field, const std::string& claim, co
   d.participants = pairs.participants();
   d.these.change = pairs.change(
       fmt::format("claims/{}/{}/{}/{}/{}/{}/{}", claim, field.layout, field.engine, d.above, d.below, arm, n));
+  d.alike = over_scenarios(d.by_scenario);
+  return d;
+}
+
+ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n) {
+  constexpr double per = .1;
+  ClaimedDifference d;
+  d.above = claim.above, d.below = claim.below, d.arm = arm, d.demonstrations = n;
+  d.unit = fmt::format("success per {} of {}", per, claim.option);
+  const double middle = mean(claim.levels);
+  std::vector<double> weights;
+  double squares = 0, reach = 0;
+  for (const double level : claim.levels) squares += (level - middle) * (level - middle);
+  for (const double level : claim.levels) weights.push_back(per * (level - middle) / squares);
+  for (const double weight : weights) reach += std::abs(weight);  // the most that the two can differ by
+
+  std::vector<const Field::Policies*> above, below;  // of each level
+  for (const auto& [row, levels] : {std::pair(claim.above, &above), {claim.below, &below}})
+    for (const double level : claim.levels) {
+      ClaimedMethod method = claimed_method(row);
+      method.options[claim.option] = fmt::format("{}", level);
+      levels->push_back(field.find(find_row(field, method), n));
+      if (!levels->back() && d.these.reason.empty()) d.these.reason = "no row " + method.text();
+    }
+  d.alike.reason = d.these.reason;
+  if (!d.these.reason.empty()) return d;
+
+  Field::Policies all;
+  for (const auto* levels : {&above, &below})
+    for (const Field::Policies* policies : *levels) all.insert(policies->begin(), policies->end());
+  PairedRow pairs;
+  std::set<long long> seeds;
+  int wanted = 0;
+  for (const auto& item : all) {
+    if (!has_arm(*item.second.begin()->second, arm)) continue;
+    ++wanted;
+    seeds.insert(item.first.second);
+    const auto cell = [&](const Field::Policies* policies) -> const CellResult* {
+      const auto people = policies->find(item.first);
+      return people == policies->end() ? nullptr : finished(people->second, "");
+    };
+    PolicyPair slopes;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const CellResult *first = cell(below[i]), *second = cell(above[i]), *of_all = cell(above.front());
+      if (!first || !second || !of_all) break;
+      pair_policies(*of_all, *second, arm);  // the same scenes at each level
+      PolicyPair pair = pair_policies(*first, *second, arm);
+      const std::vector<double> differences = pair.differences();
+      if (i == 0) slopes = pair, slopes.first.assign(differences.size(), 0), slopes.second = slopes.first;
+      for (std::size_t scene = 0; scene < differences.size(); ++scene)
+        slopes.second[scene] += weights[i] * differences[scene] / reach;
+      if (i + 1 == weights.size()) pairs.add(item.first.first, slopes);
+    }
+  }
+  if (pairs.policies() < wanted || pairs.policies() < 2) {
+    d.these.reason = d.alike.reason =
+        pairs.policies() < wanted ? fmt::format("{} of {} policies finished at all levels", pairs.policies(), wanted)
+                                  : "a slope needs two policies or more";
+    return d;
+  }
+  d.by_scenario = pairs.by_scenario();
+  for (auto& item : d.by_scenario) item.second *= reach;
+  d.scenarios = pairs.scenarios();
+  d.scenes = pairs.scenes();
+  d.seeds = static_cast<int>(seeds.size());
+  d.policies = pairs.policies();
+  Change change = pairs.change(fmt::format("claims/{}/{}/{}/{}/{}", claim.id, field.layout, field.engine, arm, n));
+  change.difference *= reach, change.interval.low *= reach, change.interval.high *= reach;
+  d.these.change = change;
   d.alike = over_scenarios(d.by_scenario);
   return d;
 }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <lgabench/record/suite_claims.hpp>
 #include <lgabench/report/claims.hpp>
 #include <lgabench/report/paper.hpp>
 
@@ -43,6 +44,19 @@ ClaimedDifference measured(const Field& field, const std::string& claim, const C
 /// Likewise of two rows that the field has at this number of demonstrations.
 ClaimedDifference measured_rows(const Field& field, const std::string& claim, const std::string& above,
                                 const std::string& below, const std::string& arm, int n);
+
+/// What success does per 0.1 of the option of both methods, least squares over its levels, of `above` minus that of
+/// `below`; paired as above, all levels together.
+ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, const std::string& arm, int n);
+
+/// A claim's verdicts, from those of its differences.
+void conclude(Claim& claim, const Field& field);
+
+/// As the run's record has them, or else the installation, of a run that is older than they are.
+std::vector<SuiteClaim> own_claims(const RunResults& run);
+
+/// Each on the field; their differences, all together, are a family of tests.
+std::vector<Claim> test_own(const std::vector<SuiteClaim>& own, const Field& field);
 
 /// As one that enters means.
 bool has_arm(const CellResult& cell, const std::string& arm);

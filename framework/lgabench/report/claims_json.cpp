@@ -44,6 +44,7 @@ Json to_json(const std::string& suite, const std::vector<Claim>& claims) {
                    {"reason", claim.reason},
                    {"scenarios_like_these", {{"verdict", to_string(claim.alike)}, {"reason", claim.reason_alike}}},
                    {"differences", differences}});
+    if (!claim.refuted_if.empty()) all.back()["refuted_if"] = claim.refuted_if;
     if (claim.rehearsal) all.back()["rehearsal"] = true;
   }
   return {{"suite", suite}, {"claims", all}};

@@ -128,8 +128,9 @@ Spans headline(const Material& material, const AboutSuite& about) {
     if (claim.verdict != Verdict::not_tested)
       verdicts.push_back(fmt::format("{} {}", claim.id, to_string(claim.verdict)));
   if (!verdicts.empty()) {
+    const bool own = !material.claims.front().refuted_if.empty();
     spans.emplace_back(" ");
-    spans.push_back(Span::link("The paper’s claims", "#claims"));
+    spans.push_back(Span::link(own ? "The suite’s claims" : "The paper’s claims", "#claims"));
     spans.emplace_back(fmt::format(": {}.", fmt::join(verdicts, ", ")));
   }
   return spans;

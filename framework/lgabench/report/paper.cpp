@@ -59,17 +59,13 @@ Enum choice(const JsonReader& value, const std::array<const char*, n>& words) {
   return static_cast<Enum>(found - words.begin());
 }
 
-// "ID+OPTION=VALUE", as rows are named.
 std::vector<ClaimedMethod> read_methods(const JsonReader& list) {
   std::vector<ClaimedMethod> all;
   for (const std::string& row : list.strings()) {
     const std::vector<std::string> words = row_words(row);
-    ClaimedMethod& method = all.emplace_back(ClaimedMethod{words.front()});
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      const std::size_t equals = words[i].find('=');
-      if (equals == std::string::npos) list.fail("rows: ID+OPTION=VALUE");
-      method.options[words[i].substr(0, equals)] = words[i].substr(equals + 1);
-    }
+    if (std::any_of(words.begin() + 1, words.end(), [](const auto& word) { return word.find('=') == word.npos; }))
+      list.fail("rows: ID+OPTION=VALUE");
+    all.push_back(claimed_method(row));
   }
   if (all.empty()) list.fail("a row or more");
   return all;
@@ -141,6 +137,14 @@ std::string ClaimedMethod::text() const {
   for (const auto& [option, value] : options)
     text += fmt::format("{}{}={}", text == id ? " with " : ", ", option, value);
   return text;
+}
+
+ClaimedMethod claimed_method(const std::string& row) {
+  const std::vector<std::string> words = row_words(row);
+  ClaimedMethod method{words.front()};
+  for (std::size_t i = 1; i < words.size(); ++i)
+    method.options[words[i].substr(0, words[i].find('='))] = words[i].substr(words[i].find('=') + 1);
+  return method;
 }
 
 std::vector<PaperClaim> paper_claims() {

@@ -42,6 +42,9 @@ struct ClaimedMethod {
   std::string text() const;
 };
 
+/// Of "ID+OPTION=VALUE+...", as rows are named.
+ClaimedMethod claimed_method(const std::string& row);
+
 /// A claim of the paper, as data.
 struct PaperClaim {
   /// ordering: each of `above` is better than each of `below`; equivalence: within `margin` of it, where people made

@@ -125,7 +125,7 @@ Document report_document(const Material& material) {
   };
   for (Section& section : success(material)) add(std::move(section));
   add(perturbations(material));
-  add(claims_section(material.claims, material.styles, "The paper's claims"));
+  add(claims_section(material.claims, material.styles, claims_title(material.claims)));
   add(phi(material));
   add(selection_errors(material));
   add(failures(material));

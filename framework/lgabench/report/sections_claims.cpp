@@ -23,10 +23,12 @@ struct Placed {
   std::string place;
 };
 
+bool is_slope(const ClaimedDifference& d) { return d.unit != "success" && d.unit != "seconds"; }
+
 // The columns that say which difference a row is of.
 std::vector<TableCell> place_cells(const MethodStyles& styles, const Placed& of) {
   const ClaimedDifference& d = of.difference;
-  TableCell rows(styles.name(d.above) + " − " + styles.name(d.below));
+  TableCell rows(styles.name(d.above) + " − " + styles.name(d.below) + (is_slope(d) ? ", " + d.unit : ""));
   rows.style = styles(d.above);
   return {of.claim.id,
           of.claim.layout,
@@ -43,7 +45,7 @@ TableCell test_cell(const Placed& of, const Tested& t, const std::string& member
   const Change& c = *t.change;
   const bool seconds = of.difference.unit == "seconds";
   const auto number = [&](double x, const std::string& where) {
-    return Span::number(signed_text(x, seconds ? 1 : 2), of.place + where);
+    return Span::number(signed_text(x, seconds ? 1 : is_slope(of.difference) ? 3 : 2), of.place + where);
   };
   Spans spans;
   if (first) {
@@ -149,6 +151,8 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   verdicts.caption = "Verdicts";
   verdicts.heads = {"claim", "statement", "layout", "engine", "these scenarios", "scenarios like these"};
   verdicts.align = "llllll";
+  const bool own = !claims.front().refuted_if.empty();
+  if (own) verdicts.heads.insert(verdicts.heads.begin() + 2, "refuted if"), verdicts.align += 'l';
   untested.name = "claims_not_tested";
   untested.caption = "Claims that this run does not test";
   untested.heads = {"claim", "statement", "layout", "engine", "why"};
@@ -164,8 +168,11 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
                                {claim.id, claim.statement, claim.layout, claim.engine,
                                 verdict_cell(claim.verdict, claim.reason, claim.rehearsal),
                                 verdict_cell(claim.alike, claim.reason_alike, claim.rehearsal)}});
+    if (own && claim.verdict != Verdict::not_tested)
+      verdicts.rows.back().cells.insert(verdicts.rows.back().cells.begin() + 2, TableCell(claim.refuted_if));
     lines.items.push_back(
         {fmt::format("{}  {} (layout {}, engine {})", claim.id, claim.statement, claim.layout, claim.engine)});
+    if (own) lines.items.push_back({"      refuted if " + claim.refuted_if});
     lines.items.push_back({"      these scenarios: " + with_reason(claim.verdict, claim.reason, claim.rehearsal)});
     if (!claim.differences.empty())
       lines.items.push_back(
@@ -188,8 +195,10 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
       Paragraph{{"“These scenarios”: would new test scenes and training seeds give the same verdict? “Scenarios like "
                  "these”: would new scenarios (Student's t over the scenarios' differences; six are needed)? Each "
                  "difference is that of the mean over scenarios, "
-                 "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over "
-                 "the rows compared in one arm at one number of demonstrations, for each of the two by itself."}});
+                 "paired by training seed, participant and scene; brackets hold 95 % intervals, p is Holm's over " +
+                 std::string(own ? "all differences of the suite's claims on one layout and engine"
+                                 : "the rows compared in one arm at one number of demonstrations") +
+                 ", for each of the two by itself."}});
   section.add(reading, details(styles, tested));
   Grid scenarios = by_scenario(styles, tested);
   if (scenarios.rows.empty()) return section;

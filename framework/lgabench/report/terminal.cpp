@@ -21,7 +21,7 @@ std::string text_of(const Spans& spans) { return TableCell(spans).text(); }
 
 constexpr std::size_t indent = 2, gap = 2, widest = 132;  // columns of a terminal
 
-std::vector<std::size_t> widths(const Grid& grid) {
+std::vector<std::size_t> widths_of(const Grid& grid) {
   std::vector<std::size_t> wide(grid.heads.size());
   for (std::size_t i = 0; i < wide.size(); ++i) {
     wide[i] = display_width(grid.heads[i].text());
@@ -34,7 +34,7 @@ std::vector<std::size_t> widths(const Grid& grid) {
 
 // A table that is too wide as several, of about as many columns each, below each other.
 std::vector<Grid> narrow(const Grid& grid) {
-  const std::vector<std::size_t> wide = widths(grid);
+  const std::vector<std::size_t> wide = widths_of(grid);
   const std::size_t all = std::accumulate(wide.begin(), wide.end(), indent), columns = wide.size() - 1;
   if (all <= widest || columns < 2 || grid.group_head.empty()) return {grid};
   const std::size_t room = widest - std::min(widest - 1, wide.front() + indent),
@@ -57,7 +57,7 @@ std::vector<Grid> narrow(const Grid& grid) {
 }
 
 std::string one_table(const Grid& grid) {
-  const std::vector<std::size_t> wide = widths(grid);
+  const std::vector<std::size_t> wide = widths_of(grid);
   std::string text = grid.caption.empty() ? "" : grid.caption + "\n\n";
   const auto line = [&](const std::vector<TableCell>& cells, std::size_t inset) {
     std::string row;
