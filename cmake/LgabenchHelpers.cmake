@@ -36,7 +36,7 @@ set(lgabench_public_headers
     core/language_model.hpp core/meaning.hpp core/method.hpp core/observation.hpp core/physics_world.hpp core/random.hpp core/selection.hpp
     core/shown.hpp core/version.hpp
     plugin/descriptor.hpp plugin/fingerprint.hpp plugin/plugin.hpp
-    abstraction/goal_mask.hpp abstraction/select_features.hpp
+    abstraction/goal_mask.hpp abstraction/repaint.hpp abstraction/select_features.hpp
     learning/archive.hpp learning/cloning_method.hpp learning/featurizer.hpp learning/inputs.hpp learning/learner.hpp learning/noisy_copies.hpp
     learning/samples.hpp)
 

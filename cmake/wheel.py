@@ -12,8 +12,8 @@ import zipfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[1]
 SYSTEM = re.compile(r"(ld-linux|libc|libm|libdl|librt|libpthread|libutil|libresolv|libanl|libstdc\+\+|libgcc_s)(?=[.-])")
-# The encoder with LibTorch would be 440 MB more.
-LEFT_OUT = ("include", "lib/cmake", "share/doc", "share/lgabench/encoder", "lib/liblgabench_encoder.so",
+# What needs LibTorch, the encoder and diffusion, would be 440 MB more.
+LEFT_OUT = ("lib/lgabench/plugins/diffusion.so", "include", "lib/cmake", "share/doc", "share/lgabench/encoder", "lib/liblgabench_encoder.so",
             "bin/lgabench-engine-conformance")
 # OpenCV's core library links BLAS and LAPACK, and nothing here calls them: the reference ones are 10 MB smaller than OpenBLAS.
 REFERENCE_BLAS = ("/usr/lib/x86_64-linux-gnu/blas", "/usr/lib/x86_64-linux-gnu/lapack")

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <common/textures.hpp>
+#include <lgabench/core/observation.hpp>
 #include <lgabench/core/view.hpp>
 
 namespace lgabench::common {
@@ -17,7 +18,7 @@ struct Light {
   Vec3 towards = usual_light;
   double climb = 1 / towards.z;  // of the way to the light, for each metre of height
 };
-constexpr int ambient = 141;  // brightness in shadow; a level surface in the light has 256, wherever that comes from
+constexpr int ambient = shadow_brightness;  // in 1/256; a level surface in the light has 256, wherever that comes from
 
 /// Texture coordinates: the plane that faces the surface most, in the body's frame, so that a picture turns with its
 /// object; on top, u is local y (right at yaw 0) and v local x (down), on a side u is y or x and v is -z.

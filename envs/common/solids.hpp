@@ -1,5 +1,7 @@
 // Meshes in the light: where they stand, and whether they keep the light from a point (rays, Embree).
 #pragma once
+#include <fmt/format.h>
+
 #include <array>
 #include <map>
 #include <string>
@@ -7,6 +9,8 @@
 
 #include <common/light.hpp>
 #include <common/objects.hpp>
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/observation.hpp>
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
@@ -57,5 +61,14 @@ struct PlacedSolid {
   /// May do so for a point of the other: its box, drawn out to the end of its shadow, meets the other's.
   bool may_shade(const PlacedSolid& other) const;
 };
+
+/// Gives each its bit of Observation::shadows. @throws InputError for more than these have room for.
+template <typename Placed>
+void give_shadow_bits(std::vector<Placed>& placed) {
+  if (placed.size() > most_shadows)
+    throw InputError(
+        fmt::format("scene: expected at most {} objects for shadows, got {}", most_shadows, placed.size()));
+  for (std::size_t i = 0; i < placed.size(); ++i) placed[i].shadow_bit = static_cast<std::uint16_t>(1U << i);
+}
 
 }  // namespace lgabench::common

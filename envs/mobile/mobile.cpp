@@ -100,9 +100,11 @@ class Mobile final : public Environment {
     return all;
   }
 
+  void show_shadows(bool on) override { shadows_ = on; }
+
   Observation observe() override {
     find_objects();
-    return seen_by_->render(objects_);
+    return seen_by_->render(objects_, shadows_);
   }
 
   Action expert_action() const override {
@@ -213,6 +215,7 @@ class Mobile final : public Environment {
   std::unique_ptr<PhysicsWorld> world_;
   mutable Renderer renderer_;
   std::unique_ptr<Renderer> in_view_;
+  bool shadows_ = false;
   Renderer* seen_by_ = &renderer_;
   std::map<std::string, int> receivers_;                                   // by type
   std::map<std::tuple<std::string, double, double, double>, int> models_;  // by type, size, friction and mass

@@ -18,6 +18,7 @@ struct Placed : PlacedSolid {
   const Texture* texture = nullptr;
   Rgb colour{};
   std::uint8_t id = 0;
+  std::uint16_t shadow_bit = 0;  // in Observation::shadows
   std::vector<Vec2> seen_at;     // where the camera sees each vertex
   std::vector<double> nearness;  // one over its depth; 0 where it is not in front of the camera
   Area area{};                   // holds all that is seen of it
@@ -227,10 +228,15 @@ struct Renderer::Impl {
     return placed;
   }
 
+  // Whether what a pixel of the empty room shows has light to lose.
+  bool room_lit(std::size_t pixel) const {
+    return !std::equal(&room_rgb[3 * pixel], &room_rgb[3 * pixel] + 3, &room_shaded[3 * pixel]);
+  }
+
   Vec3 point(int row, int column) const { return camera.eye + 1 / nearness[at(row, column)] * camera.ray(row, column); }
 
   // Colours of the pixels that show this object; how many there are.
-  int paint(const Placed& object, const std::vector<Placed>& objects, std::vector<std::uint8_t>& rgb) const {
+  int paint(const Placed& object, const std::vector<Placed>& objects, Observation& seen) const {
     std::vector<const Placed*> casters;
     for (const Placed& other : objects)
       if (other.may_shade(object)) casters.push_back(&other);
@@ -247,7 +253,10 @@ struct Renderer::Impl {
         int brightness = lit;
         for (std::size_t i = 0; i < casters.size() && brightness > ambient; ++i)
           if (casters[i]->shades(p)) brightness = ambient;
-        paint_pixel(&rgb[3 * pixel], object.texture->at(dot(u, local), dot(v, local)), brightness);
+        if (!seen.shadows.empty() && lit > ambient)
+          for (const Placed* caster : casters)
+            if (caster->shades(p)) seen.shadows[pixel] |= caster->shadow_bit;
+        paint_pixel(&seen.rgb[3 * pixel], object.texture->at(dot(u, local), dot(v, local)), brightness);
       }
     return visible;
   }
@@ -267,16 +276,22 @@ void Renderer::look(const View& view) {
 
 const Camera& Renderer::camera() const { return impl_->camera; }
 
-Observation Renderer::render(const std::vector<VisibleObject>& objects) {
-  const std::vector<Placed> placed = impl_->trace(objects);
+Observation Renderer::render(const std::vector<VisibleObject>& objects, bool shadows) {
+  std::vector<Placed> placed = impl_->trace(objects);
   Observation seen{impl_->size, impl_->room_rgb, impl_->ids, {}};
+  if (shadows) {
+    give_shadow_bits(placed);
+    seen.shadows.resize(seen.ids.size());
+  }
   for (const Placed& object : placed)
     impl_->shade_room(object, [&](std::size_t pixel) {
-      if (!seen.ids[pixel]) std::copy_n(&impl_->room_shaded[3 * pixel], 3, &seen.rgb[3 * pixel]);
+      if (seen.ids[pixel]) return;
+      if (shadows && impl_->room_lit(pixel)) seen.shadows[pixel] |= object.shadow_bit;
+      std::copy_n(&impl_->room_shaded[3 * pixel], 3, &seen.rgb[3 * pixel]);
     });
   for (std::size_t i = 0; i < objects.size(); ++i)
-    seen.instances.push_back({objects[i].instance_id, objects[i].object_type, objects[i].texture,
-                              impl_->paint(placed[i], placed, seen.rgb)});
+    seen.instances.push_back(
+        {objects[i].instance_id, objects[i].object_type, objects[i].texture, impl_->paint(placed[i], placed, seen)});
   return seen;
 }
 

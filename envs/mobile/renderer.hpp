@@ -40,8 +40,8 @@ class Renderer {
 
   /// Fills rgb, ids and the instance table (ordered as `objects`), with hard shadows; table, person, tray and bin are
   /// drawn, and have no id. @throws InputError for an unknown object type or texture, an instance id that is 0 or given
-  /// twice, or a pose that is not finite.
-  Observation render(const std::vector<VisibleObject>& objects);
+  /// twice, or a pose that is not finite. `shadows`: whether it has Observation::shadows.
+  Observation render(const std::vector<VisibleObject>& objects, bool shadows = false);
 
   /// Ids alone, of the same bytes. @throws InputError likewise.
   std::vector<std::uint8_t> ids(const std::vector<VisibleObject>& objects);

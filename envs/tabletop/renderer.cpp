@@ -24,6 +24,7 @@ struct Placed : PlacedSolid {
   using PlacedSolid::PlacedSolid;
   const Texture* texture = nullptr;
   std::uint8_t id = 0;
+  std::uint16_t shadow_bit = 0;          // in Observation::shadows
   std::vector<Vec2> seen_at, shadow_at;  // where the camera sees each vertex, where its shadow falls
   Area area{}, shadow_area{};            // hold all that is seen of it, and its shadow on the table
 };
@@ -151,7 +152,10 @@ struct Renderer::Impl {
     const auto [first_row, last_row, first_column, last_column] = object.shadow_area;
     for (int row = first_row; row <= last_row; ++row)
       for (int pixel = row * columns + first_column; pixel <= row * columns + last_column; ++pixel) {
-        if (dark[pixel] && !ids[pixel]) std::copy_n(shaded + 3 * pixel, 3, rgb + 3 * pixel);
+        if (dark[pixel] && !ids[pixel]) {
+          std::copy_n(shaded + 3 * pixel, 3, rgb + 3 * pixel);
+          if (!seen.shadows.empty()) seen.shadows[static_cast<std::size_t>(pixel)] |= object.shadow_bit;
+        }
         dark[pixel] = 0;
       }
   }
@@ -174,6 +178,7 @@ struct Renderer::Impl {
                looks[row * columns + end] == looks[pixel])
           ++end;
         paint_run(object, row, column, end, casters, &seen.rgb[3 * pixel]);
+        if (!seen.shadows.empty()) note_shadows(row, column, end, casters, &seen.shadows[pixel]);
         visible += end - column;
         column = end;
       }
@@ -205,21 +210,35 @@ struct Renderer::Impl {
     for (int column = first; column < end; ++column, rgb += 3)
       paint_pixel(rgb, texture.pixels[texels[column]], brightness[column]);
   }
+
+  // Which of them keep light from pixels of one row, columns `first` to before `end`, which look alike.
+  void note_shadows(int row, int first, int end, const std::vector<const Placed*>& casters,
+                    std::uint16_t* shadows) const {
+    if (looks[row * columns + first].brightness <= ambient) return;
+    for (const Placed* caster : casters)
+      for (int column = first; column < end; ++column) {
+        const Vec2 p = camera.point(row, column);
+        if (caster->shades({p.x, p.y, heights_m[row * columns + column]}))
+          shadows[column - first] |= caster->shadow_bit;
+      }
+  }
 };
 
 Renderer::Renderer() : impl_(std::make_unique<Impl>()) {}
 Renderer::~Renderer() = default;
 
-Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground, const View& view) {
+Observation Renderer::render(const std::vector<VisibleObject>& objects, Ground ground, const View& view, bool shadows) {
   expect_drawable(objects);
   impl_->camera = Camera(view);
   impl_->light = Light{view.light};
   std::vector<Placed> placed;
   for (const VisibleObject& object : objects) placed.push_back(impl_->place(object));
+  if (shadows) give_shadow_bits(placed);
 
   const std::optional<Table> own = view == View() ? std::nullopt : std::optional<Table>({ground, view});
   const Table& empty = own ? *own : usual_table(ground);
   Observation seen{Workspace::picture, empty.in_light, std::vector<std::uint8_t>(pixels), {}};
+  if (shadows) seen.shadows.resize(pixels);
   for (const Placed& object : placed) impl_->clear(object.area);
   for (const Placed& object : placed) impl_->draw(object, seen);
   for (const Placed& object : placed) impl_->shade_table(object, empty, seen);

@@ -31,9 +31,11 @@ class Renderer {
 
   /// Fills rgb, ids and the instance table (ordered as `objects`), with hard shadows. A lit level
   /// surface shows its texture's colour as it is. What lies outside the picture or below the table is not seen.
+  /// `shadows`: whether it has Observation::shadows.
   /// @throws InputError for an unknown object type or texture, an instance id that is 0 or given twice, or a pose that
   /// is not finite.
-  Observation render(const std::vector<VisibleObject>& objects, Ground ground = Ground::plain, const View& view = {});
+  Observation render(const std::vector<VisibleObject>& objects, Ground ground = Ground::plain, const View& view = {},
+                     bool shadows = false);
 
  private:
   struct Impl;

@@ -71,6 +71,8 @@ class Tabletop final : public Environment {
     return observe();
   }
 
+  void show_shadows(bool on) override { shadows_ = on; }
+
   StepResult step(const Action& action) override {
     Motion motion = task_->carry_out(scene_, {*world_, fixed_}, executable(two_poses(), action));
     if (went_wrong_ == failure::none) went_wrong_ = motion.failure;
@@ -96,7 +98,7 @@ class Tabletop final : public Environment {
   Observation observe() override {
     const std::vector<Pose> now = poses();
     for (std::size_t i = 0; i < now.size(); ++i) objects_[i].pose = now[i];
-    return renderer_.render(objects_, task_->ground(), view_);
+    return renderer_.render(objects_, task_->ground(), view_, shadows_);
   }
 
   Action expert_action() const override { return expert_action_for(expect(scene_, role::target).instance_id); }
@@ -136,6 +138,7 @@ class Tabletop final : public Environment {
   std::vector<VisibleObject> objects_;  // in the scene's order, at their poses now
   std::vector<bool> fixed_;
   View view_;
+  bool shadows_ = false;
   Failure went_wrong_ = failure::none;  // in a motion since the scene's beginning
 };
 

@@ -164,10 +164,15 @@ class Instance:
 
 @dataclass(frozen=True)
 class Observation:
-    """The camera's picture: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object."""
+    """The camera's picture: `rgb` is rows x columns x 3, `ids` rows x columns, both uint8; 0 in `ids` is no object.
+
+    `shadows`, where Needs asked for it, is rows x columns, uint16: bit k says that the object of instances[k] keeps light
+    from what the pixel shows. repaint() takes a shadow away by it.
+    """
     rgb: Bytes
     ids: Bytes
     instances: list[Instance]
+    shadows: Optional[numpy.typing.NDArray[numpy.uint16]] = None
 
 
 @dataclass(frozen=True)
@@ -190,6 +195,7 @@ class Needs:
     targets: Literal["selected", "truth"] = "selected"
     noisy_per_clean: int = 0
     noise_max: float = 0.0
+    shadows: bool = False
 
 
 @dataclass

@@ -209,7 +209,7 @@ class Host:
     def act(self, header, payload, descriptor):
         if header["reset"] and hasattr(self.policy, "reset"):
             self.policy.reset()
-        observation = self.observation.read(header["instances"])
+        observation = self.observation.read(header["instances"], header.get("shadows", False))
         action = values.action_bytes(self.policy.act(observation, values.instruction(header["instruction"])),
                                      len(self.services.layout["action"]["numbers"]))
         reply = {"type": "action"}

@@ -18,7 +18,7 @@ from typing import Any, Union
 
 import lgabench
 from lgabench.scenes import as_scenario
-from lgabench_method import (Command, Demonstration, FeatureSpace, Hypothesis, Instruction, Meaning, Method, Observation, Question,
+from lgabench_method import (Command, Demonstration, FeatureSpace, Hypothesis, Instruction, Meaning, Method, Needs, Observation, Question,
                              Refused, Selection, Services, Step)
 
 Scenario = Union[str, lgabench.Scenario]
@@ -77,9 +77,10 @@ def _instruction(environment: lgabench.Environment) -> Instruction:
     return Instruction(environment.utterance, scenario.truth(command))
 
 
-def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0) -> list[Demonstration]:
-    """The oracle's first `count` episodes of a training seed, with the true Selections."""
-    with lgabench.Environment(scenario, engine) as environment:
+def demonstrations(scenario: Scenario = "heart", count: int = 5, *, engine: str = "mujoco", seed: int = 0,
+                   shadows: bool = False) -> list[Demonstration]:
+    """The oracle's first `count` episodes of a training seed, with the true Selections. `shadows`: as Needs has it."""
+    with lgabench.Environment(scenario, engine, shadows=shadows) as environment:
         all_of_them = []
         for index in range(count):
             seen = environment.reset("train", index, seed=seed)
@@ -112,7 +113,8 @@ def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int
     lent = services(kind, space, seed=seed, **options)
     commands = {words: space.command(index) for index, words in enumerate(space.commands)}
     selections = {words: method.select(command, space.space, lent) for words, command in commands.items()}
-    episodes_shown = demonstrations(space, count, engine=engine, seed=seed)
+    needs = method.needs(lent.options) if hasattr(method, "needs") else Needs()
+    episodes_shown = demonstrations(space, count, engine=engine, seed=seed, shadows=needs.shadows)
 
     def shown() -> list[Demonstration]:
         return [Demonstration(Instruction(one.instruction.utterance, selections[one.instruction.utterance]), one.steps)
@@ -124,5 +126,5 @@ def try_out(kind: Callable[[], Method], scenario: Scenario = "heart", count: int
     policy = method.learn(shown(), lent)
     if not os.listdir(lent.files):
         os.rmdir(lent.files)
-    return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), space, episodes,
-                             engine=engine)
+    with lgabench.Environment(space, engine, shadows=needs.shadows) as environment:
+        return lgabench.evaluate(lambda seen, words: policy.act(seen, Instruction(words, selections[words])), environment, episodes)

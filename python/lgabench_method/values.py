@@ -92,7 +92,8 @@ def instruction(json):
 def needs_json(value):
     if not isinstance(value, Needs):
         raise TypeError(f"needs() returned {type(value).__name__}, expected a lgabench_method.Needs")
-    return {"targets": value.targets, "noisy_per_clean": int(value.noisy_per_clean), "noise_max": float(value.noise_max)}
+    return {"targets": value.targets, "noisy_per_clean": int(value.noisy_per_clean), "noise_max": float(value.noise_max),
+            "shadows": bool(value.shadows)}
 
 
 MASK_COLOURS = numpy.array([[205, 60, 50], [32, 32, 32], [245, 245, 245]], numpy.uint8)  # of -1, 0 and 1
@@ -145,13 +146,15 @@ class ObservationMemory:
         self.memory = mmap.mmap(descriptor, rows * columns * (channels + 1), prot=mmap.PROT_READ)
         os.close(descriptor)
 
-    def read(self, instances):
+    def read(self, instances, shadows=False):
         """A copy: the memory holds the next one soon."""
         rows, columns, channels = self.shape
         rgb = numpy.frombuffer(self.memory, numpy.uint8, rows * columns * channels).reshape(self.shape).copy()
         ids = numpy.frombuffer(self.memory, numpy.uint8, rows * columns, rows * columns * channels)
+        bits = numpy.frombuffer(self.memory, "<u2", rows * columns, rows * columns * (channels + 1)) if shadows else None
         return Observation(rgb, ids.reshape(rows, columns).copy(),
-                           [Instance(one["id"], one["object_type"], one["texture"], one["pixels"]) for one in instances])
+                           [Instance(one["id"], one["object_type"], one["texture"], one["pixels"]) for one in instances],
+                           None if bits is None else bits.reshape(rows, columns).copy())
 
 
 def demonstrations(header, descriptor):
@@ -166,6 +169,7 @@ def demonstrations(header, descriptor):
         instances[step].append(Instance(number, words[object_type], words[texture], pixels))
     all_of_them = [Demonstration(instruction(json), []) for json in header["instructions"]]
     for step, owner in enumerate(arrays["demonstration"].tolist()):
-        seen = Observation(arrays["rgb"][step], arrays["ids"][step], instances[step])
+        seen = Observation(arrays["rgb"][step], arrays["ids"][step], instances[step],
+                           arrays["shadows"][step] if "shadows" in arrays else None)
         all_of_them[owner].steps.append(Step(seen, arrays["labels"][step]))
     return all_of_them

@@ -5,6 +5,7 @@
 #include <map>
 
 #include <common/objects.hpp>
+#include <lgabench/abstraction/repaint.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/core/environment.hpp>
 #include <lgabench/core/scenario.hpp>
@@ -166,6 +167,28 @@ void mobile_picture(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(renderer.render(objects));
 }
 
+// A scene of the tabletop, with its shadows.
+Observation shaded() {
+  const Scene scene = training_scene(load_scenario("heart"), "continuous", {}, 0, 0);
+  return tabletop::Renderer().render(tabletop::visible_objects(scene), tabletop::Ground::plain, {}, true);
+}
+
+// What repaint() is given is a copy too.
+void copied(benchmark::State& state) {
+  const Observation seen = shaded();
+  for (auto _ : state) {
+    Observation copy = seen;
+    benchmark::DoNotOptimize(copy);
+  }
+}
+
+void erased(benchmark::State& state) {
+  const Observation seen = shaded();
+  const Background empty{seen.rgb};
+  const Ids all = unselected(seen, {});
+  for (auto _ : state) benchmark::DoNotOptimize(repaint(seen, all, empty));
+}
+
 }  // namespace
 
 BareMujoco& first_scene() { return *played("heart").episodes[0].bare; }
@@ -184,6 +207,8 @@ void register_environment() {
   benchmark::RegisterBenchmark("reset", reset);
   benchmark::RegisterBenchmark("reset/bare", bare_reset);
   benchmark::RegisterBenchmark("picture", picture);
+  benchmark::RegisterBenchmark("repaint", erased);
+  benchmark::RegisterBenchmark("repaint/copy", copied);
   benchmark::RegisterBenchmark("picture/mobile", mobile_picture);
 }
 

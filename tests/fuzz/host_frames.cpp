@@ -37,7 +37,7 @@ Json hello() {
 // With the file that "learn" comes with: a step's pictures, all black, and what the input has beside them.
 void send(Channel& worker, const Frame& frame) {
   if (frame.header.value("type", Json()) != "learn") return worker.send(frame.header, frame.payload);
-  const std::size_t pictures = protocol::observation_bytes(layout().picture);
+  const std::size_t pictures = 4 * layout().picture.pixels();  // rgb and ids
   protocol::SharedMemory file(pictures + fuzz::most_said);
   std::copy(frame.payload.begin(), frame.payload.end(), file.data() + pictures);
   worker.send(frame.header, {}, &file.file());

@@ -120,6 +120,22 @@ TEST_F(Play, CircumstancesAddToAFileAndItReadsBackAsBefore) {
   EXPECT_EQ(bytes(read_demonstrations(more, "more.hdf5")), bytes(before));
 }
 
+TEST_F(Play, ShadowsAreInTheFileWhereTheyWereAskedFor) {
+  Needs needs{Needs::Targets::truth};
+  const auto without = demonstrate(*environment, scenes(2), needs, {"u"});
+  environment->show_shadows(needs.shadows = true);
+  const auto with = demonstrate(*environment, scenes(2), needs, {"u"});
+  environment->show_shadows(false);
+  const auto read = read_demonstrations(bytes(with), "d.hdf5");
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    const Observation& seen = read[i].steps.front().observation;
+    EXPECT_EQ(seen.shadows, with[i].steps.front().observation.shadows);
+    EXPECT_GT(std::count_if(seen.shadows.begin(), seen.shadows.end(), [](auto bits) { return bits != 0; }), 100);
+    EXPECT_EQ(seen.rgb, without[i].steps.front().observation.rgb);
+  }
+  EXPECT_TRUE(read_demonstrations(bytes(without), "d.hdf5").front().steps.front().observation.shadows.empty());
+}
+
 TEST_F(Play, FileReadsBackAsItWasWritten) {
   const auto before = demonstrations(3, 2);
   write_file(path / "d.hdf5", bytes(before));

@@ -133,6 +133,51 @@ TEST(Suite, AddsItsArmsToThoseOfEveryScenario) {
               "/tests/2/arm: expected each arm once");
 }
 
+TEST(Suite, RowsWithoutASelectionArePlayedOnceWhateverItsErrors) {
+  const Suite suite = load_suite("knowledge");
+  std::map<std::string, std::set<std::string>> errors;
+  for (const Cell& cell : expand(suite, preset_design(suite, "smoke"), {}, scan_plugins({shipped_plugin_directory()})))
+    errors[cell.method.id].insert(cell.selection_errors.suffix());
+  EXPECT_EQ(errors.at("lga").size(), 2u);
+  EXPECT_EQ(errors.at("masked_bc").size(), 2u);
+  EXPECT_EQ(errors.at("object_dropout"), std::set<std::string>{""});
+}
+
+TEST(Suite, AVariantMayHaveArmsAndAScenarioAnswersOfItsOwn) {
+  const Scratch scratch("suite");
+  Json json = read_json(data_directory() / "suites/few_members.json");
+  json["id"] = "mine";
+  json["scenarios"] = {"heart", "tiger_colored_object"};
+  json["near_miss"] = {{"heart", json["near_miss"]["heart"]}};
+  json["presets"] = Json::object();
+  json["variants"] = {{"usual", {{"train", {{"members", 2}}}}},
+                      {"alone", {{"arms", {{{"arm", "nothing"}, {"distractors", {0, 0}}}}}}}};
+  json["answers"] = {{"heart", "claude"}};
+  const fs::path file = scratch.path / "mine.json";
+  const auto load = [&] {
+    write_file(file, json.dump());
+    return load_suite(file.string());
+  };
+  const Suite suite = load();
+  const auto arms = [&](const char* id) {
+    std::vector<std::string> ids;
+    for (const Arm& arm : suite_scenario(suite, id, Truth::released).tests) ids.push_back(arm.id);
+    return ids;
+  };
+  EXPECT_EQ(arms("heart_alone"), std::vector<std::string>{"nothing_alone"});
+  EXPECT_EQ(arms("heart_usual").size(), 4u);
+  EXPECT_EQ(suite_scenario(suite, "heart_usual", Truth::released).recorded, "claude");
+  EXPECT_EQ(suite_scenario(suite, "tiger_colored_object_usual", Truth::released).recorded,
+            load_scenario("tiger_colored_object").recorded);
+  json["answers"] = {{"heart", "nobody"}};
+  EXPECT_SAYS(message_of<InputError>(load), "/answers/heart: no answers \"nobody\", expected one of: claude");
+  json["answers"] = {{"red_heart", "claude"}};
+  EXPECT_SAYS(message_of<InputError>(load), "/answers: unknown member \"red_heart\"");
+  json.erase("answers");
+  json["variants"]["alone"]["arms"][0].erase("arm");
+  EXPECT_SAYS(message_of<InputError>(load), "/variants/alone/arms/0");
+}
+
 TEST(Cells, KeyIsOfTheWholeConfiguration) {
   const auto cells = expand(load_suite("q1"), small_grid(), {}, catalogue());
   const Cell& cell = cells.front();

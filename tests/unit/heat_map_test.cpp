@@ -10,6 +10,7 @@
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/random.hpp>
 #include <lgabench/learning/heat_map.hpp>
+#include <lgabench/learning/heat_map_network.hpp>
 #include <lgabench/learning/training.hpp>
 #include <tabletop/two_poses.hpp>
 
@@ -94,6 +95,63 @@ TEST(HeatMap, HasTheGradientsOfFiniteDifferences) {
     EXPECT_NEAR((loss(above) - loss(below)) / expected, 1, .02) << "parameters from " << first;
     first += static_cast<std::size_t>(count);
   }
+}
+
+// A copy's map is drawn towards that of its original, as the cross entropy of the one to the other says.
+TEST(HeatMapNetwork, APenaltyHasTheGradientsOfFiniteDifferences) {
+  HeatMapNetwork network(Field(tabletop::two_poses()), 3, false, 1, 1, *available_kernels().front());
+  RandomStream random("penalty");
+  const auto picture = [&random] {
+    Numbers planes(static_cast<std::size_t>(HeatMapNetwork::padded.pixels() * 3));
+    for (std::size_t i = 0; i < HeatMapNetwork::padded.pixels() * 3; ++i)
+      planes[i] = static_cast<float>(random.uniform());
+    return planes;
+  };
+  const Numbers original = picture(), copy = picture();
+  std::vector<float> parameters = network.parameters().values();
+  for (float& p : parameters) p += static_cast<float>(.1 * random.gaussian());
+  network.parameters().set(parameters);
+  const std::vector<float> like = network.map(original, nullptr, nullptr);
+  std::vector<float> wanted(HeatMapNetwork::cells);
+  wanted[700] = 1;
+  const auto loss = [&](const std::vector<float>& at, double penalty) {
+    network.parameters().set(at);
+    network.clear_gradients();
+    network.map(copy, nullptr, nullptr);
+    return network.teach(wanted, {}, 0, 1, like, penalty);
+  };
+  EXPECT_GT(loss(parameters, 2), loss(parameters, 0) + 1);
+  loss(parameters, 2);
+  const std::vector<float> gradients = network.parameters().gradients();
+  double length = 0, expected = 0;
+  for (const float g : gradients) length += double{g} * g;
+  std::vector<float> above = parameters, below = parameters;
+  for (std::size_t i = 0; i < gradients.size(); ++i) {
+    const double step = 2e-3 * gradients[i] / std::sqrt(length);
+    above[i] += static_cast<float>(step), below[i] -= static_cast<float>(step);
+    expected += gradients[i] * (double{above[i]} - below[i]);
+  }
+  EXPECT_NEAR((loss(above, 2) - loss(below, 2)) / expected, 1, .02);
+}
+
+TEST(HeatMap, CopiesChangeWhatIsLearnedAndThePenaltyToo) {
+  RandomStream random("copies");
+  Samples samples(colours, 8);
+  samples.unaltered = 4;
+  for (int row = 0; row < samples.rows; ++row) {
+    for (std::size_t i = 0; i < 32 * 64 * 3; ++i)
+      samples.picture(0, row)[i] =
+          row < 4 && i != 40u * static_cast<std::size_t>(row) ? .5f : static_cast<float>(random.uniform());
+    const Vec2 at = place(20 + row % 4 * 20, 60);
+    set_label(samples, row, {{at, {}}, {goal, {}}});
+  }
+  const auto learned = [&](double penalty) {
+    HeatMap policy(colours, 3, penalty);
+    train(policy, samples);
+    return policy.parameters();
+  };
+  EXPECT_EQ(learned(0), learned(0));
+  EXPECT_NE(learned(0), learned(1));
 }
 
 // The right end of a bar is taken: its middle would be .08 m beside that.

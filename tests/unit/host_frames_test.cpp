@@ -197,6 +197,12 @@ Observation observation(std::uint8_t colour) {
   return o;
 }
 
+Observation shaded(std::uint8_t seed) {
+  Observation seen = observation(seed);
+  for (std::size_t i = 0; i < seen.ids.size(); ++i) seen.shadows.push_back(static_cast<std::uint16_t>(i * 7919 + seed));
+  return seen;
+}
+
 TEST(Messages, demonstrations_arrive_as_they_were_packed) {
   Selection selection;
   selection.target = {{"heart"}, {"red"}};
@@ -229,16 +235,40 @@ TEST(Messages, demonstrations_arrive_as_they_were_packed) {
               "an array within the file");
 }
 
+TEST(Messages, shadows_arrive_where_every_step_has_them) {
+  const auto arrive = [](const std::vector<Demonstration>& given) {
+    const protocol::DemonstrationFile packed = protocol::pack(layout, given);
+    return protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file);
+  };
+  const Step one{shaded(1), {.3, -1}}, other{shaded(2), {0, 0}}, plain{observation(3), {0, 0}};
+  const auto all = arrive({{{"a", {}}, {one}}, {{"b", {}}, {other}}});
+  EXPECT_EQ(all[0].steps[0].observation.shadows, one.observation.shadows);
+  EXPECT_EQ(all[1].steps[0].observation.shadows, other.observation.shadows);
+  EXPECT_NE(one.observation.shadows, other.observation.shadows);
+  for (const Demonstration& d : arrive({{{"a", {}}, {one, plain}}}))
+    EXPECT_TRUE(d.steps[0].observation.shadows.empty());
+  protocol::DemonstrationFile packed = protocol::pack(layout, {{{"a", {}}, {one}}});
+  packed.header["arrays"]["shadows"]["shape"] = {1, 1, 1};
+  EXPECT_SAYS(
+      message_of<InputError>([&] { protocol::unpack(layout, JsonReader(packed.header, "learn"), packed.file); }),
+      "an array of the shape of ids");
+}
+
 TEST(Messages, an_observation_arrives_through_shared_memory) {
   protocol::SharedMemory memory(protocol::observation_bytes(layout.picture));
   protocol::write(observation(7), memory);
   const Json instances = protocol::instances_json(observation(7));
   Observation read;
-  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), read);
+  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), false, read);
   EXPECT_EQ(read.size, layout.picture);
   EXPECT_EQ(read.rgb, observation(7).rgb);
   EXPECT_EQ(read.ids, observation(7).ids);
   EXPECT_EQ(protocol::instances_json(read), instances);
+  EXPECT_TRUE(read.shadows.empty());
+  protocol::write(shaded(7), memory);
+  protocol::read_observation(memory, layout.picture, JsonReader(instances, "act"), true, read);
+  EXPECT_EQ(read.shadows, shaded(7).shadows);
+  EXPECT_EQ(read.ids, observation(7).ids);
   Observation larger = observation(7);
   larger.size = {31, 40};
   EXPECT_SAYS(message_of<Error>([&] { protocol::write(larger, memory); }), "got 31 x 40");

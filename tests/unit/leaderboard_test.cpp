@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/check.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/played_cell.hpp>
@@ -373,6 +374,54 @@ TEST(Standings, OnlyTheOpenTrackRanksAcrossPoliciesAndTheAbstractionTrackNobody)
   EXPECT_NEAR(*all[2].gap_closed, 0, 1e-12);
   EXPECT_NEAR(*all[1].gap_closed, (*all[1].in_track - *all[2].in_track) / (*all[0].in_track - *all[2].in_track), 1e-12);
   EXPECT_FALSE(standings(table).front().gap_closed);
+}
+
+// Success 1 in the control and at level 1, 0.5 at 2, 0 at 3 and 4, whatever the axis; nowhere else.
+Entry perturbed_entry(const Setting& setting, const std::string& by) {
+  Entry entry = replayed_entry(setting, by, 1);
+  for (PlayedCell& cell : entry.cells) {
+    cell.outcomes.clear();
+    for (const std::string& arm : setting.scenario(cell.place.scenario).arms) {
+      const bool all = arm == "control" || arm.back() == '1', half = arm.back() == '2';
+      std::string letters(static_cast<std::size_t>(setting.episodes), 'a');
+      const auto won = static_cast<std::ptrdiff_t>(arm.rfind("table", 0) == 0 ? 0
+                                                   : all                      ? letters.size()
+                                                   : half                     ? letters.size() / 2
+                                                                              : 0);
+      std::fill_n(letters.begin(), won, '.');
+      cell.outcomes[arm] = letters;
+    }
+  }
+  return entry;
+}
+
+TEST(Areas, AreTheTrapezoidsOfGradedAxesBesideTheControl) {
+  Setting setting = small_setting();
+  std::vector<std::string> arms{"control"};
+  for (const char* axis : {"camera_shift", "sensor_noise", "table", "all"})
+    for (int level = 1; level <= 4; ++level) arms.push_back(fmt::format("{}_{}", axis, level));
+  EXPECT_TRUE(axes_of(setting).empty());
+  EXPECT_TRUE(weights_of(setting.scenarios.front()).empty());
+  for (Setting::Scenario& scenario : setting.scenarios) scenario.arms = arms;
+  EXPECT_EQ(axes_of(setting), (std::vector<std::string>{"camera_shift", "sensor_noise"})) << "neither kinds nor all";
+  const ArmWeights one = weights_of(setting.scenarios.front(), "camera_shift");
+  EXPECT_EQ(one, (ArmWeights{{"control", .125},
+                             {"camera_shift_1", .25},
+                             {"camera_shift_2", .25},
+                             {"camera_shift_3", .25},
+                             {"camera_shift_4", .125}}));
+  double sum = 0;
+  for (const auto& weight : weights_of(setting.scenarios.front())) sum += weight.second;
+  EXPECT_DOUBLE_EQ(sum, 1);
+  const Entry entry = perturbed_entry(setting, "a");
+  EXPECT_DOUBLE_EQ(control_success(entry), 1);
+  EXPECT_NEAR(*relative_area(entry, "camera_shift"), .125 + .25 + .125, 1e-12);
+  EXPECT_FALSE(relative_area(replayed_entry(setting, "b", 0), "camera_shift")) << "nothing of nothing";
+  const Standing standing = standings({&entry}).front();
+  EXPECT_NEAR(standing.score, .5, 1e-12);
+  EXPECT_LE(standing.interval.low, .5);
+  EXPECT_GE(standing.interval.high, .5);
+  EXPECT_NEAR(*standing.areas.at("sensor_noise"), .5, 1e-12);
 }
 
 TEST(Tracks, AreReadAndRefuseAPresetInTwo) {

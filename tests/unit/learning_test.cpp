@@ -16,6 +16,7 @@
 #include <lgabench/learning/cloning_method.hpp>
 #include <lgabench/learning/cloning_options.hpp>
 #include <lgabench/learning/network.hpp>
+#include <lgabench/learning/sentence_embeddings.hpp>
 #include <lgabench/learning/training.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <tabletop/two_poses.hpp>
@@ -217,6 +218,14 @@ TEST(Samples, UsualIsWhatMoreThanHalfOfThemHave) {
     }
     EXPECT_EQ(usual_picture(samples, t), expected);
   }
+}
+
+TEST(Samples, UsualIsThatOfTheUnalteredOnes) {
+  Samples samples(NetworkShape{{1}}.samples(), 10);
+  samples.unaltered = 3;
+  const std::size_t numbers = samples.pictures[0].size() / 10;
+  for (std::size_t i = 0; i < samples.pictures[0].size(); ++i) samples.pictures[0][i] = i < 3 * numbers ? .25f : .75f;
+  EXPECT_EQ(usual_picture(samples, 0), std::vector<float>(numbers, .25f));
 }
 
 TEST(BatchOrder, IsAnotherPermutationInEveryPassAndForEverySeed) {
@@ -460,6 +469,60 @@ TEST(Training, TakesWholeBatchesAndLogsEveryTenthPassAndTheLast) {
   std::vector<int> epochs;
   for (const auto& line : learn(seen, demonstrations(3), 23).log) epochs.push_back(line.epochs);
   EXPECT_EQ(epochs, (std::vector<int>{10, 20, 23}));
+}
+
+TEST(Training, TakesAsManyStepsWithCopiesUnlessItIsToldOtherwise) {
+  const auto steps = [](int unaltered, int copies, bool equal) {
+    Samples samples(SampleShape{}, unaltered * (1 + copies));
+    samples.unaltered = unaltered;
+    struct Counts : Learner {
+      const std::vector<float>& predict(const Samples&) override { return none; }
+      double backward(const Samples& all, const std::vector<int>& batch) override {
+        for (const int row : batch) seen[row] = true, last = std::max(last, row), rows = all.rows;
+        ++steps;
+        return 1;
+      }
+      void update(double) override {}
+      std::vector<float> parameters() const override { return {}; }
+      std::vector<float> none;
+      std::map<int, bool> seen;
+      int steps = 0, last = 0, rows = 0;
+    } learner;
+    Lines log;
+    TrainingOptions options;
+    options.epochs = 200;
+    options.equal_steps = equal;
+    train(learner, samples, options, 0, log);
+    EXPECT_EQ(learner.seen.size(), static_cast<std::size_t>(samples.rows)) << "every row is learned from";
+    return learner.steps;
+  };
+  EXPECT_EQ(steps(25, 5, true), steps(25, 0, true));
+  EXPECT_EQ(steps(3, 2, true), steps(3, 0, true));
+  EXPECT_EQ(steps(20, 5, false), 6 * steps(20, 0, true));
+}
+
+// Three steps in two demonstrations, the second demonstration's twice.
+TEST(Featurizer, CopiesFollowTheDemonstrationsStepByStep) {
+  std::vector<Demonstration> data = demonstrations(2, 2);
+  data[0].steps.pop_back();
+  Featurizer featurizer({{Picture::rgb}}, tabletop::two_poses());
+  std::vector<std::pair<int, int>> made;
+  const Samples samples = featurizer.samples(data, 2, [&](Step& step, const Selection& selection, int row, int copy) {
+    EXPECT_FALSE(selection.empty());
+    made.emplace_back(row, copy);
+    std::fill(step.observation.rgb.begin(), step.observation.rgb.end(), static_cast<std::uint8_t>(100 * copy + row));
+    step.label[0] += 1;
+  });
+  EXPECT_EQ(made, (std::vector<std::pair<int, int>>{{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}));
+  ASSERT_EQ(samples.rows, 9);
+  EXPECT_EQ(samples.unaltered, 3);
+  const Samples alone = featurizer.samples(data);
+  EXPECT_TRUE(std::equal(alone.pictures[0].begin(), alone.pictures[0].end(), samples.pictures[0].begin()));
+  EXPECT_NEAR(samples.picture(0, 8)[0], 102 / 255., 1e-6);
+  for (int row = 0; row < 3; ++row)
+    for (int copy = 1; copy <= 2; ++copy)
+      EXPECT_NEAR(samples.label(row + 3 * copy)[0], samples.label(row)[0] + 1, 1e-5);
+  EXPECT_EQ(data[0].steps[0].observation.rgb, demonstrations(2, 2)[0].steps[0].observation.rgb) << "given ones stay";
 }
 
 // Its loss falls by a hundredth of itself a pass, and from one pass on stays.
@@ -782,6 +845,16 @@ TEST(Policies, ActTheSameWhateverTheySawBefore) {
   const Action first = act(trained, probe);
   act(trained, scene(0, 0, 80, 200));
   EXPECT_EQ(act(trained, probe), first);
+}
+
+TEST(SentenceEmbeddings, HoldEveryNameOfTheSpaces) {
+  SentenceEmbeddings embeddings;
+  for (const char* id : {"tabletop", "household", "household_mobile"}) {
+    const FeatureSpace space = load_feature_space(id);
+    for (const auto* names : {&space.object_types, &space.textures})
+      for (const std::string& name : *names) EXPECT_TRUE(embeddings.holds(name)) << name;
+  }
+  EXPECT_FALSE(embeddings.holds("a name that no space has"));
 }
 
 TEST(ShippedMethods, AskForTheDataThatTheProtocolGivesThem) {

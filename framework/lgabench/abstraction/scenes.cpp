@@ -26,6 +26,7 @@ class InOrder final : public Environment {
     return seen;
   }
   Observation look(const View& view) override { return after_reset("look()").look(view); }
+  void show_shadows(bool on) override { environment_->show_shadows(on); }
   StepResult step(const Action& action) override { return after_reset("step()").step(action); }
   std::vector<EngineBody> bodies() const override { return after_reset("bodies()").bodies(); }
   Observation observe() override { return after_reset("observe()").observe(); }

@@ -103,6 +103,11 @@ struct Bench {
         sights.push_back({scene, environment->reset(scene)});
       }
   }
+  /// The same scenes, with what the method needs to see of them.
+  void look_again(const Needs& needs) {
+    environment->show_shadows(needs.shadows);
+    for (Sight& sight : sights) sight.observation = environment->reset(sight.scene);
+  }
   bool is_seen(const Sight& sight) const {
     return scenario.commands[static_cast<std::size_t>(sight.scene.command)].seen;
   }
@@ -261,6 +266,7 @@ class MethodCheck {
       const bool first = judged && bench == benches.front();
       Answering asked(bench->scenario, job_);
       Selected selected = select_all(bench->scenario, asked, "select");
+      if (selected.needs.shadows) bench->look_again(selected.needs);
       if (first) judge_selection(selected, asked.model.asked, bench->scenario);
       for (const Instruction& instruction : selected.instructions)
         use.selections += canonical(distribution_json(instruction.selection)) + '\n';

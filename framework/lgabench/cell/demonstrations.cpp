@@ -62,11 +62,13 @@ Json identity(const DemonstrationCache& cache, const std::vector<Scene>& scenes,
               const std::vector<std::string>& utterances) {
   std::vector<std::string> hashes;
   for (const Scene& scene : scenes) hashes.push_back(hex(scene.hash()));
-  return {{"builds", cache.builds},
-          {"environment", cache.environment_id},
-          {"labels", {{"noisy_per_clean", needs.noisy_per_clean}, {"noise_max", needs.noise_max}}},
-          {"scenes", hashes},
-          {"utterances", utterances}};
+  Json all{{"builds", cache.builds},
+           {"environment", cache.environment_id},
+           {"labels", {{"noisy_per_clean", needs.noisy_per_clean}, {"noise_max", needs.noise_max}}},
+           {"scenes", hashes},
+           {"utterances", utterances}};
+  if (needs.shadows) all["shadows"] = true;
+  return all;
 }
 
 // After the HDF5 file's own bytes comes a line that says what they are: the identity and their SHA-256.

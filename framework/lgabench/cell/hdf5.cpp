@@ -124,7 +124,9 @@ std::array<hsize_t, 2> sizes(PictureSize picture) {
 template <class WithObservations>
 void write_observations(const Library& h5, hid_t group, const char* name, const WithObservations& all) {
   std::vector<std::uint8_t> rgb, ids;
+  std::vector<std::uint16_t> shadows;
   for (const auto& one : all) {
+    shadows.insert(shadows.end(), one.observation.shadows.begin(), one.observation.shadows.end());
     rgb.insert(rgb.end(), one.observation.rgb.begin(), one.observation.rgb.end());
     ids.insert(ids.end(), one.observation.ids.begin(), one.observation.ids.end());
   }
@@ -133,6 +135,7 @@ void write_observations(const Library& h5, hid_t group, const char* name, const 
   const Handle obs = make_group(h5, group, name);
   write_dataset(h5, obs, "rgb", H5T_STD_U8LE, {steps, rows, columns, 3}, rgb.data(), true);
   write_dataset(h5, obs, "ids", H5T_STD_U8LE, {steps, rows, columns}, ids.data(), true);
+  if (!shadows.empty()) write_dataset(h5, obs, "shadows", H5T_STD_U16LE, {steps, rows, columns}, shadows.data(), true);
 }
 
 void write_demonstration(const Library& h5, hid_t group, const Demonstration& demonstration) {
@@ -246,6 +249,9 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
   const auto rgb = read_dataset<std::uint8_t>(h5, group, "obs/rgb", H5T_NATIVE_UINT8, rgb_size, place);
   Sizes ids_size{steps, rgb_size[1], rgb_size[2]};
   const auto ids = read_dataset<std::uint8_t>(h5, group, "obs/ids", H5T_NATIVE_UINT8, ids_size, place);
+  std::vector<std::uint16_t> shadows;
+  if (H5Lexists(group, "obs/shadows", H5P_DEFAULT) > 0)
+    shadows = read_dataset<std::uint16_t>(h5, group, "obs/shadows", H5T_NATIVE_UINT16, ids_size, place);
   const PictureSize picture{static_cast<int>(ids_size[1]), static_cast<int>(ids_size[2])};
 
   Demonstration demonstration;
@@ -254,10 +260,11 @@ Demonstration read_demonstration(const Library& h5, hid_t group, const std::stri
     Step step;
     const auto slice = [t](const auto& all, std::size_t size) {
       const auto from = all.begin() + static_cast<std::ptrdiff_t>(t * size);
-      return std::vector<std::uint8_t>(from, from + static_cast<std::ptrdiff_t>(size));
+      return std::vector(from, from + static_cast<std::ptrdiff_t>(size));
     };
     step.observation = {picture, slice(rgb, picture.pixels() * 3), slice(ids, picture.pixels()),
                         read_instances(instances[t], picture)};
+    if (!shadows.empty()) step.observation.shadows = slice(shadows, picture.pixels());
     const float* const label = actions.data() + t * actions_size[1];
     step.label.assign(label, label + actions_size[1]);
     demonstration.steps.push_back(std::move(step));

@@ -63,6 +63,8 @@ std::array<std::string, parts> parts_of(const PlayedScene& played, const Observa
   of(EpisodePart::instances) = hash_of(instances);
   of(EpisodePart::control) = hash_of(control);
   std::string input = of(EpisodePart::rgb) + of(EpisodePart::ids) + of(EpisodePart::instances) + canonical(pixels);
+  for (const std::uint16_t bits : observation.shadows)
+    input += static_cast<char>(bits), input += static_cast<char>(bits >> 8);
   if (selected && told) {
     of(EpisodePart::words) = hash_of(told->utterance);
     if (selected->selection.provenance != Provenance::none) {

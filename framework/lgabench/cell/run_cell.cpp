@@ -350,6 +350,7 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   // 3 demonstrate: the oracle shows it.
   phases.begin("demonstrate");
   const auto environment = make_environment(scenario, load_engine(job.engine));
+  environment->show_shadows(selected.needs.shadows);
   auto demonstrations = instructed(cached_demonstrations(demonstration_cache(job, scenario), *environment, scenes,
                                                          selected.needs, scenario.utterances(), count),
                                    scenes, selected);

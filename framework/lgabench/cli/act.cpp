@@ -46,10 +46,11 @@ Json read_line(const char* what) {
 
 Observation read_observation(PictureSize size, const JsonReader& instances) {
   protocol::SharedMemory pixels(protocol::observation_bytes(size));
-  if (!std::cin.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(pixels.size())))
+  const std::size_t sent = 4 * size.pixels();  // rgb and ids
+  if (!std::cin.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(sent)))
     throw InputError("act: expected the pictures behind the request");
   Observation seen;
-  protocol::read_observation(pixels, size, instances, seen);
+  protocol::read_observation(pixels, size, instances, false, seen);
   return seen;
 }
 

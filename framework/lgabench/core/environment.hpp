@@ -55,6 +55,12 @@ class Environment {
   /// are carried out as ever. @throws InputError unless EnvironmentType::has_views().
   virtual Observation look(const View& /*view*/) { throw InputError("environment: it has its usual view alone"); }
 
+  /// Whether what is seen from now on, until it is said otherwise, has Observation::shadows. Pictures are the same.
+  /// @throws InputError where shadows are asked for and the environment has none.
+  virtual void show_shadows(bool on) {
+    if (on) throw InputError("environment: its pictures have no shadows that are told apart");
+  }
+
   /// Carries out the action until all is at rest. May be called again: the next action starts from the state reached
   /// (demonstrations with injected noise need it), and success is judged against the scene's beginning.
   /// @throws MethodError for an action that is not executable(), EngineError if the engine fails.

@@ -52,6 +52,8 @@ struct Needs {
   double noise_max = 0;
   /// revise() is called.
   bool revise = false;
+  /// Observations say which instance throws which shadow (Observation::shadows): for repaint().
+  bool shadows = false;
 };
 
 /// Where a method reports its training, while learn() runs. Owned by the host.

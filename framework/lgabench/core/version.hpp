@@ -3,4 +3,4 @@
 
 #define LGABENCH_VERSION "0.3.0-dev"
 /// Raised whenever a type that crosses the plugin boundary changes.
-#define LGABENCH_PLUGIN_ABI 5
+#define LGABENCH_PLUGIN_ABI 6

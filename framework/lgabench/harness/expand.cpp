@@ -36,6 +36,10 @@ void expect_each_method(const std::vector<Competitor>& methods, const std::vecto
           fmt::format("--humans: expected answers for {} in a scenario of this run, there are none", method.name));
 }
 
+bool has(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
 // Which members of a meaning are seen is each training seed's own.
 void expect_own_scenes(const Suite& suite, const Design& design, const Scenario& scenario) {
   const Json& arms = scenario.json.at("tests");
@@ -149,12 +153,14 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   const Json scenes = suite.scenes.value(base, Json::object());
   if (!scenes.empty()) json["train"].update(scenes);
   if (suite.paraphrases.contains(base)) add_wordings(suite, base, json);
-  if (!variant.empty()) json["train"].update(suite.variants[variant].value("train", Json::object()));
-  if (!variant.empty() && suite.variants[variant].contains("commands"))
-    json["commands"] = first_commands(json["commands"], suite.variants[variant]["commands"].get<std::size_t>());
+  if (suite.answers.contains(base)) json["answers"] = {{"recorded", suite.answers[base]}};
+  const Json changes = variant.empty() ? Json::object() : suite.variants[variant];
+  json["train"].update(changes.value("train", Json::object()));
+  if (changes.contains("commands"))
+    json["commands"] = first_commands(json["commands"], changes["commands"].get<std::size_t>());
   const Json first = json["tests"].front();
   if (suite.only_arms) json["tests"] = Json::array();
-  for (const Json& arm : suite.arms) {
+  for (const Json& arm : changes.value("arms", suite.arms)) {
     json["tests"].push_back(first);
     json["tests"].back().update(arm);
     json["tests"].back().update(scenes);
@@ -226,7 +232,8 @@ std::vector<Cell> expand(const Suite& suite, const Design& design, const Variati
         for (const int n : design.demonstrations)
           for (const std::uint64_t seed : design.seeds) {
             for (const Competitor& method : methods)
-              for (const SelectionErrors& errors : all_errors) add(method, n, seed, errors);
+              for (const SelectionErrors& errors : all_errors)
+                if (errors.none() || !has(suite.selects_nothing, method.id)) add(method, n, seed, errors);
             for (const char* row : references)
               if (learns(reference(row))) add(reference(row), n, seed);
           }

@@ -98,6 +98,12 @@ TrainOn train_on_of(const JsonReader& reader) {
   return through;
 }
 
+// Each a scenario's first arm with these members changed.
+Json arms_of(const JsonReader& list) {
+  for (const JsonReader& arm : list.elements()) arm.at("arm").string();
+  return list.json();
+}
+
 // What pages say of the suite (report/about_suite.hpp).
 void expect_about(const JsonReader& about) {
   about.only({"question", "main_arm", "main_demonstrations", "arms"});
@@ -170,8 +176,9 @@ Suite load_suite(const std::string& id) {
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
   const JsonReader reader(json, file.string());
   std::vector<std::string> members = grid_members;
-  members.insert(members.end(), {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss",
-                                 "scenes", "paraphrases", "variants", "groups", "references", "presets"});
+  members.insert(members.end(),
+                 {"id", "note", "about", "environment", "arms", "only_arms", "train", "near_miss", "scenes",
+                  "paraphrases", "answers", "variants", "groups", "selects_nothing", "references", "presets"});
   reader.only(members);
 
   Suite suite;
@@ -185,11 +192,7 @@ Suite load_suite(const std::string& id) {
     if (reader.has(member) || std::count(may_be_absent.begin(), may_be_absent.end(), member) == 0)
       own[member] = reader.at(member).json();
   suite.design = apply(JsonReader(own, suite.file), Design{});
-  if (reader.has("arms"))
-    for (const JsonReader& arm : reader.at("arms").elements()) {
-      arm.at("arm").string();
-      suite.arms.push_back(arm.json());
-    }
+  if (reader.has("arms")) suite.arms = arms_of(reader.at("arms"));
   if (reader.has("only_arms")) suite.only_arms = reader.at("only_arms").boolean();
   if (suite.only_arms && suite.arms.empty()) reader.at("only_arms").fail("\"arms\" beside it");
   if (reader.has("train")) {
@@ -212,15 +215,22 @@ Suite load_suite(const std::string& id) {
     for (const auto& [scenario, ignored] : suite.paraphrases.items())
       one_of(reader.at("paraphrases").at(scenario), "scenario", scenario_ids());
   }
+  if (reader.has("answers")) {
+    reader.at("answers").only(suite.design.scenarios);
+    suite.answers = reader.at("answers").json();
+    for (const auto& [scenario, ignored] : suite.answers.items())
+      one_of(reader.at("answers").at(scenario), "answers", json_names(data_directory() / "answers", none_to_list));
+  }
   if (reader.has("variants")) {
     suite.variants = reader.at("variants").json();
     if (!suite.variants.is_object() || suite.variants.empty()) reader.at("variants").fail("an object with a member");
     for (const auto& [name, ignored] : suite.variants.items()) {
       const JsonReader variant = reader.at("variants").at(name);
-      variant.only({"train", "commands"});
+      variant.only({"train", "commands", "arms"});
+      if (variant.has("arms")) arms_of(variant.at("arms"));
       if (variant.has("commands")) variant.at("commands").integer(1, most);
       if (variant.has("train") && !variant.at("train").json().is_object()) variant.at("train").fail("an object");
-      if (variant.json().empty()) variant.fail("\"train\" or \"commands\"");
+      if (variant.json().empty()) variant.fail("\"train\", \"commands\" or \"arms\"");
     }
   }
   if (reader.has("groups")) {
@@ -233,6 +243,7 @@ Suite load_suite(const std::string& id) {
     if (std::adjacent_find(grouped.begin(), grouped.end()) != grouped.end())
       reader.at("groups").fail("each scenario in one group at most");
   }
+  if (reader.has("selects_nothing")) suite.selects_nothing = names(reader.at("selects_nothing"));
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
   if (reader.has("about")) expect_about(reader.at("about"));

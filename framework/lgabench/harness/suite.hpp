@@ -55,15 +55,17 @@ struct Suite {
   /// Scenario -> another one, of the same command: the words of its unseen commands are wordings 1, 2, ... here, and
   /// its recorded answers hold.
   Json paraphrases = Json::object();
+  Json answers = Json::object();  // scenario -> whose recorded answers hold, in place of those that it names
   /// Name -> {"train": members that replace those of every scenario's "train", "commands": how many of its demonstrated
-  /// commands are left, the first ones}: in place of each scenario ID there is one ID_NAME for each, with arms
-  /// ARM_NAME.
+  /// commands are left, the first ones, "arms": in place of those above}: in place of each scenario ID there is one
+  /// ID_NAME for each, with arms ARM_NAME.
   Json variants = Json::object();
-  Json groups = Json::object();         // name -> scenarios, each in one group at most: tables have a mean of each
-  std::vector<std::string> references;  // rows of that kind beside those that every suite has
-  Json claims;                          // its own (suite_claims.hpp); null: none
-  Json presets;                         // name -> members of Design
-  std::string file;                     // for messages
+  Json groups = Json::object();              // name -> scenarios, each in one group at most: tables have a mean of each
+  std::vector<std::string> selects_nothing;  // methods in which errors of a Selection make no difference: without alone
+  std::vector<std::string> references;       // rows of that kind beside those that every suite has
+  Json claims;                               // its own (suite_claims.hpp); null: none
+  Json presets;                              // name -> members of Design
+  std::string file;                          // for messages
 };
 
 /// The suite named `id` from the data directory's suites/, or the file `id` if it ends in .json; scenarios beside that

@@ -175,11 +175,12 @@ class HostedPolicy : public Policy {
   Action act(const Observation& observation, const Instruction& instruction) override {
     acted_ = false;
     protocol::write(observation, session_->observation());
-    const Frame frame = session_->call({{"type", "act"},
-                                        {"reset", std::exchange(reset_, false)},
-                                        {"instruction", protocol::to_json(instruction)},
-                                        {"instances", protocol::instances_json(observation)}},
-                                       "action");
+    Json request{{"type", "act"},
+                 {"reset", std::exchange(reset_, false)},
+                 {"instruction", protocol::to_json(instruction)},
+                 {"instances", protocol::instances_json(observation)}};
+    if (!observation.shadows.empty()) request["shadows"] = true;
+    const Frame frame = session_->call(request, "action");
     return session_->read([&] {
       const JsonReader reader(frame.header, "action");
       acted_ = true;

@@ -75,7 +75,8 @@ Json to_json(const Needs& needs) {
   return {{"targets", needs.targets == Needs::Targets::truth ? "truth" : "selected"},
           {"noisy_per_clean", needs.noisy_per_clean},
           {"noise_max", needs.noise_max},
-          {"revise", needs.revise}};
+          {"revise", needs.revise},
+          {"shadows", needs.shadows}};
 }
 
 Needs read_needs(const JsonReader& reader) {
@@ -87,6 +88,7 @@ Needs read_needs(const JsonReader& reader) {
   needs.noisy_per_clean = static_cast<int>(reader.at("noisy_per_clean").integer(0, most));
   needs.noise_max = reader.at("noise_max").number();
   if (reader.has("revise")) needs.revise = reader.at("revise").boolean();
+  if (reader.has("shadows")) needs.shadows = reader.at("shadows").boolean();
   return needs;
 }
 

@@ -101,14 +101,14 @@ class SharedMemory {
   std::size_t size_ = 0;
 };
 
-/// rgb, then ids.
-inline std::size_t observation_bytes(PictureSize picture) { return 4 * picture.pixels(); }
+/// rgb, ids, then shadows, which are read only where the frame says that they are there.
+inline std::size_t observation_bytes(PictureSize picture) { return 6 * picture.pixels(); }
 /// Copies the pictures; instances are instances_json(). @throws Error for an observation of another size than the
 /// memory's.
 void write(const Observation& observation, SharedMemory& memory);
 Json instances_json(const Observation& observation);
-/// Into `observation`, whose memory it uses again.
-void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances,
+/// Into `observation`, whose memory it uses again. `shadows`: whether they are there.
+void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances, bool shadows,
                       Observation& observation);
 
 /// All demonstrations as arrays in one sealed file, and the JSON that says where each lies.

@@ -262,7 +262,8 @@ class Host {
     }
     if (frame.type() == "act") {
       if (!policy_) throw MethodError("asked to act before it learned");
-      protocol::read_observation(memory_, layout_.picture, reader.at("instances"), observation_);
+      protocol::read_observation(memory_, layout_.picture, reader.at("instances"),
+                                 reader.has("shadows") && reader.at("shadows").boolean(), observation_);
       const Instruction instruction = protocol::read_instruction(reader.at("instruction"));
       const Action action = call([&] {
         if (reader.at("reset").boolean()) policy_->reset();

@@ -39,7 +39,7 @@ class Arrays {
 
 // An array that the header names: where it begins, checked to lie within the file.
 struct Array {
-  std::size_t offset;
+  std::size_t offset = 0;
   std::vector<std::size_t> shape;
 };
 Array array_at(const JsonReader& arrays, const char* name, const char* type, std::size_t item_bytes,
@@ -115,6 +115,7 @@ void write(const Observation& observation, SharedMemory& memory) {
                             observation.size.columns));
   std::memcpy(memory.data(), observation.rgb.data(), 3 * pixels);
   std::memcpy(memory.data() + 3 * pixels, observation.ids.data(), pixels);
+  if (!observation.shadows.empty()) std::memcpy(memory.data() + 4 * pixels, observation.shadows.data(), 2 * pixels);
 }
 
 Json instances_json(const Observation& observation) {
@@ -124,12 +125,14 @@ Json instances_json(const Observation& observation) {
   return all;
 }
 
-void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances,
+void read_observation(const SharedMemory& memory, PictureSize picture, const JsonReader& instances, bool shadows,
                       Observation& observation) {
   const std::size_t pixels = picture.pixels();
   observation.size = picture;
   observation.rgb.assign(memory.data(), memory.data() + 3 * pixels);
   observation.ids.assign(memory.data() + 3 * pixels, memory.data() + 4 * pixels);
+  observation.shadows.resize(shadows ? pixels : 0);
+  if (shadows) std::memcpy(observation.shadows.data(), memory.data() + 4 * pixels, 2 * pixels);
   observation.instances.clear();
   for (const JsonReader& one : instances.elements())
     observation.instances.push_back({static_cast<std::uint8_t>(one.at("id").integer(0, 255)),
@@ -141,11 +144,15 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
   const auto rows = static_cast<std::size_t>(layout.picture.rows), columns = layout.picture.pixels() / rows;
   const std::size_t pixels = layout.picture.pixels();
   std::size_t steps = 0, instances = 0;
+  bool shaded = true;  // every one of them
   Json instructions = Json::array();
   for (const Demonstration& demonstration : demonstrations) {
     instructions.push_back(to_json(demonstration.instruction));
     steps += demonstration.steps.size();
-    for (const Step& step : demonstration.steps) instances += step.observation.instances.size();
+    for (const Step& step : demonstration.steps) {
+      instances += step.observation.instances.size();
+      shaded = shaded && !step.observation.shadows.empty();
+    }
   }
   Arrays arrays;
   const std::size_t rgb = arrays.add("rgb", "u1", 1, {steps, rows, columns, 3});
@@ -153,6 +160,7 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
   const std::size_t labels = arrays.add("labels", "f8", 8, {steps, layout.actions.size()});
   const std::size_t owners = arrays.add("demonstration", "i4", 4, {steps});
   const std::size_t table = arrays.add("instances", "i4", 4, {instances, instance_numbers});
+  const std::size_t shadows = shaded ? arrays.add("shadows", "u2", 2, {steps, rows, columns}) : 0;
   Descriptor file = memory_file(arrays.size);
 
   std::map<std::string, std::int32_t> indices;
@@ -169,6 +177,7 @@ DemonstrationFile pack(const Layout& layout, const std::vector<Demonstration>& d
     for (const Step& s : demonstrations[d].steps) {
       write_at(file, rgb + step * 3 * pixels, s.observation.rgb.data(), 3 * pixels);
       write_at(file, ids + step * pixels, s.observation.ids.data(), pixels);
+      if (shaded) write_at(file, shadows + step * 2 * pixels, s.observation.shadows.data(), 2 * pixels);
       label_bytes += to_bytes(s.label);
       owner_of.push_back(static_cast<std::int32_t>(d));
       const auto at = static_cast<std::int32_t>(step++);
@@ -204,6 +213,9 @@ std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header
   if (rgb.shape != Shape{steps, rows, columns, 3} || ids.shape != Shape{steps, rows, columns} ||
       labels.shape != Shape{steps, numbers} || table.shape.size() != 2 || table.shape[1] != instance_numbers)
     arrays.fail("arrays of the shapes that the protocol names");
+  const bool shaded = arrays.has("shadows");
+  const Array shadows = shaded ? array_at(arrays, "shadows", "u2", 2, size) : Array();
+  if (shaded && shadows.shape != ids.shape) arrays.at("shadows").fail("an array of the shape of ids");
 
   std::vector<Demonstration> all;
   for (const JsonReader& instruction : header.at("instructions").elements())
@@ -221,6 +233,10 @@ std::vector<Demonstration> unpack(const Layout& layout, const JsonReader& header
     step.observation.size = layout.picture;
     step.observation.rgb.assign(colours, colours + 3 * pixels);
     step.observation.ids.assign(labelled, labelled + pixels);
+    if (shaded) {
+      step.observation.shadows.resize(pixels);
+      std::memcpy(step.observation.shadows.data(), memory.data() + shadows.offset + s * 2 * pixels, 2 * pixels);
+    }
     const auto* const label = reinterpret_cast<const char*>(memory.data() + labels.offset + s * numbers * 8);
     step.label = read_action({label, numbers * 8}, numbers);
     owner.push_back(std::move(step));

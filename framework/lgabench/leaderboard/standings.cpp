@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include <lgabench/abstraction/quality.hpp>
+#include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/report/bootstrap.hpp>
 
 namespace lgabench::leaderboard {
@@ -15,16 +16,30 @@ namespace {
 
 using report::mean;
 
+using WeightsOfScenarios = std::map<std::string, ArmWeights>;
+
+WeightsOfScenarios weights_in(const Setting& setting) {
+  WeightsOfScenarios all;
+  for (const Setting::Scenario& scenario : setting.scenarios) all[scenario.id] = weights_of(scenario);
+  return all;
+}
+
 // An entry's rates on the table's test scenes: of each scenario and layout, training seed and scene the share of
 // successes over arms and numbers of demonstrations.
 std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
   const Setting& setting = entry.setting;
+  const WeightsOfScenarios by_scenario = weights_in(setting);
   std::map<std::pair<std::string, std::string>, std::map<std::uint64_t, std::vector<std::vector<double>>>> by_unit;
   for (const PlayedCell& cell : entry.cells) {
     std::vector<double> scenes(static_cast<std::size_t>(setting.episodes));
-    for (const auto& arm : cell.outcomes)
-      for (std::size_t i = 0; i < scenes.size(); ++i)
-        scenes[i] += is_success(arm.second[i]) / static_cast<double>(cell.outcomes.size());
+    const ArmWeights& weights = by_scenario.at(cell.place.scenario);
+    for (const auto& [arm, letters] : cell.outcomes) {
+      const auto own = weights.find(arm);
+      const double weight = own != weights.end() ? own->second
+                            : weights.empty()    ? 1 / static_cast<double>(cell.outcomes.size())
+                                                 : 0;
+      for (std::size_t i = 0; i < scenes.size(); ++i) scenes[i] += weight * is_success(letters[i]);
+    }
     by_unit[{cell.place.scenario, cell.place.layout}][cell.place.seed].push_back(std::move(scenes));
   }
   std::vector<std::vector<std::vector<double>>> rates;
@@ -45,11 +60,17 @@ std::vector<std::vector<std::vector<double>>> rates_of(const Entry& entry) {
 
 void add_rates(Standing& standing) {
   const Entry& entry = *standing.entry;
+  const WeightsOfScenarios weights = weights_in(entry.setting);
   std::map<std::string, std::vector<double>> by_scenario;
   std::map<int, std::map<std::string, std::vector<double>>> at;
   std::map<std::string, std::map<std::string, std::vector<double>>> in_arm;
   for (const PlayedCell& cell : entry.cells) {
-    const double rate = static_cast<double>(cell.successes()) / cell.episodes();
+    double rate = static_cast<double>(cell.successes()) / cell.episodes();
+    if (const ArmWeights& own = weights.at(cell.place.scenario); !own.empty()) {
+      rate = 0;
+      for (const auto& [arm, weight] : own)
+        rate += weight * successes(cell.outcomes.at(arm)) / static_cast<double>(cell.outcomes.at(arm).size());
+    }
     standing.episodes += cell.episodes();
     standing.failed_cells += !cell.failed.empty();
     by_scenario[cell.place.scenario].push_back(rate);
@@ -66,6 +87,7 @@ void add_rates(Standing& standing) {
   for (const auto& [n, scenarios] : at) standing.at[n] = over_scenarios(scenarios);
   for (const auto& [arm, scenarios] : in_arm) standing.in_arm[arm] = over_scenarios(scenarios);
   standing.score = over_scenarios(by_scenario);
+  for (const std::string& axis : axes_of(entry.setting)) standing.areas[axis] = relative_area(entry, axis);
 }
 
 // The mean of a share over the cells' Selections: each command, each set and each kind of feature counts alike.

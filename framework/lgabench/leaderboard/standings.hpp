@@ -12,7 +12,8 @@
 namespace lgabench::leaderboard {
 
 /// An entry in its table. A rate is a mean over scenarios of the share of successful episodes; an episode of a cell
-/// that the method failed is one that was lost.
+/// that the method failed is one that was lost. In a perturbed table (areas.hpp) score, interval, rates by
+/// demonstrations and by scenario are of areas under the curves of success against levels, over axes.
 struct Standing {
   const Entry* entry = nullptr;
   double score = 0;           // over all arms and numbers of demonstrations
@@ -22,6 +23,7 @@ struct Standing {
   bool below_random = false;  // its score is below that of the reference row random_object
   std::map<int, double> at;   // rate by number of demonstrations; 0 of a row that learns nothing
   std::map<std::string, double> in_arm, in_scenario;
+  std::map<std::string, std::optional<double>> areas;  // by axis, relative to the control
   /// In the abstraction track: success over the arms that its file names, and how much of the distance from the mask of
   /// any object to that of the truth it closes there; none where one of those two is no row of the table.
   std::optional<double> in_track, gap_closed;

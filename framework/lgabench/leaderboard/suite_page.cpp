@@ -11,6 +11,7 @@
 #include <lgabench/core/shell.hpp>
 #include <lgabench/leaderboard/answer_score.hpp>
 #include <lgabench/leaderboard/answers_page.hpp>
+#include <lgabench/leaderboard/areas.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/about_suite.hpp>
@@ -121,18 +122,23 @@ TableCell score_button(const Standing& s, std::size_t row) {
 // The table, with a column for each number of demonstrations, and for each arm where there are several.
 Grid standings_grid(const NamedTable& table, std::size_t first_row) {
   const Setting& setting = table.setting;
+  const std::vector<std::string> axes = axes_of(setting);
   std::set<std::string> arms;
   for (const Standing& s : table.standings)
-    for (const auto& arm : s.in_arm) arms.insert(arm.first);
+    for (const auto& arm : s.in_arm)
+      if (axes.empty()) arms.insert(arm.first);
   Grid grid;
   grid.name = setting.name();
   grid.caption = title_of(setting);
-  grid.heads = {"rank", "entry", "success"};
+  grid.heads = {"rank", "entry", axes.empty() ? "success" : "area"};
   const std::vector<int> numbers = setting.demonstrations.size() > 1 ? setting.demonstrations : std::vector<int>();
   for (const int n : numbers) grid.heads.emplace_back(fmt::format("n = {}", n));
   const bool selects = table.track.kind == Track::abstraction;
   if (selects)
     for (const char* head : {"where it decides", "gap closed"}) grid.heads.emplace_back(head);
+  if (!axes.empty())
+    for (const char* head : {"control", "of the control"}) grid.heads.emplace_back(head);
+  grid.heads.insert(grid.heads.end(), axes.begin(), axes.end());
   if (arms.size() > 1)
     for (const std::string& arm : arms) grid.heads.emplace_back(arm);
   for (const char* head : {"answers exact", "φ̂ precision", "φ̂ recall", "questions", "tokens", "training s", "tier"})
@@ -153,6 +159,15 @@ Grid standings_grid(const NamedTable& table, std::size_t first_row) {
     if (selects)
       for (const auto& value : {s.in_track, s.gap_closed})
         row.cells.emplace_back(Span::number(value ? fixed(*value) : "–"));
+    if (!axes.empty()) {
+      const double control = control_success(*s.entry);
+      row.cells.emplace_back(Span::number(fixed(control)));
+      row.cells.emplace_back(Span::number(control > 0 ? fixed(s.score / control) : "–"));
+    }
+    for (const std::string& axis : axes) {
+      const std::optional<double>& area = s.areas.at(axis);
+      row.cells.emplace_back(Span::number(area ? fixed(*area) : "–"));
+    }
     if (arms.size() > 1)
       for (const std::string& arm : arms) row.cells.emplace_back(Span::number(fixed(s.in_arm.at(arm))));
     const Json& score = s.entry->score;
@@ -389,6 +404,13 @@ report::Document suite_document(const std::string& suite, const std::vector<Name
     Section section{id, title_of(table.setting)};
     section.add<Paragraph>(reading, {{what_was_played(table.setting)}});
     section.add<Paragraph>(reading, {{words_of(table.track)}});
+    if (!axes_of(table.setting).empty())
+      section.add<Paragraph>(
+          reading,
+          {{"Area: under the curve of success against an axis’ levels, from the control to the last, as the "
+            "mean over axes and scenarios; it is what entries are compared by. Of the control: what that is of "
+            "the success in the control, and then of each axis alone, where 1 is no loss. The best constant "
+            "action keeps all of what it has, which is little: read it beside the control."}});
     if (!table.standings.empty()) section.add<Grid>(reading, standings_grid(table, first_row));
     if (auto note = below_random_note(table.standings)) section.add<Paragraph>(reading, std::move(*note));
     if (auto waiting = waiting_grid(table)) section.add<Grid>(reading, std::move(*waiting));

@@ -1,5 +1,7 @@
 #include <lgabench/learning/cloning_method.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -91,7 +93,8 @@ class CloningPolicy : public Policy {
   std::optional<bool> seen_in_training() const override { return seen_.last(); }
   Shown shown() const override { return shown_input(offered_, inputs_, kind_, input_); }
   std::optional<std::string> saved() const override {
-    if (!offered_.masks.empty()) return std::nullopt;  // what was selected is no part of what is saved
+    // What was selected, and what was shown, is no part of what is saved.
+    if (!offered_.masks.empty() || offered_.of_demonstrations) return std::nullopt;
     Archive archive;
     SavedInputs inputs{native_, offered_.space};
     inputs.learned(archive);
@@ -137,6 +140,10 @@ PolicyInputs CloningMethod::inputs(const Json& options) const {
   return inputs;
 }
 
+int CloningMethod::copies(const Json&) const { return 0; }
+
+void CloningMethod::augment(Step&, const Selection&, int, RandomStream&) const {}
+
 Samples CloningMethod::training_rows(Samples clean, const Services&) const { return clean; }
 
 std::unique_ptr<Learner> CloningMethod::learner(const SampleShape& shape, const Services& services) const {
@@ -149,7 +156,11 @@ std::unique_ptr<Policy> CloningMethod::learn(const std::vector<Demonstration>& d
   const PictureSize native = picture_size(demonstrations);
   PolicyInputs seen = inputs_of(options.policy, offered, native);
   Featurizer featurizer(seen, services.actions);
-  const Samples samples = training_rows(featurizer.samples(demonstrations), services);
+  const auto change = [&](Step& step, const Selection& selection, int row, int copy) {
+    RandomStream stream(fmt::format("learning/augment/{}/{}/{}", services.seed, row, copy));
+    augment(step, selection, copy, stream);
+  };
+  const Samples samples = training_rows(featurizer.samples(demonstrations, copies(services.options), change), services);
   std::unique_ptr<Learner> trained = learner(samples.shape, services);
   train(*trained, samples, options.training, services.seed, services.log);
   auto policy = std::make_unique<CloningPolicy>(native, std::move(offered), std::move(seen), options.policy,

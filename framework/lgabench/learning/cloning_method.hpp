@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <lgabench/core/method.hpp>
+#include <lgabench/core/random.hpp>
 #include <lgabench/learning/featurizer.hpp>
 #include <lgabench/learning/learner.hpp>
 
@@ -36,6 +37,11 @@
 #define LGABENCH_PICTURE_OPTION                                                     \
   R"("picture": {"framework": true, "default": "none", "values": ["none", "rgb"],)" \
   R"("help": "seen beside the goal mask", "source": "rgb: paper, appendix"})"
+
+/// The option of a method that makes copies().
+#define LGABENCH_COPIES_OPTION                                        \
+  R"("copy_steps": {"default": "equal", "values": ["equal", "all"],)" \
+  R"("help": "optimiser steps: as many as without copies, or 1 + copies times as many", "source": "ours"})"
 
 /// Options of a method whose policy sees a goal mask.
 #define LGABENCH_MASK_OPTIONS LGABENCH_MASK_OPTIONS_WITH("", R"(, "needs": {"signed": {"policy": ["regression"]}})", "")
@@ -85,8 +91,15 @@ class CloningMethod : public Method {
   /// What the learner sees; the goal mask, and the picture where the method has the option `picture` and it says so,
   /// unless a subclass says otherwise. `options` as in Services.
   virtual PolicyInputs inputs(const Json& options) const;
-  /// The rows that it is trained on, made of `clean`: a row for each step of each demonstration, in their order. Those
-  /// rows alone unless a subclass adds others.
+  /// How often each step is copied, for augment(); not at all unless a subclass says so. The unaltered steps are
+  /// learned from as well. Optimiser steps stay as many (LGABENCH_COPIES_OPTION), and what a learner takes for the
+  /// usual picture is that of the unaltered steps.
+  virtual int copies(const Json& options) const;
+  /// Makes another step of a copy: repaint() its observation, say. `selection`: what a goal mask of it is made of;
+  /// copies count from 0; `stream` is the copy's own, named by Services::seed.
+  virtual void augment(Step& step, const Selection& selection, int copy, RandomStream& stream) const;
+  /// The rows that it is trained on, made of `clean`: a row for each step of each demonstration, in their order, and
+  /// behind them the copies. Those rows alone unless a subclass adds others.
   virtual Samples training_rows(Samples clean, const Services& services) const;
   /// What is trained on rows of that shape; the one that the option `policy` names unless a subclass has its own. It
   /// may outlive the method.

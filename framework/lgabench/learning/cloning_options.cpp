@@ -41,6 +41,7 @@ CloningOptions read_cloning_options(const Json& json) {
   read.training.learning_rate = options.at("learning_rate").number();
   read.training.batches =
       named<Batches>(options.at("batches"), {{"drawn", Batches::drawn}, {"shuffled", Batches::shuffled}});
+  read_if_there(options, "copy_steps", {{"equal", true}, {"all", false}}, read.training.equal_steps);
   read_if_there(options, "instances", {{"all", Instances::all}, {"first", Instances::first}}, read.instances);
   read_if_there(options, "mask", {{"binary", false}, {"signed", true}}, read.signed_mask);
   read_if_there(

@@ -22,18 +22,29 @@ SampleShape Featurizer::shape() const {
   return shape;
 }
 
-Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations) {
+Samples Featurizer::samples(const std::vector<Demonstration>& demonstrations, int copies, const Augment& augment) {
   std::size_t steps = 0;
   for (const Demonstration& demonstration : demonstrations) steps += demonstration.steps.size();
-  Samples samples(shape(), static_cast<int>(steps));
+  const int unaltered = static_cast<int>(steps);
+  Samples samples(shape(), unaltered * (1 + copies));
+  samples.unaltered = unaltered;
   auto label = samples.labels.begin();
+  const auto add = [&](const Step& step, const Instruction& instruction, int row) {
+    write(step.observation, instruction, Phase::training, samples, row);
+    label = std::transform(step.label.begin(), step.label.end(), label,
+                           [](double value) { return static_cast<float>(value); });
+  };
   int row = 0;
   for (const Demonstration& demonstration : demonstrations)
-    for (const Step& step : demonstration.steps) {
-      write(step.observation, demonstration.instruction, Phase::training, samples, row++);
-      label = std::transform(step.label.begin(), step.label.end(), label,
-                             [](double value) { return static_cast<float>(value); });
-    }
+    for (const Step& step : demonstration.steps) add(step, demonstration.instruction, row++);
+  for (int copy = 0; copy < copies; ++copy) {
+    int of = 0;
+    for (const Demonstration& demonstration : demonstrations)
+      for (Step step : demonstration.steps) {
+        augment(step, mask_selection(demonstration.instruction), of++, copy);
+        add(step, demonstration.instruction, row++);
+      }
+  }
   return samples;
 }
 

@@ -44,6 +44,8 @@ struct PolicyInputs {
   /// The method's own picture: what all of the above is made of in place of the observation, given the Selection that
   /// the mask is made of. A function of its arguments that refers to no method, which may be gone. Null: none.
   std::function<Observation(const Observation&, const Selection&, Phase)> prepare{};
+  /// `prepare` depends on what was demonstrated, which is no part of what a policy saves: it cannot be saved.
+  bool of_demonstrations = false;
 };
 
 /// One thread. Copies share the sentence embeddings.
@@ -54,8 +56,13 @@ class Featurizer {
   Featurizer(PolicyInputs inputs, ActionSpace actions);
 
   SampleShape shape() const;
-  /// A row for each step of each demonstration, in their order, with its label.
-  Samples samples(const std::vector<Demonstration>& demonstrations);
+  /// What becomes of a copy of a step, of which number `row` of the unaltered ones is made, given the Selection that
+  /// its mask is made of. Copies count from 0.
+  using Augment = std::function<void(Step&, const Selection&, int row, int copy)>;
+
+  /// A row for each step of each demonstration, in their order, with its label; behind them, copy by copy, as many rows
+  /// for each copy.
+  Samples samples(const std::vector<Demonstration>& demonstrations, int copies = 0, const Augment& augment = {});
   /// The inputs of one row; its label stays. Allocates nothing after the first, unless `prepare` does.
   /// @throws MethodError for an utterance that `masks` lacks. InputError for a picture whose pixels do not fit its
   /// size.

@@ -56,6 +56,8 @@ struct HeatMap::Impl {
   const SampleShape shape;
   const Field field;
   const std::uint64_t seed;
+  const double penalty;  // of a copy's map that differs from that of the row it was made of
+  int unaltered = 0;     // rows, before the copies
   int planes = 0;
   std::optional<std::size_t> mask;                         // the first, of the pictures
   int mask_plane = 0;                                      // its first of two
@@ -70,8 +72,8 @@ struct HeatMap::Impl {
   View seen;                     // by predict()
   std::vector<float> outputs;
 
-  Impl(const SampleShape& of_a_row, std::uint64_t from)
-      : shape(of_a_row), field(shape.actions), seed(from), usual(shape.pictures.size()) {
+  Impl(const SampleShape& of_a_row, std::uint64_t from, double of_copies)
+      : shape(of_a_row), field(shape.actions), seed(from), penalty(of_copies), usual(shape.pictures.size()) {
     for (std::size_t i = 0; i < shape.pictures.size(); ++i) {
       const SampleShape::Picture& picture = shape.pictures[i];
       const bool fits = is_mask(picture)
@@ -181,6 +183,7 @@ void HeatMap::Impl::begin(const Samples& samples) {
   for (std::size_t i = 0; i < usual.size(); ++i)
     if (!is_mask(shape.pictures[i])) usual[i] = usual_picture(samples, i);
 
+  unaltered = samples.unaltered;
   std::vector<Action> labels;
   std::vector<Demonstrated> shown;
   std::vector<std::size_t> rows;  // of those
@@ -251,8 +254,13 @@ double HeatMap::Impl::teach(int row, double weight) {
   auto& [view, wanted, taken_m, group, station] = lessons[size(row)];
   double loss = 0;
   if (!wanted.empty()) {
+    std::vector<float> like;
+    if (penalty > 0 && row >= unaltered) {
+      View& original = lessons[size(row % unaltered)].view;
+      like = network->map(original.planes, original.prior_or_null(), original.text);
+    }
     network->map(view.planes, view.prior_or_null(), view.text);
-    loss += network->teach(wanted, taken_m, group, weight);
+    loss += network->teach(wanted, taken_m, group, weight, like, penalty);
   }
   if (!station.empty()) {
     station_network->map(view.planes, prior_of_station(view), view.text);
@@ -302,9 +310,9 @@ Action HeatMap::Impl::act() {
   return led_to(shape.actions.stations, nearest_station(shape.actions.stations, second), std::move(action));
 }
 
-HeatMap::HeatMap(const SampleShape& shape, std::uint64_t seed) {
+HeatMap::HeatMap(const SampleShape& shape, std::uint64_t seed, double copy_penalty) {
   flush_denormals();
-  impl_ = std::make_unique<Impl>(shape, seed);
+  impl_ = std::make_unique<Impl>(shape, seed, copy_penalty);
 }
 HeatMap::~HeatMap() = default;
 

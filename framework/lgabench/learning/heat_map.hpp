@@ -33,7 +33,9 @@ class HeatMap : public Learner {
 
   /// @throws InputError for a shape without a picture, or with pictures of another size, and for actions without a
   /// place in the picture.
-  HeatMap(const SampleShape& shape, std::uint64_t seed);
+  /// `copy_penalty`: how much a copy's map counts that differs from that of the row it was made of, as the cross
+  /// entropy of the one to the other; 0: not at all.
+  HeatMap(const SampleShape& shape, std::uint64_t seed, double copy_penalty = 0);
   ~HeatMap() override;
   HeatMap(const HeatMap&) = delete;
   HeatMap& operator=(const HeatMap&) = delete;

@@ -115,14 +115,20 @@ void HeatMapNetwork::clear_gradients() {
   }
 }
 
-double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight) {
+double HeatMapNetwork::teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight,
+                             const std::vector<float>& like, double penalty) {
   double loss = 0;
   Convolution& last = convolutions_.back();
   const float* feature = last.outputs;
   float* gradient = last.gradients;
   for (std::size_t cell = 0; cell < map_.size(); ++cell, feature += features, gradient += features) {
     if (wanted[cell] > 0) loss -= wanted[cell] * log_of(map_[cell]);
-    const auto of_heat = static_cast<float>(weight * (map_[cell] - wanted[cell]));
+    double away = map_[cell] - wanted[cell];
+    if (!like.empty()) {
+      loss -= penalty * like[cell] * log_of(map_[cell]);
+      away += penalty * (map_[cell] - like[cell]);
+    }
+    const auto of_heat = static_cast<float>(weight * away);
     for (int k = 0; k < features; ++k) {
       parameters_.gradient(heat_)[k] += of_heat * feature[k];
       gradient[k] = of_heat * parameters_[heat_][k];

@@ -35,9 +35,10 @@ class HeatMapNetwork {
 
   /// Before the first teach() of a batch.
   void clear_gradients();
-  /// Cross entropy of the last map() to `wanted`, a probability of each cell, and of the groups to `group`.
-  /// Adds `weight` times its gradients.
-  double teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight);
+  /// Cross entropy of the last map() to `wanted`, a probability of each cell, and of the groups to `group`; where there
+  /// is a `like`, of each cell too, `penalty` times the cross entropy to that. Adds `weight` times its gradients.
+  double teach(const std::vector<float>& wanted, Vec2 taken_m, std::size_t group, double weight,
+               const std::vector<float>& like = {}, double penalty = 0);
   /// One step of Adam (betas .9 and .999, epsilon 1e-8).
   void update(double learning_rate) { parameters_.update(kernels_, learning_rate); }
 

@@ -21,6 +21,9 @@ struct TrainingOptions {
   /// `epochs` at most: ended after the first pass from which on the mean loss of the last 50 passes is less than 1 %
   /// below that of the 50 before.
   bool until_converged = false;
+  /// A pass visits as many rows as there are unaltered ones, drawn from all: the steps are those of training without
+  /// copies. Else it visits all of them.
+  bool equal_steps = true;
 };
 
 /// From rows of input to rows of action, with parameters that training moves. One thread at a time. What it does is a
@@ -29,7 +32,8 @@ class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// What it makes of the options that a run gives, for so many samples: a learner with a schedule of its own says so.
+  /// What it makes of the options that a run gives, for so many unaltered samples: a learner with a schedule of its own
+  /// says so. Of `equal_steps` it has no say.
   virtual TrainingOptions schedule(const TrainingOptions& asked, int /*samples*/) const { return asked; }
   /// Called once, before the first backward(), with all samples (at least one), which stay as long as it is trained:
   /// means and frames are found here.

@@ -65,7 +65,7 @@ std::unique_ptr<Learner> make_learner(PolicyKind policy, const SampleShape& shap
     case PolicyKind::centroid:
       return std::make_unique<CentroidRule>(shape);
     case PolicyKind::heat_map:
-      return std::make_unique<HeatMap>(shape, seed);
+      return std::make_unique<HeatMap>(shape, seed, options.value("copy_penalty", 0.));
     case PolicyKind::regression:
       break;
   }

@@ -5,7 +5,7 @@
 
 namespace lgabench {
 
-Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), rows(count) {
+Samples::Samples(SampleShape of_a_row, int count) : shape(std::move(of_a_row)), rows(count), unaltered(count) {
   const auto n = static_cast<std::size_t>(count);
   for (const SampleShape::Picture& picture : shape.pictures)
     pictures.emplace_back(n * static_cast<std::size_t>(picture.numbers()));
@@ -23,7 +23,7 @@ std::vector<float> usual_picture(const Samples& samples, std::size_t which) {
   std::vector<float> candidates(static_cast<std::size_t>(samples.shape.pictures[which].numbers()));
   std::vector<int> lead(candidates.size());
   auto value = samples.pictures[which].begin();
-  for (int row = 0; row < samples.rows; ++row)
+  for (int row = 0; row < samples.unaltered; ++row)
     for (std::size_t i = 0; i < candidates.size(); ++i, ++value) {
       if (lead[i] == 0) candidates[i] = *value;
       lead[i] += *value == candidates[i] ? 1 : -1;

@@ -40,12 +40,14 @@ struct Samples {
 
   SampleShape shape;
   int rows;
+  int unaltered;  // of the rows, the first ones: the demonstrations as they are. The others are copies that differ
   std::vector<std::vector<float>> pictures;  // of each picture rows x its rows x columns x channels
   std::vector<float> text;                   // rows x 384, or empty
   std::vector<float> labels;                 // rows x numbers of an action: as_stored(), the oracle's
 };
 
-/// The value that more than half of the rows have in picture number `which`, number by number; any where there is none.
+/// The value that more than half of the unaltered rows have in picture number `which`, number by number; any where
+/// there is none.
 std::vector<float> usual_picture(const Samples& samples, std::size_t which);
 
 }  // namespace lgabench

@@ -18,6 +18,8 @@ class SentenceEmbeddings {
   /// machine and none on another change nothing that is shipped.
   /// @throws InputError for a sentence that needs the encoder where its weights are not: says how to get them.
   const std::vector<float>& of(const std::string& sentence);
+  /// Whether it is a committed one, or was asked for before.
+  bool holds(const std::string& sentence) const { return embeddings_.count(sentence) > 0; }
 
  private:
   std::map<std::string, std::vector<float>> embeddings_;

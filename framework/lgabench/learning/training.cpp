@@ -37,8 +37,9 @@ void train(Learner& learner, const Samples& samples, const TrainingOptions& aske
            TrainingLog& log) {
   if (samples.rows == 0) throw MethodError("training: expected at least one sample, got none");
   learner.begin(samples);
-  const TrainingOptions options = learner.schedule(asked, samples.rows);
-  const int batch_rows = std::min(options.batch_size, samples.rows), batches = samples.rows / batch_rows;
+  const TrainingOptions options = learner.schedule(asked, samples.unaltered);
+  const int visited = asked.equal_steps ? samples.unaltered : samples.rows;
+  const int batch_rows = std::min(options.batch_size, samples.unaltered), batches = visited / batch_rows;
   std::vector<int> batch(static_cast<std::size_t>(batch_rows));
   long long steps = 0;
   std::vector<double> losses;

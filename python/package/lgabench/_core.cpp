@@ -94,11 +94,13 @@ struct Which {
 /// A scenario's environment on an engine, with what a run does to a scene before a policy sees it.
 class Player {
  public:
-  Player(std::shared_ptr<const Scenario> scenario, const std::string& engine, std::string layout)
+  Player(std::shared_ptr<const Scenario> scenario, const std::string& engine, std::string layout, bool shadows = false)
       : scenario_(std::move(scenario)),
         layout_(std::move(layout)),
         type_(&find_environment(scenario_->environment)),
-        environment_(made(*scenario_, engine)) {}
+        environment_(made(*scenario_, engine)) {
+    environment_->show_shadows(shadows);
+  }
 
   /// Read once: files of plugins do not change while they are open.
   static const Catalogue& plugins() {
@@ -158,7 +160,7 @@ Action numbers_of(const Numbers& action, const ActionSpace& space) {
   return {action.data(), action.data() + action.size()};
 }
 
-/// rgb, ids, [(id, object type, texture, pixels)], and the same table as numbers; nothing is copied.
+/// rgb, ids, [(id, object type, texture, pixels)], shadows or None, and the same table as numbers; nothing is copied.
 nb::tuple arrays(const Player& player, Observation seen) {
   const auto rows = size(seen.size.rows), columns = size(seen.size.columns);
   const int most = most_instances_of(player.scenario());
@@ -167,8 +169,11 @@ nb::tuple arrays(const Player& player, Observation seen) {
   Rows table;
   for (Instance& one : seen.instances)
     table.emplace_back(one.id, std::move(one.object_type), std::move(one.texture), one.pixels);
+  const bool shaded = !seen.shadows.empty();
   return nb::make_tuple(array(std::move(seen.rgb), {rows, columns, 3}), array(std::move(seen.ids), {rows, columns}),
-                        nb::cast(std::move(table)), array(std::move(encoded), {size(most), 4}));
+                        nb::cast(std::move(table)),
+                        shaded ? nb::cast(array(std::move(seen.shadows), {rows, columns})) : nb::none(),
+                        array(std::move(encoded), {size(most), 4}));
 }
 
 /// One at a time: a second thread's call while one is under way is refused, as it would wait with Python's lock held.
@@ -184,8 +189,8 @@ class OneCall {
 
 class One {
  public:
-  One(std::shared_ptr<const Scenario> scenario, const std::string& engine, std::string layout)
-      : player_(std::move(scenario), engine, std::move(layout)) {}
+  One(std::shared_ptr<const Scenario> scenario, const std::string& engine, std::string layout, bool shadows)
+      : player_(std::move(scenario), engine, std::move(layout), shadows) {}
 
   nb::tuple reset(const std::string& split, const std::string& arm, std::uint64_t seed, int index,
                   std::optional<std::uint64_t> own_scenes) {
@@ -420,8 +425,8 @@ NB_MODULE(_core, m) {
       .def_prop_ro("action_space_json", [](const Scenario& s) { return canonical(to_json(actions_of(s))); });
   m.def("scenario", &scenario_at, "id"_a.none(), "path"_a.none());
   nb::class_<One>(m, "Environment")
-      .def(nb::init<std::shared_ptr<const Scenario>, const std::string&, std::string>(), "scenario"_a, "engine"_a,
-           "layout"_a)
+      .def(nb::init<std::shared_ptr<const Scenario>, const std::string&, std::string, bool>(), "scenario"_a, "engine"_a,
+           "layout"_a, "shadows"_a = false)
       .def("reset", &One::reset, "split"_a, "arm"_a, "seed"_a, "index"_a, "own_scenes"_a.none())
       .def("step", &One::step, "action"_a)
       .def("expert_action", &One::expert_action, "instance"_a.none())

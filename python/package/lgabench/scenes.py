@@ -122,17 +122,19 @@ def layout_of(scenario: Scenario, layout: Optional[str]) -> str:
 
 
 def _observation(seen: Any) -> Observation:
-    return Observation(seen[0], seen[1], [Instance(*row) for row in seen[2]])
+    return Observation(seen[0], seen[1], [Instance(*row) for row in seen[2]], seen[3])
 
 
 class Environment:
     """Scenes of one scenario on one engine, seen as a run's methods see them. Arrays are never reused. One thread at a
-    time; another one's call meanwhile raises RuntimeError, as does a call out of order."""
+    time; another one's call meanwhile raises RuntimeError, as does a call out of order. `shadows`: observations tell
+    whose shadow is where, as for a method that needs it."""
 
-    def __init__(self, scenario: Union[str, Scenario], engine: str = "mujoco", layout: Optional[str] = None) -> None:
+    def __init__(self, scenario: Union[str, Scenario], engine: str = "mujoco", layout: Optional[str] = None, *,
+                 shadows: bool = False) -> None:
         self.scenario = as_scenario(scenario)
         self.engine, self.layout = engine, layout_of(self.scenario, layout)
-        self._one: Optional[_core.Environment] = _core.Environment(self.scenario._core, engine, self.layout)
+        self._one: Optional[_core.Environment] = _core.Environment(self.scenario._core, engine, self.layout, shadows)
         self._rows: numpy.typing.NDArray[numpy.int16]
 
     @property

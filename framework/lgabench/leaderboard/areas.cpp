@@ -1,0 +1,110 @@
+#include <lgabench/leaderboard/areas.hpp>
+
+#include <algorithm>
+
+#include <lgabench/core/error.hpp>
+#include <lgabench/core/perturbations.hpp>
+#include <lgabench/report/statistics.hpp>
+
+namespace lgabench::leaderboard {
+namespace {
+
+// Ids of axes that have an area, and how many levels each has; none where they are not installed.
+std::map<std::string, int> graded_axes() try {
+  std::map<std::string, int> all;
+  for (const PerturbationAxis& axis : perturbation_axes())
+    if (!axis.named) all[axis.id] = axis.most();
+  return all;
+} catch (const InputError&) {
+  return {};
+}
+
+// Arms of the axis by level, as far as the scenario has them.
+std::map<int, std::string> arms_of(const Setting::Scenario& scenario, const std::string& axis, int levels) {
+  std::map<int, std::string> arms;
+  for (int level = 1; level <= levels; ++level) {
+    const std::string arm = arm_of({axis, level});
+    if (std::find(scenario.arms.begin(), scenario.arms.end(), arm) != scenario.arms.end()) arms[level] = arm;
+  }
+  return arms;
+}
+
+// Of the entry's success in each scenario that has one, weighted by arm, the mean.
+double mean_of(const Entry& entry, const std::map<std::string, ArmWeights>& by_scenario) {
+  std::map<std::string, std::vector<double>> rates;
+  for (const PlayedCell& cell : entry.cells) {
+    const auto weights = by_scenario.find(cell.place.scenario);
+    if (weights == by_scenario.end()) continue;
+    double rate = 0;
+    for (const auto& [arm, weight] : weights->second) {
+      const std::string& letters = cell.outcomes.at(arm);
+      rate += weight * static_cast<double>(std::count_if(letters.begin(), letters.end(), is_success)) /
+              static_cast<double>(letters.size());
+    }
+    rates[cell.place.scenario].push_back(rate);
+  }
+  std::vector<double> means;
+  for (const auto& scenario : rates) means.push_back(report::mean(scenario.second));
+  return means.empty() ? 0 : report::mean(means);
+}
+
+}  // namespace
+
+std::vector<std::string> axes_of(const Setting& setting) {
+  std::vector<std::string> axes;
+  const std::map<std::string, int> graded = graded_axes();
+  for (const Setting::Scenario& scenario : setting.scenarios)
+    for (const std::string& arm : scenario.arms)
+      for (const auto& [axis, levels] : graded)
+        if (arm == arm_of({axis, 1}) && std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
+  return axes;
+}
+
+ArmWeights weights_of(const Setting::Scenario& scenario, const std::string& axis) {
+  const std::map<std::string, int> graded = graded_axes();
+  const auto known = graded.find(axis);
+  std::map<int, std::string> arms;
+  if (known != graded.end()) arms = arms_of(scenario, axis, known->second);
+  if (arms.empty()) return {};
+  arms[0] = scenario.arms.front();
+  ArmWeights weights;
+  const double width = 2. * arms.rbegin()->first;
+  for (auto at = arms.begin(); at != arms.end(); ++at) {
+    const int before = at == arms.begin() ? at->first : std::prev(at)->first,
+              after = std::next(at) == arms.end() ? at->first : std::next(at)->first;
+    weights[at->second] = (after - before) / width;
+  }
+  return weights;
+}
+
+ArmWeights weights_of(const Setting::Scenario& scenario) {
+  ArmWeights all;
+  int axes = 0;
+  for (const auto& graded : graded_axes()) {
+    const ArmWeights weights = weights_of(scenario, graded.first);
+    axes += !weights.empty();
+    for (const auto& [arm, weight] : weights) all[arm] += weight;
+  }
+  for (auto& [arm, weight] : all) weight /= axes;
+  return all;
+}
+
+std::optional<double> relative_area(const Entry& entry, const std::string& axis) {
+  std::map<std::string, ArmWeights> area, control;
+  for (const Setting::Scenario& scenario : entry.setting.scenarios) {
+    ArmWeights weights = weights_of(scenario, axis);
+    if (weights.empty()) continue;
+    control[scenario.id] = {{scenario.arms.front(), 1}};
+    area[scenario.id] = std::move(weights);
+  }
+  const double at_first = mean_of(entry, control);
+  return at_first > 0 ? std::optional(mean_of(entry, area) / at_first) : std::nullopt;
+}
+
+double control_success(const Entry& entry) {
+  std::map<std::string, ArmWeights> control;
+  for (const Setting::Scenario& scenario : entry.setting.scenarios) control[scenario.id] = {{scenario.arms.front(), 1}};
+  return mean_of(entry, control);
+}
+
+}  // namespace lgabench::leaderboard

@@ -1,0 +1,208 @@
+"""Repainting: what is taken out of a picture, or made to look otherwise, beside what a goal mask keeps.
+
+The same bytes as lgabench::repaint() of abstraction/repaint.hpp for the same streams. Colours change, ids and instances
+stay. `Needs(shadows=True)` asks for what shadows are taken away by.
+"""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Union
+
+import numpy
+import numpy.typing
+
+from lgabench_method import Bytes, Demonstration, Numbers, Observation, Selection, Step, goal_mask
+
+__all__ = ["Background", "Colour", "Noise", "RandomStream", "RandomTextures", "augmented", "most_frequent_colour", "repaint",
+           "unselected", "usual_background"]
+
+SHADOW = 141  # of a colour in the light, in 1/256, what it has in the shadow of an object
+WORD = numpy.uint64(0xFFFFFFFF)
+
+
+class RandomStream:
+    """Philox4x32-10, as lgabench::RandomStream: named, not advanced to. "mine/7/3" and "mine/7/4" share no numbers."""
+
+    def __init__(self, name: str) -> None:
+        key = 0xCBF29CE484222325
+        for byte in name.encode():
+            key = (key ^ byte) * 0x100000001B3 % 2**64
+        for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+            key = (key ^ (key >> shift)) * factor % 2**64
+        self._key = key ^ (key >> 31)
+        self._drawn = 0  # 32-bit numbers so far
+
+    def next(self, count: int) -> numpy.typing.NDArray[numpy.uint32]:
+        """The next `count` numbers of 32 uniform bits."""
+        first, last = self._drawn // 4, (self._drawn + count + 3) // 4
+        blocks = numpy.arange(first, last, dtype=numpy.uint64)
+        c = [blocks & WORD, blocks >> numpy.uint64(32), numpy.zeros_like(blocks), numpy.zeros_like(blocks)]
+        k = [self._key % 2**32, self._key >> 32]
+        for _ in range(10):
+            one, other = numpy.uint64(0xD2511F53) * c[0], numpy.uint64(0xCD9E8D57) * c[2]
+            c = [(other >> numpy.uint64(32)) ^ c[1] ^ numpy.uint64(k[0]), other & WORD,
+                 (one >> numpy.uint64(32)) ^ c[3] ^ numpy.uint64(k[1]), one & WORD]
+            k = [(k[0] + 0x9E3779B9) % 2**32, (k[1] + 0xBB67AE85) % 2**32]
+        skipped = self._drawn - 4 * first
+        self._drawn += count
+        return numpy.stack(c, 1).reshape(-1)[skipped:skipped + count].astype(numpy.uint32)
+
+    def uniform(self, low: float = 0, high: float = 1) -> float:
+        """Uniform in [low, high), 53 bits."""
+        one, other = map(int, self.next(2))
+        return low + (high - low) * (((one >> 5) << 26 | other >> 6) * 2.0**-53)
+
+    def below(self, n: int) -> int:
+        """Uniform in [0, n), without bias; n > 0."""
+        while True:
+            product = int(self.next(1)[0]) * n
+            if product % 2**32 >= (2**32 - n) % n:
+                return product >> 32
+
+    def coin(self) -> bool:
+        return self.below(2) == 0
+
+
+@dataclass(frozen=True)
+class Background:
+    """What pictures show where nothing stands: `rgb` is rows x columns x 3."""
+    rgb: Bytes
+
+
+@dataclass(frozen=True)
+class Colour:
+    red: int
+    green: int
+    blue: int
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Another random colour at each pixel."""
+    stream: RandomStream
+
+
+@dataclass(frozen=True)
+class RandomTextures:
+    """A random pattern for each id, plain, stripes, checks, dots or a gradient of two random colours, in the pixels' light."""
+    stream: RandomStream
+
+
+How = Union[Background, Colour, Noise, RandomTextures]
+Mask = numpy.typing.NDArray[numpy.bool_]
+
+
+def unselected(observation: Observation, selection: Selection) -> list[int]:
+    """Ids of the instances that a goal mask leaves out, in the order of `instances`."""
+    kept = set(numpy.unique(observation.ids[goal_mask(observation, selection) > 0]).tolist())
+    return [one.id for one in observation.instances if one.id not in kept]
+
+
+def _clear(observation: Observation) -> Mask:
+    free: Mask = observation.ids == 0
+    return free if observation.shadows is None else free & (observation.shadows == 0)
+
+
+def _packed(rgb: Bytes) -> numpy.typing.NDArray[numpy.int64]:
+    wide = rgb.astype(numpy.int64)
+    return wide[..., 0] << 16 | wide[..., 1] << 8 | wide[..., 2]
+
+
+def _unpacked(colours: numpy.typing.ArrayLike) -> Bytes:
+    packed = numpy.asarray(colours, numpy.int64)
+    return numpy.stack([packed >> 16 & 255, packed >> 8 & 255, packed & 255], -1).astype(numpy.uint8)
+
+
+def _most_frequent(colours: numpy.typing.NDArray[numpy.int64]) -> int:
+    values, counts = numpy.unique(colours, return_counts=True)
+    return int(values[counts.argmax()]) if len(values) else 0
+
+
+def usual_background(demonstrations: Iterable[Demonstration]) -> Background:
+    """What more than half of the steps show at a pixel, of those in which neither an object nor a shadow is there; where
+    that is never so, the most frequent of the colours found."""
+    seen = [step.observation for one in demonstrations for step in one.steps]
+    candidates = numpy.zeros(seen[0].ids.shape, numpy.int64)
+    lead, known = numpy.zeros_like(candidates), numpy.zeros(candidates.shape, bool)
+    for one in seen:  # a majority vote in one pass (Boyer and Moore 1991)
+        clear, colours = _clear(one), _packed(one.rgb)
+        candidates = numpy.where(clear & (lead == 0), colours, candidates)
+        lead += clear * numpy.where(colours == candidates, 1, -1)
+        known |= clear
+    return Background(_unpacked(numpy.where(known, candidates, _most_frequent(candidates[known]))))
+
+
+def most_frequent_colour(background: Background) -> Colour:
+    """The table's, where the picture shows little else."""
+    return Colour(*_unpacked(_most_frequent(_packed(background.rgb))).tolist())
+
+
+def _random_colour(stream: RandomStream) -> Bytes:
+    return _unpacked(stream.next(1)[0] >> 8)
+
+
+def _pattern(stream: RandomStream, rows: Numbers, columns: Numbers) -> Bytes:
+    """Colours of pixels; arithmetic as in C++, to the bit."""
+    kind = stream.below(5)
+    one, other = _random_colour(stream), _random_colour(stream)
+    scale = stream.uniform(1 / 24, 1 / 4)
+    down, across = scale * stream.uniform(-1, 1), scale * stream.uniform(-1, 1)
+    first, second = stream.uniform(), stream.uniform()
+    u, v = rows * down + columns * across + first, columns * down - rows * across + second
+    u, v = u - numpy.floor(u), v - numpy.floor(v)
+    if kind == 4:
+        share = numpy.abs(2 * u - 1)[:, None]
+        return numpy.floor(one + share * (other.astype(float) - one) + .5).astype(numpy.uint8)
+    shows_one = [numpy.ones(len(u), bool), u < .5, (u < .5) == (v < .5), (u - .5) * (u - .5) + (v - .5) * (v - .5) < .09][kind]
+    return numpy.where(shows_one[:, None], one, other)
+
+
+def repaint(observation: Observation, which: Sequence[int], how: How) -> Observation:
+    """Paints the pixels whose ids are `which`; 0: of all that is no object.
+
+    A background or a colour takes their shadows away too, where the observation tells shadows and nothing else throws one
+    there, so that a second time changes nothing; noise covers what is no object in their shadows; under textures shadows
+    stay.
+    """
+    covered: Mask = numpy.isin(observation.ids, list(which))
+    rgb = observation.rgb.copy()
+    bits = sum(1 << row for row, one in enumerate(observation.instances[:16]) if one.id in which)
+    shadows = observation.shadows if observation.shadows is not None else numpy.zeros(observation.ids.shape, numpy.uint16)
+    shaded: Mask = ~covered & ((shadows & bits) != 0)
+    if isinstance(how, RandomTextures):
+        for number in which:
+            rows, columns = numpy.nonzero(observation.ids == number)
+            rgb[rows, columns] = _pattern(how.stream, rows.astype(float), columns.astype(float))
+        dark = covered & (shadows != 0)
+        rgb[dark] = (rgb[dark].astype(int) * SHADOW + 128) >> 8
+    elif isinstance(how, Noise):
+        covered |= shaded & (observation.ids == 0)
+        rgb[covered] = _unpacked(how.stream.next(int(covered.sum())) >> 8)
+    else:
+        alone = shaded & ((shadows & ~numpy.uint16(bits)) == 0)
+        rgb[alone] = numpy.minimum(255, (rgb[alone].astype(int) * 256 + SHADOW // 2) // SHADOW)
+        rgb[covered] = how.rgb[covered] if isinstance(how, Background) else (how.red, how.green, how.blue)
+        if observation.shadows is not None:
+            return replace(observation, rgb=rgb, shadows=numpy.where(covered, 0, shadows & ~numpy.uint16(bits)).astype(numpy.uint16))
+    return replace(observation, rgb=rgb)
+
+
+Augment = Callable[[Step, Selection, int, RandomStream], Step]
+
+
+def augmented(demonstrations: Sequence[Demonstration], copies: int, augment: Augment, seed: int) -> list[Demonstration]:
+    """The demonstrations, and behind them, copy by copy, what augment(step, selection, copy, stream) makes of their steps.
+
+    Train for as many optimiser steps as on the demonstrations alone, or say so: else a row with copies learns longer.
+    """
+    everything = list(demonstrations)
+    for copy in range(copies):
+        row = 0
+        for one in demonstrations:
+            steps = []
+            for step in one.steps:
+                steps.append(augment(step, one.instruction.selection, copy, RandomStream(f"learning/augment/{seed}/{row}/{copy}")))
+                row += 1
+            everything.append(Demonstration(one.instruction, steps))
+    return everything
