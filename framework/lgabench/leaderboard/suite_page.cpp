@@ -228,7 +228,9 @@ Chart curve_chart(const NamedTable& table) {
 Grid heat_grid(const NamedTable& table, std::size_t first_row) {
   Grid grid;
   grid.name = table.setting.name() + "_scenarios";
-  grid.caption = "Success in each scenario, over all arms and numbers of demonstrations";
+  grid.caption = axes_of(table.setting).empty()
+                     ? "Success in each scenario, over all arms and numbers of demonstrations"
+                     : "Area in each scenario, over its axes and numbers of demonstrations";
   grid.heads = {"entry"};
   for (const Setting::Scenario& scenario : table.setting.scenarios) {
     std::string words = scenario.id;
