@@ -155,7 +155,7 @@ Scenario suite_scenario(const Suite& suite, const std::string& id, Truth truth, 
   if (suite.paraphrases.contains(base)) add_wordings(suite, base, json);
   if (suite.answers.contains(base)) json["answers"] = {{"recorded", suite.answers[base]}};
   const Json changes = variant.empty() ? Json::object() : suite.variants[variant];
-  json["train"].update(changes.value("train", Json::object()));
+  if (changes.contains("train")) json["train"].update(changes["train"]);
   if (changes.contains("commands"))
     json["commands"] = first_commands(json["commands"], changes["commands"].get<std::size_t>());
   const Json first = json["tests"].front();
