@@ -102,7 +102,7 @@ TEST(InfoCommand, RefusedAndUnknownNames) {
   EXPECT_SAYS(refused.err, "SDK \"0.0.9\"");
   const Outcome unknown = lgabench("info nothing_of_that_name");
   EXPECT_EQ(unknown.status, 2);
-  EXPECT_SAYS(unknown.err, "no method, engine, suite, scenario or environment \"nothing_of_that_name\"");
+  EXPECT_SAYS(unknown.err, "no method, engine, perturbation, suite, scenario or environment \"nothing_of_that_name\"");
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <array>
 
 #include <lgabench/core/files.hpp>
-#include <lgabench/plugin/loader.hpp>
 
 namespace lgabench {
 namespace {
@@ -19,11 +18,14 @@ std::string sentence(const JsonReader& reader) {
 }
 
 std::string row(const JsonReader& reader) {
-  const std::vector<std::string> words = row_words(reader.string());
-  const bool options = std::all_of(words.begin() + 1, words.end(),
-                                   [](const std::string& word) { return word.find('=') != std::string::npos; });
-  if (words.front().empty() || !options) reader.fail("a row, ID+OPTION=VALUE+...");
-  return reader.string();
+  const std::string words = reader.string();
+  bool options = words.find('+') != 0 && !words.empty();
+  for (std::size_t at = words.find('+'), next = 0; at != words.npos; at = next) {
+    next = words.find('+', at + 1);
+    options = options && words.substr(at, next - at).find('=') != words.npos;
+  }
+  if (!options) reader.fail("a row, ID+OPTION=VALUE+...");
+  return words;
 }
 
 SuiteClaim::Test test(const JsonReader& reader) {
