@@ -193,7 +193,7 @@ std::vector<Standing> standings(const std::vector<const Entry*>& table, const Tr
     standing.entry = entry;
     standing.not_ranked = why_not_ranked(*entry);
     if (standing.not_ranked.empty() && track.kind == Track::abstraction)
-      standing.not_ranked = "ranks of this track wait for commands that are drawn";
+      standing.not_ranked = "no ranks: the truths are public";
     add_rates(standing);
     add_costs(standing);
     rates.push_back(rates_of(*entry));

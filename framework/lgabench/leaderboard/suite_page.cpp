@@ -56,6 +56,10 @@ Names names_of(const std::vector<Standing>& all, const Labels& words) {
   for (const Standing& s : all)
     for (const auto& [option, value] : s.entry->identity.row.options.items())
       values[{s.entry->identity.row.own_name(), option}].insert(value);
+  for (const Standing& s : all)  // an option that came later is not among a row's where it has its default
+    for (auto& [key, different] : values)
+      if (key.first == s.entry->identity.row.own_name() && !s.entry->identity.row.options.contains(key.second))
+        different.insert(Json());
   std::set<std::string> telling;
   for (const auto& [key, different] : values)
     if (different.size() > 1) telling.insert(key.second);
