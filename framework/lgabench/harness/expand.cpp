@@ -132,7 +132,7 @@ std::vector<std::string> suite_scenario_ids(const Suite& suite, const Design& de
   if (suite.variants.empty()) return design.scenarios;
   std::vector<std::string> ids;
   for (const std::string& id : design.scenarios)
-    for (const auto& [variant, ignored] : suite.variants.items()) ids.push_back(id + "_" + variant);
+    for (const auto& [variant, ignored] : suite.variants.items()) ids.push_back(fmt::format("{}_{}", id, variant));
   return ids;
 }
 
