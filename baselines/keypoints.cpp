@@ -54,6 +54,9 @@ class Points : public Learner {
     const int batches = samples / std::min(batch_size, samples);
     return {(steps + batches - 1) / batches, batch_size, learning_rate, Batches::shuffled, true};
   }
+  void begin(const Samples& samples) override {
+    for (int row = 0; row < samples.rows; ++row) shown_.push_back(features_of(samples, row));
+  }
   const std::vector<float>& predict(const Samples& samples) override {
     outputs_.clear();
     for (int row = 0; row < samples.rows; ++row) {
@@ -69,7 +72,7 @@ class Points : public Learner {
     std::fill(gradients_.begin(), gradients_.end(), 0);
     double loss = 0;
     for (const int row : batch) {
-      const Features in = features_of(samples, row);
+      const Features& in = shown_[static_cast<std::size_t>(row)];
       const std::vector<double> out = forward(in);
       const Action label = samples.label(row);
       std::array<double, hidden> of_hidden{};
@@ -142,6 +145,7 @@ class Points : public Learner {
   SampleShape shape_;
   std::size_t outs_;
   std::vector<double> values_, gradients_, mean_, variance_;
+  std::vector<Features> shown_;  // of each row that is learned from
   std::array<double, hidden> hidden_{};
   std::vector<float> outputs_;
   int updates_ = 0;

@@ -4,6 +4,7 @@
 
 #include <lgabench/core/error.hpp>
 #include <lgabench/core/perturbations.hpp>
+#include <lgabench/report/perturbation_curves.hpp>
 #include <lgabench/report/statistics.hpp>
 
 namespace lgabench::leaderboard {
@@ -19,14 +20,11 @@ std::map<std::string, int> graded_axes() try {
   return {};
 }
 
-// Arms of the axis by level, as far as the scenario has them.
-std::map<int, std::string> arms_of(const Setting::Scenario& scenario, const std::string& axis, int levels) {
-  std::map<int, std::string> arms;
-  for (int level = 1; level <= levels; ++level) {
-    const std::string arm = arm_of({axis, level});
-    if (std::find(scenario.arms.begin(), scenario.arms.end(), arm) != scenario.arms.end()) arms[level] = arm;
-  }
-  return arms;
+// Every scenario's first arm alone.
+std::map<std::string, ArmWeights> controls(const Setting& setting) {
+  std::map<std::string, ArmWeights> all;
+  for (const Setting::Scenario& scenario : setting.scenarios) all[scenario.id] = {{scenario.arms.front(), 1}};
+  return all;
 }
 
 // Of the entry's success in each scenario that has one, weighted by arm, the mean.
@@ -38,8 +36,7 @@ double mean_of(const Entry& entry, const std::map<std::string, ArmWeights>& by_s
     double rate = 0;
     for (const auto& [arm, weight] : weights->second) {
       const std::string& letters = cell.outcomes.at(arm);
-      rate += weight * static_cast<double>(std::count_if(letters.begin(), letters.end(), is_success)) /
-              static_cast<double>(letters.size());
+      rate += weight * successes(letters) / static_cast<double>(letters.size());
     }
     rates[cell.place.scenario].push_back(rate);
   }
@@ -63,17 +60,14 @@ std::vector<std::string> axes_of(const Setting& setting) {
 ArmWeights weights_of(const Setting::Scenario& scenario, const std::string& axis) {
   const std::map<std::string, int> graded = graded_axes();
   const auto known = graded.find(axis);
-  std::map<int, std::string> arms;
-  if (known != graded.end()) arms = arms_of(scenario, axis, known->second);
-  if (arms.empty()) return {};
-  arms[0] = scenario.arms.front();
-  ArmWeights weights;
-  const double width = 2. * arms.rbegin()->first;
-  for (auto at = arms.begin(); at != arms.end(); ++at) {
-    const int before = at == arms.begin() ? at->first : std::prev(at)->first,
-              after = std::next(at) == arms.end() ? at->first : std::next(at)->first;
-    weights[at->second] = (after - before) / width;
-  }
+  std::vector<int> levels;
+  for (int level = 1; known != graded.end() && level <= known->second; ++level)
+    if (std::find(scenario.arms.begin(), scenario.arms.end(), arm_of({axis, level})) != scenario.arms.end())
+      levels.push_back(level);
+  if (levels.empty()) return {};
+  const std::vector<double> shares = report::trapezoids(levels);
+  ArmWeights weights{{scenario.arms.front(), shares.front()}};
+  for (std::size_t i = 0; i < levels.size(); ++i) weights[arm_of({axis, levels[i]})] = shares[i + 1];
   return weights;
 }
 
@@ -90,21 +84,18 @@ ArmWeights weights_of(const Setting::Scenario& scenario) {
 }
 
 std::optional<double> relative_area(const Entry& entry, const std::string& axis) {
-  std::map<std::string, ArmWeights> area, control;
+  std::map<std::string, ArmWeights> area, control = controls(entry.setting);
   for (const Setting::Scenario& scenario : entry.setting.scenarios) {
     ArmWeights weights = weights_of(scenario, axis);
-    if (weights.empty()) continue;
-    control[scenario.id] = {{scenario.arms.front(), 1}};
-    area[scenario.id] = std::move(weights);
+    if (weights.empty())
+      control.erase(scenario.id);
+    else
+      area[scenario.id] = std::move(weights);
   }
   const double at_first = mean_of(entry, control);
   return at_first > 0 ? std::optional(mean_of(entry, area) / at_first) : std::nullopt;
 }
 
-double control_success(const Entry& entry) {
-  std::map<std::string, ArmWeights> control;
-  for (const Setting::Scenario& scenario : entry.setting.scenarios) control[scenario.id] = {{scenario.arms.front(), 1}};
-  return mean_of(entry, control);
-}
+double control_success(const Entry& entry) { return mean_of(entry, controls(entry.setting)); }
 
 }  // namespace lgabench::leaderboard

@@ -68,20 +68,12 @@ PerturbationCurve::Level level_of(const RunResults& run, const PerturbationCurve
   return level;
 }
 
-// What each level's success counts in the area, the control's first: the trapezoids' sides, as shares of the whole.
-std::vector<double> weights(const std::vector<PerturbationCurve::Level>& levels) {
-  std::vector<double> at{0};
-  for (const PerturbationCurve::Level& level : levels) at.push_back(level.level);
-  std::vector<double> all;
-  for (std::size_t i = 0; i < at.size(); ++i)
-    all.push_back((at[std::min(i + 1, at.size() - 1)] - at[i == 0 ? 0 : i - 1]) / (2 * at.back()));
-  return all;
-}
-
 // Adds the cell's control and area, scene by scene; false where a level is not paired with the control.
 bool add_area(const CellResult& cell, const PerturbationCurve& curve, Outcomes& control, Outcomes& area) {
   const std::vector<Episode>& first = cell.episodes.at(cell.arms.front());
-  const std::vector<double> counts = weights(curve.levels);
+  std::vector<int> levels;
+  for (const PerturbationCurve::Level& level : curve.levels) levels.push_back(level.level);
+  const std::vector<double> counts = trapezoids(levels);
   std::vector<std::string> scenes;
   std::vector<double> won, areas;
   for (const Episode& episode : first) {
@@ -197,6 +189,15 @@ const PerturbationCurve::Level* PerturbationCurve::first_loss() const {
 const PerturbationCurve::Level* PerturbationCurve::find(int level) const {
   const auto found = std::find_if(levels.begin(), levels.end(), [=](const Level& l) { return l.level == level; });
   return found == levels.end() ? nullptr : &*found;
+}
+
+std::vector<double> trapezoids(const std::vector<int>& levels) {
+  std::vector<int> at{0};
+  at.insert(at.end(), levels.begin(), levels.end());
+  std::vector<double> all;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    all.push_back((at[std::min(i + 1, at.size() - 1)] - at[i == 0 ? 0 : i - 1]) / (2. * at.back()));
+  return all;
 }
 
 std::vector<PerturbationCurve> perturbation_curves(const RunResults& run, const std::vector<Table>& tables) {
