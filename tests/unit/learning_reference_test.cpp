@@ -255,7 +255,7 @@ TEST_P(Networks, FollowTorchsAdamOverTwentySteps) {
 // A tower has 32(64c + 1) + 64(512 + 1) + 32(576 + 1) parameters and 2(32 + 64 + 32) of batch normalisation, the text
 // layer 100(384 + 1), the head 12 a feature + 12; `released` with text 100(160 + 1) a tower, 100(100 a tower + 385),
 // 1212.
-constexpr std::size_t mask_tower = 53376, rgb_tower = 57472, norms = 256;
+constexpr std::size_t mask_tower = 53376, rgb_tower = 57472, fused_tower = 59520, norms = 256;
 INSTANTIATE_TEST_SUITE_P(
     Shapes, Networks,
     testing::Combine(
@@ -268,6 +268,8 @@ INSTANTIATE_TEST_SUITE_P(
             Case{"wide_rgb_segmentation_and_text",
                  {{3, 1}, true, plain, 12, true},
                  rgb_tower + mask_tower + 2 * 161000 + 38500 + 25212},
+            Case{"plain_fused", {{4}, false, plain}, fused_tower + 1932},
+            Case{"text_fused", {{4}, false, text}, fused_tower + norms + 1932},
             Case{"text_mask", {{1}, false, text}, mask_tower + norms + 1932},
             Case{"text_rgb_and_text", {{3}, true, text}, rgb_tower + norms + 38500 + 3132},
             Case{"text_mask_and_rgb", {{1, 3}, false, text}, mask_tower + rgb_tower + 2 * norms + 3852},

@@ -3,8 +3,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <string>
+#include <thread>
 
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/version.hpp>
@@ -130,6 +132,25 @@ TEST(Scratch, WhatAKilledProcessLeftGoesWithTheNextOne) {
   }
   EXPECT_EQ(directories(), std::vector<fs::path>{others});
   ::unsetenv("TMPDIR");
+}
+
+// Each sees those of the others while they are made.
+TEST(Scratch, ManyAtOnceKeepTheirDirectories) {
+  const TemporaryDirectory temporary;
+  ::setenv("TMPDIR", temporary.path.c_str(), 1);
+  std::atomic<int> kept = 0;
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 8; ++thread)
+    threads.emplace_back([&kept] {
+      for (int i = 0; i < 200; ++i) try {
+          const Scratch scratch("test");
+          kept += fs::exists(scratch.path);
+        } catch (const InputError&) {
+        }
+    });
+  for (std::thread& thread : threads) thread.join();
+  ::unsetenv("TMPDIR");
+  EXPECT_EQ(kept, 1600);
 }
 
 }  // namespace

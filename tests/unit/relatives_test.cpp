@@ -33,7 +33,8 @@ class Relatives : public testing::Test {
     options["epochs"] = 1;
     const Json all = resolve_options(plugin, options);
     method = load_method(plugin);
-    EXPECT_EQ(method->needs(all).shadows, id != "masked_rgb" && id != "diffusion");
+    EXPECT_EQ(method->needs(all).shadows,
+              id == "masked_bc" || id == "texture_aug" || id == "object_dropout" || id == "erase");
     RecordedLanguageModel lm(scenario, scenario.recorded);
     TruthAsHuman human(scenario.commands);
     Services services{lm, human, all, seed, log, find_environment("tabletop").action_space()};
@@ -168,6 +169,20 @@ TEST_F(Relatives, OfMaskedColoursOneIsLeftBesideTheTarget) {
   }
   EXPECT_EQ(colours.size(), 1u);
   EXPECT_GT(kept, 5);
+}
+
+TEST_F(Relatives, ASetNetworkTakesWhatIsSelectedWhereverItLies) {
+  const auto policy = learned("set_network", Json::object());
+  const Action first = policy->act(probe, instruction);
+  Instruction other = instruction;
+  const auto another = std::find_if(probe.instances.begin(), probe.instances.end(),
+                                    [&](const Instance& i) { return i.id == others.front(); });
+  other.selection.target = {{another->object_type}, {another->texture}};
+  const Action second = policy->act(probe, other);
+  EXPECT_GT(std::hypot(first[0] - second[0], first[1] - second[1]), .05) << "another object is selected";
+  Observation permuted = probe;
+  std::rotate(permuted.instances.begin(), permuted.instances.begin() + 1, permuted.instances.end());
+  EXPECT_EQ(policy->act(permuted, instruction), first) << "the order of the table says nothing";
 }
 
 }  // namespace

@@ -190,6 +190,7 @@ TEST(ErrorCurves, AreOfOneKindOfErrorsAndBeginWithTheRowWithout) {
   EXPECT_EQ(curve["points"][2]["empty"], .6);
   EXPECT_EQ(summary["rows"][curve["points"][1]["row"].get<std::size_t>()]["method"], "lga+missing=0.1");
   EXPECT_NEAR(curve["slope"].get<double>(), -.2, 1e-12);
+  EXPECT_FALSE(curve.contains("low")) << "one policy tells of no other";
   const report::Chart& chart = chart_named(report.document, "errors_missing_cells_mujoco_test_20");
   ASSERT_EQ(chart.series.size(), 1u);
   EXPECT_EQ(chart.series[0].name, "LGA epochs=9") << "as tables name the row";
@@ -198,6 +199,36 @@ TEST(ErrorCurves, AreOfOneKindOfErrorsAndBeginWithTheRowWithout) {
   EXPECT_SAYS(sources, "φ̂ of LGA missing=0.1 epochs=9: true φ̂ with errors made in it: no human data");
   EXPECT_SAYS(sources, "φ̂ of LGA epochs=9: true φ̂: no human data");
   EXPECT_SAYS(read_file(run.path / "report.html"), "What an error of the Selection costs");
+
+  const std::vector<const report::Grid*> grids = report.document.grids();
+  const auto named = [&](const std::string& name) {
+    return *std::find_if(grids.begin(), grids.end(), [&](const auto* grid) { return grid->name == name; });
+  };
+  const report::Grid& errors = *named("errors_cells_mujoco_test_20");
+  std::vector<std::string> heads, values;
+  for (const report::TableCell& head : errors.heads) heads.push_back(head.text());
+  EXPECT_EQ(heads, (std::vector<std::string>{"method", "no errors", "missing 0.1", "missing 0.3", "slope per 0.1",
+                                             "missing 0.3, added 0.1"}));
+  ASSERT_EQ(errors.rows.size(), 2u);
+  for (const report::TableCell& cell : errors.rows[0].cells) values.push_back(cell.text());
+  EXPECT_EQ(values, (std::vector<std::string>{"LGA epochs=9", "1.00", "0.80", "0.40, 0.60 empty", "−0.20", "0.10"}));
+  EXPECT_EQ(named("cells_mujoco_mean")->rows.size(), 2u) << "rows with errors are in the table of errors alone";
+}
+
+TEST(ErrorCurves, OfSeveralPoliciesHaveTheirSlopesInterval) {
+  FabricatedRun run;
+  for (int seed = 0; seed < 3; ++seed)
+    for (const auto& [won, missing] : {std::pair(20, 0.), {12, .2}, {4 + 2 * seed, .4}}) {
+      Spec spec{missing == 0 ? "lga" : fmt::format("lga+missing={}", missing), won, "heart", 20, seed};
+      if (missing != 0) spec.selection_errors = {{"missing", missing}};
+      run.add(spec);
+    }
+  report::write_report(run.save().path);
+  const Json curve = read_json(run.path / "summary.json").at("error_curves").at(0);
+  EXPECT_NEAR(curve["slope"].get<double>(), .1 * (.3 - 1) / .4, 1e-12);
+  EXPECT_LT(curve["low"], curve["slope"]);
+  EXPECT_GT(curve["high"], curve["slope"]);
+  EXPECT_LT(curve["high"], -.08) << "60 scenes tell it from 0";
 }
 
 }  // namespace

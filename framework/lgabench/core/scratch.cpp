@@ -27,11 +27,11 @@ int open_own(const fs::path& path) {
 
 void remove_abandoned(const fs::path& prefix) {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(prefix.parent_path(), ignored)) {
-    if (entry.path().filename().string().rfind(prefix.filename().string(), 0) != 0) continue;
-    const int directory = open_own(entry.path());
+  for (fs::directory_iterator entry(prefix.parent_path(), ignored), end; entry != end; entry.increment(ignored)) {
+    if (entry->path().filename().string().rfind(prefix.filename().string(), 0) != 0) continue;
+    const int directory = open_own(entry->path());
     if (directory < 0) continue;
-    if (::flock(directory, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry.path(), ignored);
+    if (::flock(directory, LOCK_EX | LOCK_NB) == 0) fs::remove_all(entry->path(), ignored);
     ::close(directory);
   }
 }
@@ -43,12 +43,16 @@ Scratch::Scratch(const std::string& name) {
   remove_abandoned(prefix);
   while (lock_ < 0) {
     std::string made = prefix.string() + "XXXXXX";
-    if (!::mkdtemp(made.data()) || (lock_ = open_own(made)) < 0)
-      throw InputError(fmt::format("{}: {}", made, std::strerror(errno)));
+    if (!::mkdtemp(made.data())) throw InputError(fmt::format("{}: {}", made, std::strerror(errno)));
     path = made;
+    // Another process may take it for abandoned before it is locked, or before it is opened.
+    if ((lock_ = open_own(made)) < 0) {
+      if (errno != ENOENT) throw InputError(fmt::format("{}: {}", made, std::strerror(errno)));
+      continue;
+    }
     struct stat locked {};
     if (::flock(lock_, LOCK_EX) == 0 && ::fstat(lock_, &locked) == 0 && locked.st_nlink > 0) break;
-    ::close(std::exchange(lock_, -1));  // taken for abandoned, between its making and its lock
+    ::close(std::exchange(lock_, -1));
   }
 }
 

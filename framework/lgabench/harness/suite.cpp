@@ -106,13 +106,16 @@ Json arms_of(const JsonReader& list) {
 
 // What pages say of the suite (report/about_suite.hpp).
 void expect_about(const JsonReader& about) {
-  about.only({"question", "main_arm", "main_demonstrations", "arms"});
+  about.only({"question", "main_arm", "main_demonstrations", "arms", "rows"});
   about.at("question").string();
   if (about.has("main_arm")) about.at("main_arm").string();
   if (about.has("main_demonstrations")) about.at("main_demonstrations").integer(1, most);
-  if (!about.has("arms")) return;
-  if (!about.at("arms").json().is_object()) about.at("arms").fail("an object");
-  for (const auto& arm : about.at("arms").json().items()) about.at("arms").at(arm.key()).string();
+  for (const char* name : {"arms", "rows"}) {
+    if (!about.has(name)) continue;
+    const JsonReader words = about.at(name);
+    if (!words.json().is_object()) words.fail("an object");
+    for (const auto& one : words.json().items()) words.at(one.key()).string();
+  }
 }
 
 }  // namespace

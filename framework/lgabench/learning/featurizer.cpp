@@ -70,6 +70,10 @@ void Featurizer::write_pictures(const Observation& observation, const Selection&
       shrink_rgb(observation.rgb, observation.size, inputs_.rgb_size, out);
       continue;
     }
+    if (picture == Picture::instances) {
+      shrink_ids(observation.ids, observation.size, inputs_.mask_size, out);
+      continue;
+    }
     if (picture == Picture::segmentation)
       object_mask(observation, mask_, inputs_.left_out);
     else if (inputs_.signed_mask)

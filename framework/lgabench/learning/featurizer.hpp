@@ -20,9 +20,10 @@ enum class Phase { training, test };
 /// The pictures and the text that a learner is given.
 struct PolicyInputs {
   enum class Picture {
-    mask,         // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
-    rgb,          // 3 channels
-    segmentation  // 1 channel: 1 on any object but those of the type `left_out`
+    mask,          // 1 channel: the goal mask of the instruction's Selection, or of that in `masks`
+    rgb,           // 3 channels
+    segmentation,  // 1 channel: 1 on any object but those of the type `left_out`
+    instances      // 1 channel: the id of the instance in the pixel's middle, 0 for none; for a learner of one's own
   };
   std::vector<Picture> pictures;
   /// One sentence embedding of 384 numbers.

@@ -48,4 +48,12 @@ void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize native, Pict
     }
 }
 
+void shrink_ids(const std::vector<std::uint8_t>& ids, PictureSize native, PictureSize size, float* out) {
+  expect_size("ids", ids.size(), native.pixels());
+  for (int r = 0; r < size.rows; ++r)
+    for (int c = 0; c < size.columns; ++c)
+      *out++ = ids[static_cast<std::size_t>((2 * r + 1) * native.rows / (2 * size.rows) * native.columns +
+                                            (2 * c + 1) * native.columns / (2 * size.columns))];
+}
+
 }  // namespace lgabench

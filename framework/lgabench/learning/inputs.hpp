@@ -21,4 +21,8 @@ void shrink_rgb(const std::vector<std::uint8_t>& rgb, PictureSize native, Pictur
 /// @throws InputError if the mask is not of size `native`.
 void shrink_mask(const std::vector<std::uint8_t>& mask, PictureSize native, PictureSize size, float* out);
 
+/// Ids, written to `out` as rows x columns: of each small pixel that of the native one in its middle.
+/// @throws InputError if there are not as many as `native` says.
+void shrink_ids(const std::vector<std::uint8_t>& ids, PictureSize native, PictureSize size, float* out);
+
 }  // namespace lgabench

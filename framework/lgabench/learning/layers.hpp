@@ -26,6 +26,7 @@ constexpr int hidden_features = 100, padded_hidden = 112, wide_features = 1000, 
 enum LayerKind {
   mask_convolution,
   rgb_convolution,
+  fused_convolution,
   convolution2,
   convolution3,
   text_linear,
@@ -39,6 +40,7 @@ enum LayerKind {
 
 constexpr Layer layers[] = {{36, 72, 1, 8, 4, 32},
                             {36, 72, 3, 8, 4, 32},
+                            {36, 72, 4, 8, 4, 32},
                             {8, 17, 32, 4, 2, 64},
                             {3, 7, 64, 3, 1, 32},
                             {1, 0, 384, 1, 1, padded_hidden},

@@ -16,8 +16,8 @@ namespace lgabench {
 class Network : public Learner {
  public:
   /// Weights and biases uniform within 1/sqrt(fan in), as PyTorch's default; linear layers of `released` with
-  /// orthogonal weights and biases of 0. A function of the seed alone. @throws InputError for a picture that has
-  /// neither 1 nor 3 channels.
+  /// orthogonal weights and biases of 0. A function of the seed alone. @throws InputError for a picture whose
+  /// channels are none of 1, 3 and 4.
   Network(const NetworkShape& shape, std::uint64_t seed, Loss loss = Loss::norm,
           const Kernels& kernels = *available_kernels().front());
   ~Network() override;

@@ -17,7 +17,7 @@ enum class Architecture {
 /// linear layer maps all of it to the action: text, plain: with a text's 384 numbers through a linear layer to 100.
 /// released, with text: each tower through a linear layer to 100, joined with the 384, to 100, ReLU.
 struct NetworkShape {
-  std::vector<int> channels;  // of each tower's picture: 1 or 3
+  std::vector<int> channels;  // of each tower's picture: 1, 3 or 4
   bool text = false;
   Architecture architecture = Architecture::text;
   int actions = 12;   // numbers of an action, at most 16

@@ -16,6 +16,7 @@ using Text = PolicyInputs::Text;
 std::string name_of(Picture picture, const PolicyInputs& inputs) {
   if (picture == Picture::rgb) return "picture";
   if (picture == Picture::mask) return "goal mask";
+  if (picture == Picture::instances) return "instances";
   return inputs.left_out.empty() ? "all objects" : fmt::format("all objects but the {}", inputs.left_out);
 }
 

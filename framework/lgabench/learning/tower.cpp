@@ -13,10 +13,11 @@ constexpr float leak = .01f;  // PyTorch's default
 
 Tower::Tower(int channels, Architecture architecture, Parameters& parameters, const Kernels& kernels)
     : architecture_(architecture), parameters_(parameters), kernels_(kernels) {
-  if (channels != 1 && channels != 3)
-    throw InputError(fmt::format("network: expected pictures of 1 or 3 channels, got {}", channels));
-  for (const LayerKind kind : {channels == 1 ? mask_convolution : rgb_convolution, convolution2, convolution3})
-    add_convolution(layers[kind]);
+  const auto first = std::find_if(std::begin(layers), layers + convolution2,
+                                  [channels](const Layer& layer) { return layer.channels == channels; });
+  if (first == layers + convolution2)
+    throw InputError(fmt::format("network: expected pictures of 1, 3 or 4 channels, got {}", channels));
+  for (const Layer& layer : {*first, layers[convolution2], layers[convolution3]}) add_convolution(layer);
   first_.emplace(convolutions_[0].layer, kernels);
   transposed_ = Numbers(size(layers[convolution2].weights()));
 }

@@ -18,7 +18,7 @@ class Tower {
  public:
   /// Takes its parameters: of each convolution weight (out, in, row, column) and bias, uniform within 1/sqrt(fan in) as
   /// PyTorch's default, and with batch normalisation scale and shift. @pre both references outlive this.
-  /// @throws InputError if `channels` is neither 1 nor 3.
+  /// @throws InputError if `channels` is none of 1, 3 and 4.
   Tower(int channels, Architecture architecture, Parameters& parameters, const Kernels& kernels);
   /// For batches of up to `rows`.
   void make_room(int rows);

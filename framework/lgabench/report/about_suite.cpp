@@ -15,6 +15,11 @@ std::string AboutSuite::arm(const std::string& name) const {
   return text;
 }
 
+std::string AboutSuite::row(const std::string& method) const {
+  const auto found = rows.find(method);
+  return found == rows.end() ? "" : found->second;
+}
+
 fs::path installed_suite(const std::string& id) {
   const bool is_name = !id.empty() && std::all_of(id.begin(), id.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-';
@@ -36,9 +41,9 @@ AboutSuite about_suite(const std::string& id) {
   if (words.has("main_arm")) about.main_arm = words.at("main_arm").string();
   if (words.has("main_demonstrations"))
     about.main_demonstrations = static_cast<int>(words.at("main_demonstrations").integer(1, 1'000'000));
-  if (words.has("arms"))
-    for (const auto& arm : words.at("arms").json().items())
-      about.arms[arm.key()] = words.at("arms").at(arm.key()).string();
+  for (const auto& [name, all] : {std::pair("arms", &about.arms), {"rows", &about.rows}})
+    if (words.has(name))
+      for (const auto& one : words.at(name).json().items()) (*all)[one.key()] = words.at(name).at(one.key()).string();
   return about;
 }
 

@@ -13,10 +13,13 @@ struct AboutSuite {
   std::string main_arm;                     // that its question is about; "" where it says none
   std::optional<int> main_demonstrations;   // likewise
   std::map<std::string, std::string> arms;  // what their test scenes are
+  std::map<std::string, std::string> rows;  // method, with its options -> what tells it from the others
   Json options = Json::object();            // method or "*" -> option -> value, of the suite's own design
 
   /// What the arm's scenes are; that of "seen" for "seen_members_1", an arm of a variant. "" where nothing is said.
   std::string arm(const std::string& name) const;
+  /// What tells the row from the others; "" where nothing is said.
+  std::string row(const std::string& method) const;
 };
 
 /// The file of an installed suite; empty where there is none of that name.

@@ -174,12 +174,9 @@ ClaimedDifference measured_slope(const Field& field, const SuiteClaim& claim, co
   ClaimedDifference d;
   d.above = claim.above, d.below = claim.below, d.arm = arm, d.demonstrations = n;
   d.unit = fmt::format("success per {} of {}", per, claim.option);
-  const double middle = mean(claim.levels);
-  std::vector<double> weights;
-  double squares = 0, reach = 0;
-  for (const double level : claim.levels) squares += (level - middle) * (level - middle);
-  for (const double level : claim.levels) weights.push_back(per * (level - middle) / squares);
-  for (const double weight : weights) reach += std::abs(weight);  // the most that the two can differ by
+  std::vector<double> weights = slope_weights(claim.levels);
+  double reach = 0;
+  for (double& weight : weights) reach += std::abs(weight *= per);  // the most that the two can differ by
 
   std::vector<const Field::Policies*> above, below;  // of each level
   for (const auto& [row, levels] : {std::pair(claim.above, &above), {claim.below, &below}})

@@ -1,30 +1,20 @@
 #include <lgabench/report/error_curves.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
 #include <lgabench/core/environment.hpp>
+#include <lgabench/core/parallel.hpp>
+#include <lgabench/report/pairs.hpp>
 
 namespace lgabench::report {
 namespace {
 
-struct Named {
-  std::string method;  // without its errors
-  SelectionErrors errors;
-};
-
-// What rows with errors are rows of, by name.
-std::map<std::string, Named> erring_rows(const RunResults& run) {
-  std::map<std::string, Named> all;
-  for (const CellResult& cell : run.cells) {
-    const SelectionErrors& errors = cell.configuration.selection_errors;
-    const std::string end = errors.suffix(), &name = cell.method;
-    if (errors.none() || name.size() <= end.size() || name.substr(name.size() - end.size()) != end) continue;
-    all[name] = {name.substr(0, name.size() - end.size()), errors};
-  }
-  return all;
-}
+constexpr double per = .1;  // of p, a slope's
 
 ErrorCurve::Point point_of(const Row& row, double p) {
   const auto empty = row.failures.find(failure::abstraction_empty);
@@ -34,39 +24,70 @@ ErrorCurve::Point point_of(const Row& row, double p) {
   return {p, *row.success, row.interval.low, row.interval.high, share, row.index};
 }
 
-double slope_per_tenth(const std::vector<ErrorCurve::Point>& points) {
-  const auto n = static_cast<double>(points.size());
-  double p = 0, success = 0, both = 0, squares = 0;
-  for (const ErrorCurve::Point& point : points) {
-    p += point.p / n;
-    success += point.success / n;
+// A policy's cells, by p.
+using Levels = std::map<double, const CellResult*>;
+using Policy = std::tuple<std::string, long long, std::string>;  // scenario, training seed, participant
+
+std::map<Policy, Levels> policies_of(const ErrorCurve& curve, const RunResults& run) {
+  std::map<Policy, Levels> all;
+  for (const CellResult& cell : run.cells) {
+    const SelectionErrors& errors = cell.configuration.selection_errors;
+    const bool other_kind = (curve.kind == "missing" ? errors.added : errors.missing) != 0;
+    if (cell.is_reference() || other_kind || cell.method != curve.method + errors.suffix() ||
+        std::tie(cell.layout, cell.engine, cell.demonstrations) !=
+            std::tie(curve.layout, curve.engine, curve.demonstrations) ||
+        std::find(cell.arms.begin(), cell.arms.end(), curve.arm) == cell.arms.end() ||
+        cell.ambiguous.count(curve.arm) != 0)
+      continue;
+    all[{cell.scenario, cell.training_seed, cell.participant}][errors.missing + errors.added] = &cell;
   }
-  for (const ErrorCurve::Point& point : points) {
-    both += (point.p - p) * (point.success - success);
-    squares += (point.p - p) * (point.p - p);
+  return all;
+}
+
+// Scene by scene the slope of a policy's successes, as paired differences are resampled.
+std::optional<Interval> slope_interval(const ErrorCurve& curve, const RunResults& run) {
+  std::vector<double> at;
+  for (const ErrorCurve::Point& point : curve.points) at.push_back(point.p);
+  const std::vector<double> weights = slope_weights(at);
+  double reach = 0;  // the most that a scene can change it by
+  for (const double weight : weights) reach += std::abs(weight);
+  PairedRow rows;
+  for (const auto& [policy, levels] : policies_of(curve, run)) {
+    PolicyPair slopes;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto first = levels.find(at.front()), level = levels.find(at[i]);
+      if (first == levels.end() || level == levels.end() || first->second->failed || level->second->failed) return {};
+      PolicyPair pair = pair_policies(*first->second, *level->second, curve.arm);
+      if (i == 0) slopes = pair, slopes.first.assign(pair.second.size(), 0), slopes.second = slopes.first;
+      for (std::size_t scene = 0; scene < pair.second.size(); ++scene)
+        slopes.second[scene] += weights[i] * pair.second[scene] / reach;
+    }
+    rows.add(std::get<0>(policy), slopes, std::get<2>(policy));
   }
-  return .1 * both / squares;
+  if (rows.policies() < 2) return {};
+  const Interval interval = rows.change(fmt::format("error_curves/{}/{}/{}/{}/{}/{}", curve.layout, curve.engine,
+                                                    curve.arm, curve.method, curve.kind, curve.demonstrations))
+                                .interval;
+  return Interval{per * reach * interval.low, per * reach * interval.high};
 }
 
 }  // namespace
 
 std::vector<ErrorCurve> error_curves(const RunResults& run, const std::vector<Table>& tables) {
-  const std::map<std::string, Named> erring = erring_rows(run);
   std::vector<ErrorCurve> curves;
   for (const Table& table : tables) {
     const std::size_t first = curves.size();
     for (const Row& row : table.rows) {
-      const auto named = erring.find(row.method);
-      if (!row.is_mean() || !row.success || named == erring.end()) continue;
-      const auto& [method, errors] = named->second;
-      if (errors.missing != 0 && errors.added != 0) continue;
-      const std::string kind = errors.missing != 0 ? "missing" : "added";
-      const auto same = [&, &of = method](const ErrorCurve& c) {
-        return std::tie(c.arm, c.method, c.kind, c.demonstrations) == std::tie(row.arm, of, kind, row.demonstrations);
+      const SelectionErrors& errors = row.errors;
+      if (!row.is_mean() || !row.success || errors.none() || (errors.missing != 0 && errors.added != 0)) continue;
+      const std::string kind = errors.missing != 0 ? "missing" : "added", method = row.without_errors();
+      const auto same = [&](const ErrorCurve& c) {
+        return std::tie(c.arm, c.method, c.kind, c.demonstrations) ==
+               std::tie(row.arm, method, kind, row.demonstrations);
       };
       auto curve = std::find_if(curves.begin() + static_cast<std::ptrdiff_t>(first), curves.end(), same);
       if (curve == curves.end()) {
-        curves.push_back({row.layout, row.engine, row.arm, method, kind, row.demonstrations, {}, 0});
+        curves.push_back({row.layout, row.engine, row.arm, method, kind, row.demonstrations, {}, 0, {}});
         curve = curves.end() - 1;
         const Row* right = table.find(row.arm, row.scenario, method, row.demonstrations);
         if (right && right->success) curve->points.push_back(point_of(*right, 0));
@@ -76,10 +97,15 @@ std::vector<ErrorCurve> error_curves(const RunResults& run, const std::vector<Ta
   }
   curves.erase(std::remove_if(curves.begin(), curves.end(), [](const auto& c) { return c.points.size() < 2; }),
                curves.end());
-  for (ErrorCurve& curve : curves) {
+  in_parallel(curves.size(), [&](std::size_t i) {
+    ErrorCurve& curve = curves[i];
     std::sort(curve.points.begin(), curve.points.end(), [](const auto& a, const auto& b) { return a.p < b.p; });
-    curve.slope = slope_per_tenth(curve.points);
-  }
+    std::vector<double> at;
+    for (const ErrorCurve::Point& point : curve.points) at.push_back(point.p);
+    const std::vector<double> weights = slope_weights(at);
+    for (std::size_t k = 0; k < at.size(); ++k) curve.slope += per * weights[k] * curve.points[k].success;
+    curve.interval = slope_interval(curve, run);
+  });
   return curves;
 }
 
@@ -87,9 +113,11 @@ Json to_json(const ErrorCurve& curve) {
   Json points = Json::array();
   for (const auto& [p, success, low, high, empty, row] : curve.points)
     points.push_back({{"p", p}, {"success", success}, {"low", low}, {"high", high}, {"empty", empty}, {"row", row}});
-  return {{"layout", curve.layout}, {"engine", curve.engine}, {"arm", curve.arm},
-          {"method", curve.method}, {"errors", curve.kind},   {"demonstrations", curve.demonstrations},
-          {"points", points},       {"slope", curve.slope}};
+  Json json{{"layout", curve.layout}, {"engine", curve.engine}, {"arm", curve.arm},
+            {"method", curve.method}, {"errors", curve.kind},   {"demonstrations", curve.demonstrations},
+            {"points", points},       {"slope", curve.slope}};
+  if (curve.interval) json["low"] = curve.interval->low, json["high"] = curve.interval->high;
+  return json;
 }
 
 }  // namespace lgabench::report

@@ -92,7 +92,7 @@ void add_difference(Spans& spans, const Change& change, const std::string& other
 
 Spans headline(const Material& material, const AboutSuite& about) {
   if (material.summary.tables.empty()) return {};
-  const Table& table = material.summary.tables.front();
+  const Table table = material.summary.tables.front().without_errors();
   const std::optional<Column> column = main_column(table, about);
   if (!column) return {};
   std::vector<std::string> methods = table.methods(mean_scenario);

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
+#include <lgabench/core/environment.hpp>
+#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/sections.hpp>
 
 namespace lgabench::report {
@@ -13,20 +16,88 @@ const char* words_of(const std::string& kind) {
   return kind == "missing" ? "each true feature missing" : "each wrong feature added";
 }
 
-TableCell point_cell(const ErrorCurve& curve, std::size_t index, double p) {
-  const auto point = std::find_if(curve.points.begin(), curve.points.end(), [p](const auto& a) { return a.p == p; });
-  if (point == curve.points.end()) return {};
-  const std::string place =
-      fmt::format("/error_curves/{}/points/{}/", index, static_cast<std::size_t>(point - curve.points.begin()));
-  Spans spans{Span::number(fixed(point->success), place + "success")};
-  if (point->empty > 0) {
+TableCell erring_cell(const Row* row) {
+  if (!row || !row->success) return {};
+  Spans spans{Span::number(fixed(*row->success), place_of(*row, "success"))};
+  const auto empty = row->failures.find(failure::abstraction_empty);
+  if (empty != row->failures.end() && row->episodes > 0) {
     spans.emplace_back(", ");
-    spans.push_back(Span::number(fixed(point->empty), place + "empty", Emphasis::detail));
+    spans.push_back(Span::number(fixed(static_cast<double>(empty->second) / row->episodes), "", Emphasis::detail));
     spans.emplace_back(" empty");
   }
   TableCell cell(std::move(spans));
-  cell.episodes = point->row;
+  cell.episodes = row->index;
   return cell;
+}
+
+TableCell slope_cell(const std::vector<ErrorCurve>& curves, const Row& row, const std::string& kind) {
+  const auto curve = std::find_if(curves.begin(), curves.end(), [&](const ErrorCurve& c) {
+    return std::tie(c.layout, c.engine, c.arm, c.method, c.kind, c.demonstrations) ==
+           std::tie(row.layout, row.engine, row.arm, row.method, kind, row.demonstrations);
+  });
+  if (curve == curves.end()) return {};
+  const std::string place = fmt::format("/error_curves/{}/", curve - curves.begin());
+  Spans spans{Span::number(signed_text(curve->slope), place + "slope", Emphasis::strong)};
+  if (curve->interval) {
+    spans.push_back(Span::number(" [", "", Emphasis::detail));
+    spans.push_back(Span::number(signed_text(curve->interval->low), place + "low", Emphasis::detail));
+    spans.push_back(Span::number(", ", "", Emphasis::detail));
+    spans.push_back(Span::number(signed_text(curve->interval->high), place + "high", Emphasis::detail));
+    spans.push_back(Span::number("]", "", Emphasis::detail));
+  }
+  return spans;
+}
+
+// Of one kind by size, then of the other, then of both.
+bool in_columns(const SelectionErrors& a, const SelectionErrors& b) {
+  const auto place = [](const SelectionErrors& e) {
+    return std::tuple((e.missing != 0) + 2 * (e.added != 0), e.missing, e.added);
+  };
+  return place(a) < place(b);
+}
+
+// An arm at a number of demonstrations: methods against errors. Without rows where none has an error.
+Grid grid_of(const Material& material, const AboutSuite& about, const Table& table, const std::string& arm, int n) {
+  Grid grid;
+  std::vector<SelectionErrors> columns;
+  for (const Row& row : table.rows)
+    if (row.arm == arm && row.demonstrations == n && row.is_mean() && !row.errors.none() &&
+        std::find(columns.begin(), columns.end(), row.errors) == columns.end())
+      columns.push_back(row.errors);
+  if (columns.empty()) return grid;
+  std::sort(columns.begin(), columns.end(), in_columns);
+  grid.name = fmt::format("errors_{}_{}_{}_{}", slug(table.layout), slug(table.engine), slug(arm), n);
+  grid.caption = fmt::format("Success with errors of the Selection, {}, arm {}, {}; {}", table.title(mean_scenario),
+                             table.arm_title(arm), table.demonstrations_text(n), table.title());
+  grid.group_head = about.rows.empty() ? "" : "where the knowledge enters";
+  grid.heads = {"method", "no errors"};
+  grid.align = "llr";
+  const auto ends = [&](std::size_t i) {  // whether a kind's columns end there, behind which its slope stands
+    return (columns[i].missing == 0) != (columns[i].added == 0) &&
+           (i + 1 == columns.size() || (columns[i + 1].missing != 0) != (columns[i].missing != 0) ||
+            (columns[i + 1].added != 0) != (columns[i].added != 0));
+  };
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto& [missing, added] = columns[i];
+    grid.heads.emplace_back(missing == 0 ? fmt::format("added {:g}", added)
+                            : added == 0 ? fmt::format("missing {:g}", missing)
+                                         : fmt::format("missing {:g}, added {:g}", missing, added));
+    if (ends(i)) grid.heads.emplace_back("slope per 0.1");
+  }
+  grid.align += std::string(grid.heads.size() - 2, 'r');
+  for (const std::string& method : table.without_errors().methods(mean_scenario)) {
+    const Row* right = table.find(arm, mean_scenario, method, n);
+    if (!right) continue;
+    Grid::Row row{about.row(method), {named(material, method, Emphasis::strong), erring_cell(right)}};
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      row.cells.push_back(erring_cell(table.find(arm, mean_scenario, method + columns[i].suffix(), n)));
+      if (ends(i))
+        row.cells.push_back(
+            slope_cell(material.summary.error_curves, *right, columns[i].missing != 0 ? "missing" : "added"));
+    }
+    grid.rows.push_back(std::move(row));
+  }
+  return grid;
 }
 
 // Curves of one table's arm and kind, at one number of demonstrations.
@@ -63,40 +134,30 @@ Chart chart_of(const Material& material, const ErrorCurve& first) {
 
 Section selection_errors(const Material& material) {
   Section section{"errors", "What an error of the Selection costs"};
-  const std::vector<ErrorCurve>& curves = material.summary.error_curves;
-  if (curves.empty()) return section;
-  std::set<double> levels;
-  for (const ErrorCurve& curve : curves)
-    for (const ErrorCurve::Point& point : curve.points) levels.insert(point.p);
-  Grid grid;
-  grid.name = "errors";
-  grid.caption = "Success, mean over scenarios, against the probability of an error, and its slope per 0.1";
-  grid.group_head = "table";
-  grid.heads = {"arm", "method", "demonstrations", "errors", "slope per 0.1"};
-  grid.align = "llllrr";
-  for (const double p : levels) grid.heads.emplace_back(fmt::format("{:g}", p));
-  grid.align += std::string(levels.size(), 'r');
-  Charts charts;
-  std::set<std::string> drawn;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const ErrorCurve& curve = curves[i];
-    const std::string place = fmt::format("/error_curves/{}/", i);
-    std::vector<TableCell> cells{curve.arm, named(material, curve.method),
-                                 Span::number(std::to_string(curve.demonstrations), place + "demonstrations"),
-                                 words_of(curve.kind),
-                                 Span::number(signed_text(curve.slope), place + "slope", Emphasis::strong)};
-    for (const double p : levels) cells.push_back(point_cell(curve, i, p));
-    grid.rows.push_back({fmt::format("layout {}, engine {}", curve.layout, curve.engine), std::move(cells)});
-    if (Chart chart = chart_of(material, curve); drawn.insert(chart.file).second)
-      charts.charts.push_back(std::move(chart));
-  }
+  const AboutSuite about = about_suite(material.run.suite);
+  std::vector<Grid> main, others;
+  for (const Table& table : material.summary.tables)
+    for (const std::string& arm : table.arms)
+      for (const int n : table.demonstrations())
+        if (Grid grid = grid_of(material, about, table, arm, n); !grid.rows.empty())
+          (arm == about.main_arm || about.main_arm.empty() ? main : others).push_back(std::move(grid));
+  if (main.empty()) std::swap(main, others);
+  if (main.empty()) return section;
   section.add(reading,
               Paragraph{{"Errors were made in what each method selected, before it learned: each true feature missing, "
                          "or each wrong one added, with the probability at the head of the column, the same ones for "
                          "every method; a larger probability keeps those of a smaller one. Empty: share of episodes "
-                         "for which nothing was left. The slope is that of the line of least squares."}});
-  section.add(reading, std::move(charts));
-  section.add(everywhere, std::move(grid));
+                         "for which nothing was left. The slope is that of the line of least squares, with its 95 % "
+                         "interval; – where a row selects nothing."}});
+  for (Grid& grid : main) section.add(everywhere, std::move(grid));
+  for (Grid& grid : others) section.add(reading, grid, grid.caption);
+  Charts charts, other_arms;
+  std::set<std::string> drawn;
+  for (const ErrorCurve& curve : material.summary.error_curves)
+    if (Chart chart = chart_of(material, curve); drawn.insert(chart.file).second)
+      (curve.arm == about.main_arm || about.main_arm.empty() ? charts : other_arms).charts.push_back(std::move(chart));
+  if (!charts.charts.empty()) section.add(reading, std::move(charts));
+  if (!other_arms.charts.empty()) section.add(reading, std::move(other_arms), "Figures of the other arms");
   return section;
 }
 

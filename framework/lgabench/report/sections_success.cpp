@@ -311,7 +311,8 @@ void add_view(const Material& material, const Table& table, const View& view, co
 
 std::vector<Section> success(const Material& material) {
   std::vector<Section> sections;
-  for (const Table& table : material.summary.tables) {
+  for (const Table& all_rows : material.summary.tables) {
+    const Table table = all_rows.without_errors();  // they have a section of their own
     const std::string number = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
     Section& section = sections.emplace_back(
         Section{"success" + number, fmt::format("{}: {}", success_title(material), table.title())});

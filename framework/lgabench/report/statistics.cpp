@@ -97,6 +97,15 @@ double wilcoxon(const std::vector<double>& differences) {
   return 2 * boost::math::cdf(boost::math::complement(boost::math::normal(), off / deviation));
 }
 
+std::vector<double> slope_weights(const std::vector<double>& at) {
+  const double middle = mean(at);
+  double squares = 0;
+  for (const double x : at) squares += (x - middle) * (x - middle);
+  std::vector<double> weights;
+  for (const double x : at) weights.push_back((x - middle) / squares);
+  return weights;
+}
+
 Spread spread(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
   const double m = mean(values);

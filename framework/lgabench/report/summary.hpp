@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/abstraction/selection_errors.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/scenario.hpp>
 #include <lgabench/report/paper.hpp>
@@ -44,6 +45,7 @@ struct Row {
   std::size_t index = 0;  // among summary.json's rows
   std::string scenario, layout, engine, arm, method, kind;
   std::optional<Perturbation> perturbation;  // of its arm
+  SelectionErrors errors;                    // that were made in what it selected
   int demonstrations = 0;
   int seeds = 0, scenes = 0, episodes = 0, successes = 0;  // scenes: distinct ones
   int participants = 0;           // whose answers the row is based on; 0 where nobody was asked
@@ -61,6 +63,8 @@ struct Row {
   bool is_reference() const { return kind == "reference"; }
   bool is_mean() const { return scenario == mean_scenario; }
   bool marked(const std::string& mark) const;
+  /// `method` without what its end says of errors.
+  std::string without_errors() const;
   std::optional<double> seen_share() const {
     return inputs_told > 0 ? std::optional(static_cast<double>(inputs_seen) / inputs_told) : std::nullopt;
   }
@@ -88,6 +92,8 @@ struct Table {
   std::vector<int> demonstrations() const;     // those of the methods, or of all where there is none
   /// "50 demonstrations", or where several commands were demonstrated "demonstrations: 50 per command, 100 in all".
   std::string demonstrations_text(int n) const;
+  /// The table without rows in which errors were made, where it has the same row without any.
+  Table without_errors() const;
   /// The row, nullptr where there is none. A reference row that learns nothing (demonstrations 0) stands in every
   /// number of demonstrations.
   const Row* find(const std::string& arm, const std::string& scenario, const std::string& method,
@@ -119,8 +125,9 @@ struct ErrorCurve {
   };
   std::string layout, engine, arm, method, kind;  // method: the row's without errors; kind: missing or added
   int demonstrations = 0;
-  std::vector<Point> points;  // p ascending
-  double slope = 0;           // of the line of least squares through them, for each .1 of p
+  std::vector<Point> points;         // p ascending
+  double slope = 0;                  // of the line of least squares through them, for each .1 of p
+  std::optional<Interval> interval;  // the slope's, 95 %; none unless every policy finished at every p
 };
 
 /// Success on the mean over scenarios against the levels of one axis (core/perturbations.hpp). Rows are paired with the
