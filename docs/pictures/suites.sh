@@ -28,12 +28,12 @@ for arm in seen new seen_near new_near; do
   mv something_to_drink_water_out_of_members_2-${arm}_members_2.png few_members-$arm.png
 done
 for arm in control clutter new; do
-  draw something_to_drink_water_out_of_members ${arm}_members 25% continuous knowledge
-  mv something_to_drink_water_out_of_members-${arm}_members.png knowledge-$arm.png
+  draw polka_dotted_letter_members ${arm}_members 25% continuous knowledge
+  mv polka_dotted_letter_members-${arm}_members.png knowledge-$arm.png
 done
 for arm in kept moved gone; do
-  draw something_to_drink_water_out_of_cue ${arm}_cue 25% continuous knowledge
-  mv something_to_drink_water_out_of_cue-${arm}_cue.png knowledge-$arm.png
+  draw polka_dotted_letter_cue ${arm}_cue 25% continuous knowledge
+  mv polka_dotted_letter_cue-${arm}_cue.png knowledge-$arm.png
 done
 for arm in seen unseen; do
   draw many_hearts_commands_4 ${arm}_commands_4 25% continuous many_commands

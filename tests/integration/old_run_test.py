@@ -44,10 +44,10 @@ class OldRuns(Case):
         before = {path: path.read_bytes() for path in (self.dir / "shard1").rglob("*") if path.is_file()}
         done = self.call("verify", "shard1", expect=2)
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"shard1: a run of lgabench 0\.1\.0, and this is 0\.3\.0-dev, .*: verify it with 0\.1\.0")
+        self.assertRegex(done.stderr, r"shard1: a run of lgabench 0\.1\.0, and this is 0\.3\.0, .*: verify it with 0\.1\.0")
         for flags in ([], ["--resume"]):
             done = self.call(*SAME, "--methods", "lga", "--out", "shard1", *flags, expect=2)
-            self.assertRegex(done.stderr, r"shard1: a run of lgabench 0\.1\.0, whose cells 0\.3\.0-dev cannot go on with")
+            self.assertRegex(done.stderr, r"shard1: a run of lgabench 0\.1\.0, whose cells 0\.3\.0 cannot go on with")
         self.assertEqual(before, {path: path.read_bytes() for path in (self.dir / "shard1").rglob("*") if path.is_file()})
 
     def test_is_compared_by_what_its_rows_are(self):
