@@ -171,6 +171,20 @@ TEST_F(Relatives, OfMaskedColoursOneIsLeftBesideTheTarget) {
   EXPECT_GT(kept, 5);
 }
 
+TEST_F(Relatives, EarlyFusionSeesMaskAndPictureWithThePapersNetworkAlone) {
+  const auto early = learned("lga_s", {{"fusion", "early"}}), late = learned("lga_s", Json::object());
+  const Action action = early->act(probe, instruction);
+  EXPECT_NE(action, late->act(probe, instruction));
+  EXPECT_LT(early->saved()->size(), late->saved()->size()) << "one tower in place of two";
+  Instruction other = instruction;
+  other.selection.target = {{"star"}, {"no such texture"}};
+  EXPECT_NE(early->act(probe, other), action) << "a mask of nothing";
+  Observation dark = probe;
+  for (std::uint8_t& value : dark.rgb) value /= 2;
+  EXPECT_NE(early->act(dark, instruction), action);
+  EXPECT_THROW(learned("lga_s", {{"fusion", "early"}, {"policy", "heat_map"}}), InputError);
+}
+
 TEST_F(Relatives, ASetNetworkTakesWhatIsSelectedWhereverItLies) {
   const auto policy = learned("set_network", Json::object());
   const Action first = policy->act(probe, instruction);
