@@ -68,7 +68,7 @@ class LgaS : public lgabench::CloningMethod {
   }
   std::unique_ptr<lgabench::Learner> learner(const SampleShape& shape,
                                              const lgabench::Services& services) const override {
-    if (services.options.at("fusion") == "late") return CloningMethod::learner(shape, services);
+    if (services.options.value("fusion", "late") == "late") return CloningMethod::learner(shape, services);
     return std::make_unique<Fused>(CloningMethod::learner(Fused::shape(shape), services));
   }
 };
@@ -76,6 +76,6 @@ class LgaS : public lgabench::CloningMethod {
 LGABENCH_METHOD("lga_s", "0.1", "Behaviour cloning on a language model's goal mask and the picture", LgaS,
                 "{" LGABENCH_QUESTIONNAIRE LGABENCH_MEANING_OPTION "," LGABENCH_CLONING_OPTIONS
                 "," LGABENCH_MASK_OPTIONS R"(,
-  "fusion": {"default": "late", "values": ["late", "early"],
+  "fusion": {"added": true, "default": "late", "values": ["late", "early"],
              "help": "mask and picture each through a tower of its own, or as channels of one picture, as heat_map has them in any case",
              "needs": {"early": {"policy": ["regression"]}}, "source": "late: paper, section 5; early: ours"}})")

@@ -251,7 +251,7 @@ TEST(Board, AnOldOutcomeDoesNotChangeAndARecordStays) {
 }
 
 // Generated once, with rates that differ from row to row.
-TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
+TEST(Board, TwoHundredEntriesAreCheckedAsFastAsBuiltOnPagesOfThreeMegabytes) {
   const TemporaryDirectory scratch;
   const char* keep = std::getenv("LGABENCH_KEEP_BOARD");  // to look at its pages
   const fs::path board = keep ? fs::path(keep) : scratch.path;
@@ -259,16 +259,14 @@ TEST(Board, TwoHundredEntriesAreCheckedInTenSecondsOnPagesOfThreeMegabytes) {
     write_replayed(board, made_entry(large_setting(), fmt::format("author_{}", i), .2 + .003 * i));
   for (const auto& [name, rate] : {std::pair("oracle", .99), {"random_object", .4}, {"constant_action", .2}})
     write_replayed(board, made_entry(large_setting(), name, rate, "reference"));
-  build(board);
   const std::clock_t begin = std::clock();  // processor time: the machine may be busy
+  build(board);
+  const std::clock_t built = std::clock();
   const Checked checked = check(board);
-  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const auto share = static_cast<double>(std::clock() - built) / static_cast<double>(built - begin);
   EXPECT_EQ(all(checked.problems), "");
   EXPECT_EQ(checked.entries, 200u);
-  RecordProperty("check_seconds", std::to_string(seconds));
-#if !defined(__SANITIZE_ADDRESS__)
-  EXPECT_LT(seconds, 10);
-#endif
+  EXPECT_LT(share, 2) << "a check builds the pages once, and reads each entry once more";
   for (const auto& file : fs::directory_iterator(board))
     if (file.is_regular_file()) {
       EXPECT_LT(fs::file_size(file.path()), 3'000'000u) << file.path();

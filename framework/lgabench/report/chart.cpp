@@ -18,6 +18,7 @@ const Pen grid{Ink::rule};
 // From 0, dark, to 1, pale: steps of a single-hue scale (ColorBrewer's OrRd), between which colours are mixed.
 constexpr std::array<std::array<double, 3>, 5> heat_steps{
     {{127, 0, 0}, {215, 48, 31}, {252, 141, 89}, {253, 212, 158}, {255, 247, 236}}};
+constexpr double slant = 20;       // degrees, of ticks that lack the room
 constexpr double dark_below = .4;  // a value whose colour bears white text
 
 std::string heat_colour(double value) {
@@ -57,7 +58,12 @@ class Drawing {
     return top_ + (chart_.top - value) / (chart_.top - chart_.bottom) * (chart_.height - top_ - bottom());
   }
   // Room for the ticks, and for the axis or ticks that are slanted.
-  double bottom() const { return chart_.axis.empty() && !slanted() ? 26 : 46; }
+  double bottom() const {
+    if (!slanted()) return chart_.axis.empty() ? 26 : 46;
+    double longest = 0;
+    for (const Chart::Tick& tick : chart_.ticks) longest = std::max(longest, text_width(tick.label, small_text));
+    return (chart_.axis.empty() ? 24 : 40) + longest * std::sin(slant * 3.14159265358979 / 180);
+  }
   bool slanted() const {
     return std::any_of(chart_.ticks.begin(), chart_.ticks.end(),
                        [this](const Chart::Tick& tick) { return text_width(tick.label, small_text) > gap() - 8; });
@@ -85,7 +91,7 @@ class Drawing {
     const double foot = chart_.height - bottom();
     for (const Chart::Tick& tick : chart_.ticks)
       canvas_.text(tick.label, x_of(tick.at), foot + 16, slanted() ? Anchor::end : Anchor::middle, small_text, false,
-                   Ink::soft, slanted() ? -20 : 0);
+                   Ink::soft, slanted() ? -slant : 0);
     if (!chart_.values.empty())
       canvas_.text(chart_.values, 11, (top_ + foot) / 2, Anchor::middle, small_text, false, Ink::soft, -90);
     if (!chart_.axis.empty())

@@ -124,10 +124,10 @@ Document report_document(const Material& material) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
   };
   for (Section& section : success(material)) add(std::move(section));
+  add(selection_errors(material));
   add(perturbations(material));
   add(claims_section(material.claims, material.styles, claims_title(material.claims)));
   add(phi(material));
-  add(selection_errors(material));
   add(failures(material));
   add(attribution(material));
   add(learning_curves(material));

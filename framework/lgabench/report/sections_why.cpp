@@ -153,9 +153,13 @@ Section phi(const Material& material) {
                 "a person's seconds"};
   grid.align = "llllllrrrrrrrr";
   std::set<std::string> known;
+  std::set<std::size_t> shown;
+  for (const Table& table : material.summary.tables)
+    for (const Row& row : table.without_errors().rows) shown.insert(row.index);
   List wordings;
   for (const PhiOfRow& of : distinct_phi(material.summary)) {
     const Row& row = *of.row;
+    if (shown.count(row.index) == 0) continue;
     const PhiOfCommand& phi = row.phi[of.command];
     const std::string place = fmt::format("/{}/", of.command);
     for (const auto& [about, set] : phi.quality) {
