@@ -97,6 +97,8 @@ Grid grid_of(const Material& material, const AboutSuite& about, const Table& tab
     }
     grid.rows.push_back(std::move(row));
   }
+  std::stable_sort(grid.rows.begin(), grid.rows.end(),
+                   [](const Grid::Row& a, const Grid::Row& b) { return a.group.text() < b.group.text(); });
   return grid;
 }
 
