@@ -30,6 +30,9 @@ FIGURES = {
     "commands": [("LGA, heard", "many_commands: ", "LGA", 5), ("LGA, new", "many_commands: ", "LGA", 6),
                  ("SEG, heard", "many_commands: ", "GCBC-SEG", 5), ("SEG, new", "many_commands: ", "GCBC-SEG", 6),
                  ("random object", "many_commands: ", "*random", 6)],
+    "knowledge": [("mask (LGA)", "knowledge: ", "`lga`", 3), ("picture, in training", "knowledge: ", "`erase+when=both`", 3),
+                  ("data", "knowledge: ", "`texture_aug`", 3), ("loss", "knowledge: ", "`masked_bc`", 3),
+                  ("nowhere (dropout)", "knowledge: ", "`object_dropout`", 3), ("random object", "knowledge: ", "*random", 3)],
     "words": [("a feature each", "words: ", "**all**", 2), ("one meaning", "words: ", "**all**", 3),
               ("names alone", "words: ", "**all**", 4)],
 }
