@@ -35,10 +35,6 @@ struct Draft {
   std::set<std::string> participants;
 };
 
-void add_new(std::vector<std::string>& all, const std::string& one) {
-  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
-}
-
 std::optional<double> mean_cost(const std::vector<Json>& selections, const char* member) {
   std::vector<std::optional<double>> all;
   for (const Json& one : selections) all.emplace_back(one.at("cost").at(member).get<double>());

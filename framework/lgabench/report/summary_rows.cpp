@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <set>
 
-#include <lgabench/report/names.hpp>
 #include <lgabench/report/summary.hpp>
 
 namespace lgabench::report {
+
+void add_new(std::vector<std::string>& all, const std::string& one) {
+  if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+}
 
 bool Row::marked(const std::string& mark) const { return std::find(marks.begin(), marks.end(), mark) != marks.end(); }
 
