@@ -45,17 +45,15 @@ std::map<Policy, Levels> policies_of(const ErrorCurve& curve, const RunResults& 
 }
 
 // Scene by scene the slope of a policy's successes, as paired differences are resampled.
-std::optional<Interval> slope_interval(const ErrorCurve& curve, const RunResults& run) {
-  std::vector<double> at;
-  for (const ErrorCurve::Point& point : curve.points) at.push_back(point.p);
-  const std::vector<double> weights = slope_weights(at);
+std::optional<Interval> slope_interval(const ErrorCurve& curve, const std::vector<double>& weights,
+                                       const RunResults& run) {
   double reach = 0;  // the most that a scene can change it by
   for (const double weight : weights) reach += std::abs(weight);
   PairedRow rows;
   for (const auto& [policy, levels] : policies_of(curve, run)) {
     PolicyPair slopes;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto first = levels.find(at.front()), level = levels.find(at[i]);
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const auto first = levels.find(curve.points.front().p), level = levels.find(curve.points[i].p);
       if (first == levels.end() || level == levels.end() || first->second->failed || level->second->failed) return {};
       PolicyPair pair = pair_policies(*first->second, *level->second, curve.arm);
       if (i == 0) slopes = pair, slopes.first.assign(pair.second.size(), 0), slopes.second = slopes.first;
@@ -104,7 +102,7 @@ std::vector<ErrorCurve> error_curves(const RunResults& run, const std::vector<Ta
     for (const ErrorCurve::Point& point : curve.points) at.push_back(point.p);
     const std::vector<double> weights = slope_weights(at);
     for (std::size_t k = 0; k < at.size(); ++k) curve.slope += per * weights[k] * curve.points[k].success;
-    curve.interval = slope_interval(curve, run);
+    curve.interval = slope_interval(curve, weights, run);
   });
   return curves;
 }

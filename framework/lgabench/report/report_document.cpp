@@ -91,6 +91,16 @@ std::string place_of(const Row& row, const std::string& member) {
   return fmt::format("/rows/{}/{}", row.index, member);
 }
 
+TableCell with_interval(double value, const Interval& interval, const std::string& place,
+                        const std::array<const char*, 3>& members, std::string (*set)(double), Emphasis emphasis) {
+  const auto aside = [](const std::string& text, const std::string& where) {
+    return Span::number(text, where, Emphasis::detail);
+  };
+  return Spans{Span::number(set(value), place + members[0], emphasis), aside(" [", ""),
+               aside(set(interval.low), place + members[1]),           aside(", ", ""),
+               aside(set(interval.high), place + members[2]),          aside("]", "")};
+}
+
 TableCell count_cell(const Row& row, const std::string& member, int count) {
   return Span::number(std::to_string(count), place_of(row, member));
 }

@@ -1,5 +1,6 @@
 // The sections of a report, and the cells that they share.
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ TableCell named(const Material& material, const std::string& method, Emphasis em
 std::string place_of(const Row& row, const std::string& member);
 /// A count of the row, with its place.
 TableCell count_cell(const Row& row, const std::string& member, int count);
+/// "0.85 [0.64, 0.95]" as `set` writes each; `place` is the JSON pointer to the object of which these are the members.
+TableCell with_interval(double value, const Interval& interval, const std::string& place,
+                        const std::array<const char*, 3>& members, std::string (*set)(double),
+                        Emphasis emphasis = Emphasis::none);
 /// Letters, digits and dashes of an id, for a file's name.
 std::string slug(const std::string& text);
 

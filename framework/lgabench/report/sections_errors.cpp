@@ -37,15 +37,9 @@ TableCell slope_cell(const std::vector<ErrorCurve>& curves, const Row& row, cons
   });
   if (curve == curves.end()) return {};
   const std::string place = fmt::format("/error_curves/{}/", curve - curves.begin());
-  Spans spans{Span::number(signed_text(curve->slope), place + "slope", Emphasis::strong)};
-  if (curve->interval) {
-    spans.push_back(Span::number(" [", "", Emphasis::detail));
-    spans.push_back(Span::number(signed_text(curve->interval->low), place + "low", Emphasis::detail));
-    spans.push_back(Span::number(", ", "", Emphasis::detail));
-    spans.push_back(Span::number(signed_text(curve->interval->high), place + "high", Emphasis::detail));
-    spans.push_back(Span::number("]", "", Emphasis::detail));
-  }
-  return spans;
+  const auto signed_rate = [](double x) { return signed_text(x); };
+  if (!curve->interval) return Span::number(signed_rate(curve->slope), place + "slope", Emphasis::strong);
+  return with_interval(curve->slope, *curve->interval, place, {"slope", "low", "high"}, signed_rate, Emphasis::strong);
 }
 
 // Of one kind by size, then of the other, then of both.

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include <lgabench/report/sections.hpp>
 #include <lgabench/report/tables.hpp>
@@ -14,17 +13,6 @@ namespace {
 std::string rate_text(double x) { return fixed(x); }
 std::string shift_text(double x) { return signed_text(x); }
 
-// "0.85 [0.64, 0.95]", each number with its place: `members` of the row.
-TableCell with_interval(const Row& row, double value, const Interval& interval,
-                        const std::array<const char*, 3>& members, std::string (*set)(double), Emphasis emphasis) {
-  const auto aside = [](const std::string& text, const std::string& place) {
-    return Span::number(text, place, Emphasis::detail);
-  };
-  return Spans{Span::number(set(value), place_of(row, members[0]), emphasis), aside(" [", ""),
-               aside(set(interval.low), place_of(row, members[1])),           aside(", ", ""),
-               aside(set(interval.high), place_of(row, members[2])),          aside("]", "")};
-}
-
 TableCell success_cell(const Row* row) {
   if (!row) return {};
   const Spans marks = marks_spans(*row);
@@ -34,7 +22,7 @@ TableCell success_cell(const Row* row) {
     return none;
   }
   TableCell cell =
-      with_interval(*row, *row->success, row->interval, {"success", "low", "high"}, rate_text, Emphasis::none);
+      with_interval(*row->success, row->interval, place_of(*row, ""), {"success", "low", "high"}, rate_text);
   cell.spans.insert(cell.spans.end(), marks.begin(), marks.end());
   cell.episodes = row->index;
   cell.rate = *row->success;
@@ -45,8 +33,8 @@ TableCell shift_cell(const Row* row) {
   if (!row || !row->shift) return {};
   const Interval& interval = row->shift->interval;
   const Emphasis emphasis = interval.high < 0 ? Emphasis::worse : interval.low > 0 ? Emphasis::better : Emphasis::none;
-  TableCell cell = with_interval(*row, row->shift->difference, interval,
-                                 {"shift/difference", "shift/low", "shift/high"}, shift_text, emphasis);
+  TableCell cell = with_interval(row->shift->difference, interval, place_of(*row, "shift/"),
+                                 {"difference", "low", "high"}, shift_text, emphasis);
   if (acts_the_same(*row)) cell.spans.push_back(Span::number(" ="));
   return cell;
 }
