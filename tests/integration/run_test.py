@@ -365,6 +365,20 @@ class Shards(Case):
             (self.dir / "first/run.json").read_text())["settings"])
         self.call("verify", "all", "--sample", "2", "--plugin-path", FIXTURES / "good")
 
+    def test_runs_of_other_errors_make_one(self):
+        one = ["run", "q1", "--scenarios", "heart", "--demos", "5", "--seeds", "0", "--episodes", "2", "--no-reference",
+               "--methods", "lga+epochs=1"]
+        self.call(*one, "--out", "exact")
+        self.call(*one, "--selection-errors", "missing=0.4,added=0.2", "--out", "erring")
+        none, errors = [{}], [{"missing": 0.4}, {"added": 0.2}]
+        for parts, said in (("exact", "erring"), none + errors), (("erring", "exact"), errors + none):
+            self.call("merge", parts[0] + "_first", *parts)
+            self.assertEqual(set(self.cells(parts[0] + "_first")), {*self.cells("exact"), *self.cells("erring")})
+            merged = self.dir / (parts[0] + "_first")
+            self.assertEqual(json.loads((merged / "run.json").read_text())["request"]["selection_errors"], said)
+            self.assertEqual({row["method"] for row in json.loads((merged / "summary.json").read_text())["rows"]},
+                             {"lga", "lga+missing=0.4", "lga+added=0.2"})
+
     def test_each_file_is_read_once_to_judge_it_and_once_to_copy_it(self):
         one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--episodes", "2", "--plugin-path", FIXTURES / "good",
                "--methods", "fixture_constant", "--no-reference"]

@@ -22,9 +22,10 @@ void add_merge(CLI::App& app, int& exit) {
   CLI::App* verb =
       app.add_subcommand("merge", "Merge shards, or runs of different methods or seeds, and print the table");
   verb->add_option("OUT", options->out, "The directory to write")->required();
-  verb->add_option("RUN", options->runs,
-                   "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, "
-                   "demonstrations or seeds; they stay as they are")
+  verb->add_option(
+          "RUN", options->runs,
+          "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, demonstrations, seeds "
+          "or --selection-errors; they stay as they are")
       ->required();
   verb->add_flag("--json", options->json, "Print summary.json instead of the table");
   arrange(*verb, "", {{"OUT", "OUT"}, {"RUN", "RUN"}});

@@ -25,8 +25,8 @@ namespace lgabench {
 namespace {
 
 // Lists among a run's settings that another part may add to.
-constexpr std::array<std::string_view, 6> grid_lists{"methods", "scenarios",      "layouts",
-                                                     "engines", "demonstrations", "seeds"};
+constexpr std::array<std::string_view, 7> grid_lists{"methods",        "scenarios", "layouts",         "engines",
+                                                     "demonstrations", "seeds",     "selection_errors"};
 
 // A run to read from, which nobody writes into meanwhile.
 class Part {
@@ -85,9 +85,13 @@ void unite(Json& all, const Json& more) {
 // What `all` is with the cells, plugins and settings of `more`: another method, seed or number of demonstrations, with
 // nothing else in the settings changed.
 void unite(RunRecord& all, const Part& first, const Part& part) {
-  const RunRecord& more = part.record();
+  RunRecord more = part.record();
   if (all.cells == more.cells) return;
   const std::string differs = difference(all, more);
+  // A run that makes no errors need not say so.
+  for (auto [lacks, has] : {std::pair{&all.request, &more.request}, std::pair{&more.request, &all.request}})
+    if (has->contains("selection_errors") && !lacks->contains("selection_errors"))
+      (*lacks)["selection_errors"] = Json::array({Json::object()});
   for (const auto& [member, value] : more.request.items()) {
     const bool may_grow = std::count(grid_lists.begin(), grid_lists.end(), member) > 0;
     Json& there = all.request[member];
