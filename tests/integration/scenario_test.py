@@ -143,8 +143,10 @@ class OwnScenario(Case):
 
     def test_ids_are_unique(self):
         self.new("heart", "--command", "Bring me the heart.", "--types", "heart")
-        done = self.call("list", "--scenario-path", ".", expect=2)
-        self.assertIn("heart.json: expected another id", done.stderr)
+        for words in ("list",), ("render", "heart"):
+            done = self.call(*words, "--scenario-path", ".", expect=2)
+            self.assertIn("heart.json: expected another id", done.stderr)
+        self.assertIn('no scenario "../suites/q1"', self.call("render", "../suites/q1", expect=2).stderr)
         self.assertIn("expected a directory", self.call("list", "--scenario-path", "missing", expect=2).stderr)
         os.rename(self.dir / "heart.json", self.dir / "mine.json")
         done = self.call("render", "mine", "--scenario-path", ".", expect=2)

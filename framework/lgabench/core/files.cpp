@@ -189,10 +189,13 @@ fs::path program_directory() {
 }
 
 fs::path library_directory() {
-  Dl_info here;
-  if (::dladdr(reinterpret_cast<const void*>(&library_directory), &here) == 0)
-    throw InputError("dladdr: lgabench's library is not found");
-  return fs::canonical(here.dli_fname).parent_path();
+  static const fs::path directory = [] {  // asked for with each file that is read
+    Dl_info here;
+    if (::dladdr(reinterpret_cast<const void*>(&library_directory), &here) == 0)
+      throw InputError("dladdr: lgabench's library is not found");
+    return fs::canonical(here.dli_fname).parent_path();
+  }();
+  return directory;
 }
 
 fs::path data_directory() {

@@ -262,9 +262,8 @@ std::vector<std::string> scenario_ids() {
 }
 
 Scenario load_scenario(const std::string& id, Truth truth) {
-  const auto files = scenario_files();
-  if (files.count(id) == 0) throw InputError(none_named("scenario", id, scenario_ids()));
-  const fs::path& file = files.at(id);
+  const fs::path file = scenario_file(id);
+  if (file.empty()) throw InputError(none_named("scenario", id, scenario_ids()));
   const Json json = read_json(file);
   Scenario s = read_scenario(truth == Truth::printed ? as_printed(json) : json, file.string());
   if (s.id != id)

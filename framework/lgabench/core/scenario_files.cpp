@@ -33,6 +33,19 @@ std::vector<fs::path> scenario_path() {
   return directories;
 }
 
+fs::path shipped() { return data_directory() / "scenarios"; }
+
+fs::path file_in(const fs::path& directory, const std::string& id) { return directory / (id + ".json"); }
+
+// A file on the scenario path, which may be no scenario.
+void add_own(std::map<std::string, fs::path>& files, const std::string& id, const fs::path& file) {
+  if (!may_be_scenario(file)) return;
+  const auto [there, is_new] = files.emplace(id, file);
+  std::error_code none_to_compare;
+  if (!is_new && !fs::equivalent(there->second, file, none_to_compare))
+    throw InputError(fmt::format("{}: expected another id: {} has it", file.string(), there->second.string()));
+}
+
 }  // namespace
 
 void add_scenario_path(const fs::path& directory) {
@@ -51,18 +64,20 @@ void add_scenario_path(const fs::path& directory) {
 std::map<std::string, fs::path> scenario_files() {
   std::map<std::string, fs::path> files;
   std::error_code none_to_list;
-  const fs::path shipped = data_directory() / "scenarios";
-  for (const std::string& id : json_names(shipped, none_to_list)) files[id] = shipped / (id + ".json");
-  for (const fs::path& directory : scenario_path()) {
-    for (const std::string& id : json_names(directory, none_to_list)) {
-      const fs::path file = directory / (id + ".json");
-      if (!may_be_scenario(file)) continue;
-      const auto [there, is_new] = files.emplace(id, file);
-      if (!is_new && !fs::equivalent(there->second, file, none_to_list))
-        throw InputError(fmt::format("{}: expected another id: {} has it", file.string(), there->second.string()));
-    }
-  }
+  for (const std::string& id : json_names(shipped(), none_to_list)) files[id] = file_in(shipped(), id);
+  for (const fs::path& directory : scenario_path())
+    for (const std::string& id : json_names(directory, none_to_list)) add_own(files, id, file_in(directory, id));
   return files;
+}
+
+fs::path scenario_file(const std::string& id) {
+  std::map<std::string, fs::path> files;
+  if (fs::path(id).filename() == id) {
+    if (fs::exists(file_in(shipped(), id))) files[id] = file_in(shipped(), id);
+    for (const fs::path& directory : scenario_path())
+      if (fs::exists(file_in(directory, id))) add_own(files, id, file_in(directory, id));
+  }
+  return files[id];
 }
 
 }  // namespace lgabench

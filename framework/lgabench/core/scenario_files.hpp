@@ -15,4 +15,8 @@ void add_scenario_path(const std::filesystem::path& directory);
 /// @throws InputError for an id that two files have.
 std::map<std::string, std::filesystem::path> scenario_files();
 
+/// The file of one scenario, without listing the others; "" if there is none. @throws InputError if two files have the
+/// id.
+std::filesystem::path scenario_file(const std::string& id);
+
 }  // namespace lgabench
