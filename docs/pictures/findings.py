@@ -33,18 +33,21 @@ FIGURES = {
     "knowledge": [("mask (LGA)", "knowledge: ", "`lga`", 3), ("picture, in training", "knowledge: ", "`erase+when=both`", 3),
                   ("data", "knowledge: ", "`texture_aug`", 3), ("loss", "knowledge: ", "`masked_bc`", 3),
                   ("nowhere (dropout)", "knowledge: ", "`object_dropout`", 3), ("random object", "knowledge: ", "*random", 3)],
+    "perturbations": [("mask, either", "perturbations with", "`light_intensity`", 2),
+                      ("beside, heat_map", "perturbations: ", "`light_intensity`", 3), ("beside, network", "perturbations with", "`light_intensity`", 3),
+                      ("SEG, heat_map", "perturbations: ", "`light_intensity`", 6), ("SEG, network", "perturbations with", "`light_intensity`", 4)],
     "words": [("a feature each", "words: ", "**all**", 2), ("one meaning", "words: ", "**all**", 3),
               ("names alone", "words: ", "**all**", 4)],
 }
 
 
 def cell(page, heading, row, column):
-    """(rate, low, high) of a table's cell; the interval's ends are the rate where it has none."""
+    """(rate, low, high) of a table's cell; the interval's ends are the rate where it has none. The control's very actions are 1."""
     section = re.split(r"^#+ ", page, flags=re.M)
     section = next(part for part in section if part.startswith(heading))
     lines = [[part.strip() for part in line.split("|")[1:-1]] for line in section.splitlines() if line.startswith("| ")]
     cells = min((line for line in lines if line[0].startswith(row)), key=lambda line: line[0] != row)  # the very row, if there
-    rate, low, high = re.match(r"([\d.]+)(?: \[([\d.]+), ([\d.]+)\])?", cells[column]).groups()
+    rate, low, high = re.match(r"([\d.]+)(?: \[([\d.]+), ([\d.]+)\])?", cells[column].replace("=", "1")).groups()
     return float(rate), float(low or rate), float(high or rate)
 
 
