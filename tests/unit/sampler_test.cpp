@@ -420,7 +420,7 @@ TEST(Sampler, UtensilsBarAtTheDistancesThatTheScenarioGives) {
         EXPECT_EQ(seen.objects[k].position_m.y > 0, varied.objects[k].position_m.y > 0);
       }
     }
-    EXPECT_NEAR(near, many / 2, 250);
+    EXPECT_NEAR(near, many / 2.0, 250);
   }
 }
 

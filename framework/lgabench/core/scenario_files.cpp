@@ -56,7 +56,7 @@ void add_scenario_path(const fs::path& directory) {
   std::string all = canonical.string();
   for (const fs::path& other : scenario_path()) {
     if (other == canonical) return;
-    all = other.string() + ":" + all;
+    all.insert(0, other.string() + ":");
   }
   ::setenv(variable, all.c_str(), 1);
 }
