@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <tuple>
@@ -14,6 +13,7 @@
 #include <tabletop/sampler.hpp>
 #include <tabletop/task.hpp>
 
+#include "../conformance/amount.hpp"
 #include "testing.hpp"
 
 namespace lgabench::tabletop {
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int many = 10000;
 // Of every scenario and layout; all with ./test --full.
-const int each = std::getenv("LGABENCH_FULL") ? many : 1000;
+const int each = amount(1000, many);
 
 SceneRequest test_request(const std::string& layout, std::uint64_t seed = 0, const std::string& arm = "test") {
   return {layout, "test", arm, seed};
