@@ -1,4 +1,4 @@
-"""cmake/setup on machines that it is not made for: it says so before it installs anything.
+"""cmake/setup on machines that it is not made for: it says so before it installs anything. What steps took is told, failed or not.
 
 Usage: setup_test.py SOURCE_DIR
 """
@@ -72,6 +72,41 @@ class MovedClones(unittest.TestCase):
         self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
         self.assertEqual(done.stderr, "build/release was made in /home/me/before: this clone was moved or copied. "
                                       "Build anew: rm -r build/release, then the same command\n")
+
+
+class Seconds(unittest.TestCase):
+    def of(self, script):
+        """Of a script in a copy of what the table is made by."""
+        with tempfile.TemporaryDirectory() as directory:
+            (pathlib.Path(directory) / "cmake").mkdir()
+            for file in ("steps", "seconds.py"):
+                shutil.copy(SOURCE / "cmake" / file, f"{directory}/cmake/{file}")
+            environment = {name: value for name, value in os.environ.items() if name != "LGABENCH_STEPS"}
+            return subprocess.run([shutil.which("bash"), "-c", "set -euo pipefail; source cmake/steps; steps_begin\n" + script],
+                                  capture_output=True, text=True, cwd=directory, env=environment)
+
+    def test_a_table_also_of_what_failed(self):
+        done = self.of("step first true; step 'the second' sleep 1.1; step third false; echo never")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertNotIn("never", done.stdout)
+        self.assertRegex(done.stdout, r"seconds by step, on \d+ cores, load [\d.]+ at the start\n"
+                                      r" +0  first\n +[12]  the second\n +0  third\n")
+
+    def test_who_is_called_adds_to_the_callers_table(self):
+        done = self.of("bash -euc 'source cmake/steps; steps_begin; step inner true'; step outer true")
+        self.assertEqual(done.stdout.count("seconds by step"), 1, done.stdout)
+        self.assertRegex(done.stdout, r"0  inner\n +0  outer\n")
+
+    def test_tests_by_program(self):
+        done = self.of("""mkdir tree; cat >tree/CTestTestfile.cmake <<'END'
+add_test(Slow.one sleep 1)
+add_test(Slow.two sleep 0)
+add_test(integration.Class python3 here/cli_test.py Class)
+END
+tests_of tree all || echo failed""")
+        self.assertIn("failed", done.stdout)  # there is no cli_test.py
+        self.assertRegex(done.stdout, r"\nall: seconds of a process by program, 1 in 3 tests; the longest test\n"
+                                      r" +1  sleep, 2 tests; 1 Slow.one\n +0  cli_test.py, 1 tests; 0 integration.Class\n")
 
 
 if __name__ == "__main__":
