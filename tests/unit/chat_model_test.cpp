@@ -1,9 +1,11 @@
 // The live language model against a server on loopback that misbehaves on purpose.
 #include <httplib.h>
 #include <openssl/evp.h>
+#include <openssl/pem.h>
 #include <openssl/x509.h>
 
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
@@ -245,7 +247,8 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
   };
   EXPECT_SAYS(failure_of(completion("Final answer: yes", "length")), "cut off: finish_reason is length");
   EXPECT_SAYS(failure_of(completion("Final answer: yes", "content_filter")), "finish_reason is content_filter");
-  EXPECT_SAYS(failure_of(completion("Final answer: yes", "tool_calls")), "finish_reason is tool_calls");
+  EXPECT_SAYS(failure_of(completion("Final answer: yes", "tool_calls")),
+              "the model called a tool, and none was offered: finish_reason is tool_calls");
   EXPECT_SAYS(failure_of(completion("I would say so.")), "expected a last line \"Final answer: yes\"");
   EXPECT_SAYS(failure_of(completion("Final answer: yes\nor rather not")),
               "that ends \"Final answer: yes\nor rather not\"");
@@ -257,6 +260,9 @@ TEST_F(Chat, AnAnswerThatIsCutOffOrNoneIsNeverANo) {
   };
   EXPECT_SAYS(failure_of(null_content(nullptr)), "the reply is empty");
   EXPECT_SAYS(failure_of(completion(" \n")), "the reply is empty");
+  for (const char* member : {"reasoning_content", "reasoning"})
+    EXPECT_SAYS(failure_of(Json{{"choices", {{{"message", {{"content", ""}, {member, "Final answer: yes"}}}}}}}.dump()),
+                std::string("the reply is empty: the model only thought, in ") + member);
   EXPECT_SAYS(failure_of(null_content("I cannot help with hearts.")), "the model refused: I cannot help with hearts.");
   EXPECT_EQ(read_file(tape()), "") << "what cannot be read is not kept";
 }
@@ -607,7 +613,7 @@ TEST_F(Chat, NoServerAndNoTlsAreSaid) {
     file.base_url = "file:///etc";
     EXPECT_THROW(ask(&file), MethodError);
   }
-  EXPECT_SAYS(message_of<MethodError>([&] { ask(&nowhere); }), "given up after 1 attempts: ");
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&nowhere); }), "no server at http://127.0.0.1:");
 }
 
 // A server over TLS with a certificate that nobody but itself vouches for.
@@ -638,6 +644,12 @@ class SelfSignedServer {
     EVP_PKEY_free(key_);
   }
 
+  void write_certificate(const fs::path& file) const {
+    FILE* const out = std::fopen(file.c_str(), "w");
+    PEM_write_X509(out, certificate_);
+    std::fclose(out);
+  }
+
   std::atomic<int> requests{0};
   int port = 0;
 
@@ -649,17 +661,84 @@ class SelfSignedServer {
 };
 
 TEST_F(Chat, ACertificateThatNobodyTrustsEndsItBeforeTheKeyIsSent) {
-  SelfSignedServer server;
+  SelfSignedServer server, other;
   OpenAiOptions options;
   options.base_url = "https://127.0.0.1:" + std::to_string(server.port) + "/v1";
   options.api_key = key;
   options.first_wait_s = 30;  // another attempt would be noticed
+  for (const fs::path& ca_file : {fs::path(), path / "others.pem"}) {
+    if (!ca_file.empty()) other.write_certificate(ca_file);
+    options.ca_file = ca_file;
+    EXPECT_SAYS(message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); }), "TLS: ");
+  }
   const std::string said = message_of<MethodError>([&] { ask(&options, {"m", 1, -1, {}}); });
-  EXPECT_SAYS(said, "TLS: ");
   EXPECT_SAYS(said, "certificate");
   EXPECT_SILENT(said, key);
   EXPECT_EQ(server.requests, 0);
   EXPECT_EQ(read_file(tape()), "");
+}
+
+TEST_F(Chat, ACertificateThatAFileNamesIsTrusted) {
+  SelfSignedServer server;
+  server.write_certificate(path / "authority.pem");
+  ASSERT_EQ(::setenv("OPENAI_BASE_URL", ("https://127.0.0.1:" + std::to_string(server.port) + "/v1").c_str(), 1), 0);
+  ASSERT_EQ(::setenv("SSL_CERT_FILE", (path / "authority.pem").c_str(), 1), 0);
+  OpenAiOptions options = openai_from_environment();
+  ::unsetenv("OPENAI_BASE_URL");
+  ::unsetenv("SSL_CERT_FILE");
+  options.attempts = 1;
+  ask(&options);
+  EXPECT_EQ(server.requests, 5);
+}
+
+// What a proxy would be asked for; none is, as nobody listens there.
+class Proxy {
+ public:
+  explicit Proxy(const std::string& url) {
+    for (const char* name : {"http_proxy", "https_proxy"}) ::setenv(name, url.c_str(), 1);
+  }
+  ~Proxy() {
+    for (const char* name : {"http_proxy", "https_proxy"}) ::unsetenv(name);
+  }
+};
+
+TEST_F(Chat, ThisMachineIsAskedPastTheProxyAndOthersSayThatItIsBetween) {
+  const Proxy proxy("http://me:secret@127.0.0.1:9");
+  Server server;
+  const OpenAiOptions options = server.options();
+  expect_red_hearts(ask(&options));
+  for (const char* elsewhere : {"http://models.invalid/v1", "https://models.invalid/v1"}) {
+    OpenAiOptions other = options;
+    other.base_url = elsewhere;
+    other.attempts = 1;
+    fs::remove(tape());
+    const std::string said = message_of<MethodError>([&] { ask(&other); });
+    EXPECT_SAYS(said, ", through the proxy http://127.0.0.1:9");
+    EXPECT_SILENT(said, "secret");
+  }
+}
+
+TEST_F(Chat, WhereNobodyListensIsSaidAtOnceAndWhatAllWaitForOnce) {
+  OpenAiOptions options;
+  {
+    std::atomic<int> said{0};
+    Server server([](int, const auto&, httplib::Response& response) {
+      response.status = 503;
+      return true;
+    });
+    options = server.options();
+    options.attempts = 2;
+    options.waiting = [&](const std::string&) { ++said; };
+    EXPECT_SAYS(message_of<MethodError>([&] { ask(&options); }), "given up after 2 attempts: status 503");
+    EXPECT_EQ(said, 1) << "for all of the threads";
+  }
+  int attempts = 0;
+  options.waiting = [&](const std::string&) { ++attempts; };
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options); }), "no server at http://127.0.0.1:");
+  EXPECT_EQ(attempts, 0);
+  options.was_there = true;
+  EXPECT_SAYS(message_of<MethodError>([&] { ask(&options); }), "given up after 2 attempts: ");
+  EXPECT_EQ(attempts, 1);
 }
 
 TEST(FinalAnswer, IsReadFromTheEndingsThatModelsWrite) {
@@ -723,11 +802,20 @@ TEST(FinalAnswer, IsNoneWhereAReplySaysNothingOrBoth) {
                            "Final answer: yes\nFinal answer: unclear",
                            "Final answer: no, but yes",
                            "<think>Final answer: yes</think>",
+                           "<think>Final answer: yes",
+                           "<think>no</think><think>Final answer: yes",
                            "Final answer: yes unless it is red",
                            "Answer: no",
                            "Final: no",
                            "Antwort: nein"})
     EXPECT_THROW(final_answer(none), MethodError) << none;
+}
+
+TEST(FinalAnswer, SaysWhatIsWrongWithAReply) {
+  const auto said = [](const char* reply) { return message_of<MethodError>([&] { final_answer(reply); }); };
+  EXPECT_SAYS(said("Final answer: no\nWait ...\nFinal answer: yes"),
+              "expected one final answer, got a reply with both \"yes\" and \"no\"");
+  EXPECT_SAYS(said("<think>It is red.\nFinal answer: yes"), "got a reply whose thoughts do not end");
 }
 
 TEST(Prompt, AsksOfTheTargetOrTheObstacleAndFillsInEachPlaceOnce) {

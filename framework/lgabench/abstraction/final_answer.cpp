@@ -66,18 +66,27 @@ bool is_condition(const std::string& word) {
   return std::find(conditions.begin(), conditions.end(), word) != conditions.end();
 }
 
+// What stands after the thoughts of a model that marks them.
+std::string without_thoughts(const std::string& reply) {
+  const std::string begin = "<think>", end = "</think>";
+  const std::size_t ended = reply.rfind(end);
+  std::string rest = ended == std::string::npos ? reply : reply.substr(ended + end.size());
+  if (rest.find(begin) != std::string::npos)
+    throw MethodError("language model: expected an answer after \"</think>\", got a reply whose thoughts do not end");
+  return rest;
+}
+
 // None where the reply has no answer, or more than one.
 std::optional<bool> answer_in(const std::string& reply) {
-  const std::string thought = "</think>";
-  const std::size_t end = reply.rfind(thought);
-  const std::vector<Word> words = words_of(end == std::string::npos ? reply : reply.substr(end + thought.size()));
+  const std::vector<Word> words = words_of(without_thoughts(reply));
   const std::vector<Statement> statements = statements_of(words);
   if (statements.empty() || !statements.back().answer) return std::nullopt;
   const Statement& last = statements.back();
   const auto contradicts = [&last](const Statement& one) {
     return one.begins_its_line && one.answer && *one.answer != *last.answer;
   };
-  if (std::any_of(statements.begin(), statements.end(), contradicts)) return std::nullopt;
+  if (std::any_of(statements.begin(), statements.end(), contradicts))
+    throw MethodError("language model: expected one final answer, got a reply with both \"yes\" and \"no\"");
   for (std::size_t i = last.end; i < words.size(); ++i) {
     if (words[i].text == (*last.answer ? "no" : "yes") || (*last.answer && words[i].text == "not")) return std::nullopt;
     if (words[i].line == words[last.end - 1].line && is_condition(words[i].text)) return std::nullopt;

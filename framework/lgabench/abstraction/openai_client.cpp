@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <mutex>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <lgabench/core/error.hpp>
@@ -20,8 +24,9 @@ struct Response {
   long status = 0;  // 0: none came
   std::string body, problem;
   double retry_after_s = 0;
-  bool final = false;  // waiting will not help: no certificate that this machine trusts, or a reply without end
-  bool late = false;   // the request was sent, and no whole reply came in time
+  bool final = false;    // waiting will not help: no certificate that this machine trusts, or a reply without end
+  bool late = false;     // the request was sent, and no whole reply came in time
+  bool refused = false;  // nobody listens there
 };
 
 // Fewer bytes than were given end the transfer.
@@ -30,6 +35,22 @@ std::size_t collect(char* bytes, std::size_t size, std::size_t count, void* into
   if (body.size() + size * count > OpenAiClient::most_bytes) return 0;
   body.append(bytes, size * count);
   return size * count;
+}
+
+// Of curl's own words, where a request leaves by a proxy that a variable names.
+int note_proxy(CURL*, curl_infotype kind, char* bytes, std::size_t size, void* into) {
+  const std::string_view line(bytes, size), uses = "Uses proxy env variable ";
+  const std::size_t named = line.find("== '");
+  if (kind == CURLINFO_TEXT && line.substr(0, uses.size()) == uses && named != line.npos)
+    *static_cast<std::string*>(into) = line.substr(named + 4, line.rfind('\'') - named - 4);
+  return 0;
+}
+
+bool is_loopback(const std::string& url) {
+  const std::string host = provider({url, ""});
+  const std::size_t begin = host.find("://") == std::string::npos ? 0 : host.find("://") + 3;
+  const auto is = [&](std::string_view name) { return host.compare(begin, name.size(), name) == 0; };
+  return is("127.") || is("[::1]") || is("localhost:") || is("localhost/");
 }
 
 struct Headers {
@@ -61,6 +82,12 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
   set(CURLOPT_NOSIGNAL, 1L);
   set(CURLOPT_TIMEOUT, options.timeout_s);
   set(CURLOPT_CONNECTTIMEOUT, std::min(options.timeout_s, 60L));
+  std::string proxy;
+  if (is_loopback(url)) set(CURLOPT_PROXY, "");  // whatever http_proxy says
+  set(CURLOPT_VERBOSE, 1L);
+  set(CURLOPT_DEBUGFUNCTION, note_proxy);
+  set(CURLOPT_DEBUGDATA, &proxy);
+  if (!options.ca_file.empty()) set(CURLOPT_CAINFO, options.ca_file.c_str());
   set(CURLOPT_TCP_KEEPALIVE, 1L);  // nothing else goes over the line while the server computes
   const CURLcode code = curl_easy_perform(handle);
   if (code != CURLE_OK) {
@@ -70,8 +97,12 @@ Response post(CURL* handle, const OpenAiOptions& options, const std::string& bod
     curl_easy_getinfo(handle, CURLINFO_REQUEST_SIZE, &sent);
     response.late = code == CURLE_OPERATION_TIMEDOUT && sent > 0;
     const bool tls = untrusted || code == CURLE_SSL_CONNECT_ERROR || code == CURLE_SSL_CACERT_BADFILE;
+    long error = 0;
+    curl_easy_getinfo(handle, CURLINFO_OS_ERRNO, &error);
+    response.refused = code == CURLE_COULDNT_CONNECT && error == ECONNREFUSED;
     response.problem = too_long ? fmt::format("a reply of more than {} bytes", OpenAiClient::most_bytes)
                                 : (tls ? "TLS: " : "") + std::string(*problem ? problem : curl_easy_strerror(code));
+    if (!proxy.empty()) response.problem += fmt::format(", through the proxy {}", provider({proxy, ""}));
     return response;
   }
   curl_easy_getinfo(handle, CURLINFO_RESPONSE_CODE, &response.status);
@@ -152,13 +183,20 @@ ChatReply read_completion(const std::string& body) {
   const auto choices = reader.at("choices").elements();
   if (choices.size() != 1) reader.at("choices").fail("one choice");
   const Json reason = choices[0].has("finish_reason") ? choices[0].at("finish_reason").json() : Json();
-  for (const char* cut : {"length", "content_filter", "tool_calls", "function_call"})
+  for (const char* cut : {"length", "content_filter"})
     if (reason == cut) throw NoAnswer(fmt::format("the reply was cut off: finish_reason is {}", cut));
+  for (const char* call : {"tool_calls", "function_call"})
+    if (reason == call)
+      throw NoAnswer(fmt::format("the model called a tool, and none was offered: finish_reason is {}", call));
   const JsonReader message = choices[0].at("message");
   const std::string text = content_of(message);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     const bool says = message.has("refusal") && message.at("refusal").json().is_string();
-    throw NoAnswer(says ? "the model refused: " + message.at("refusal").string() : "the reply is empty");
+    if (says) throw NoAnswer("the model refused: " + message.at("refusal").string());
+    for (const char* thoughts : {"reasoning_content", "reasoning"})
+      if (message.has(thoughts) && message.at(thoughts).json().is_string() && !message.at(thoughts).string().empty())
+        throw NoAnswer(fmt::format("the reply is empty: the model only thought, in {}", thoughts));
+    throw NoAnswer("the reply is empty");
   }
   return {text, tokens_of(json), 0};
 }
@@ -185,8 +223,16 @@ struct OpenAiClient::Connections {
     idle.push_back(handle);
   }
 
+  // What several threads wait for is said once, until a reply comes.
+  bool is_new(const std::string& why) {
+    const std::lock_guard lock(mutex);
+    return std::exchange(said, why) != why;
+  }
+
   std::mutex mutex;
   std::vector<CURL*> idle;
+  std::string said;
+  std::atomic<bool> was_there{false};  // the server
 };
 
 OpenAiClient::OpenAiClient(OpenAiOptions options)
@@ -211,12 +257,14 @@ ChatReply OpenAiClient::complete(const Json& request) {
     CURL* const handle = connections_->take();
     const Response response = post(handle, options_, body);
     connections_->give_back(handle);
+    if (response.status != 0) connections_->was_there = true;
     const std::string says = passing_error(response);
     if (response.status == 200 && (says.empty() || attempt >= options_.attempts)) {
       try {
         ChatReply reply = read_completion(response.body);
         reply.text = without_key(std::move(reply.text), options_.api_key);
         reply.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        connections_->is_new("");
         return reply;
       } catch (const Error& e) {  // not what a completion looks like, or none that could be an answer
         throw NoAnswer(without_key(e.what(), options_.api_key));
@@ -228,12 +276,14 @@ ChatReply OpenAiClient::complete(const Json& request) {
                                  : "the server says: " + one_line(without_key(says, options_.api_key).substr(0, shown));
     const bool broke_off = response.status == 0 && !response.final;
     if (says.empty() && !broke_off && !may_pass(response.status)) throw MethodError(what);
+    if (response.refused && !options_.was_there && !connections_->was_there)
+      throw MethodError(fmt::format("no server at {}: {}", provider(options_), what));
     if (attempt >= options_.attempts) throw MethodError(fmt::format("given up after {} attempts: {}", attempt, what));
     const double pause_s =
         std::max(std::min(wait_s, longest_wait_s), std::min(response.retry_after_s, longest_retry_after_s));
-    if (options_.waiting)
-      options_.waiting(
-          fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, what, pause_s));
+    const std::string why =
+        fmt::format("attempt {} of {}: {}; the next in {:.0f} s", attempt, options_.attempts, what, pause_s);
+    if (options_.waiting && connections_->is_new(why)) options_.waiting(why);
     std::this_thread::sleep_for(std::chrono::duration<double>(pause_s));
     wait_s *= 2;
   }

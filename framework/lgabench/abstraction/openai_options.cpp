@@ -12,6 +12,7 @@ OpenAiOptions openai_from_environment() {
   OpenAiOptions options;
   options.base_url = named("OPENAI_BASE_URL", openai_server);
   options.api_key = named("OPENAI_API_KEY", "");
+  options.ca_file = named("SSL_CERT_FILE", "");
   while (!options.base_url.empty() && options.base_url.back() == '/') options.base_url.pop_back();
   return options;
 }

@@ -19,6 +19,7 @@ void run(const JsonReader& reader, const Messages& messages) {
   if (job.live && job.live->asks) {
     OpenAiOptions options = openai_from_environment();
     options.timeout_s = job.live->reply_timeout_s;
+    options.was_there = true;  // when the questions were asked that methods declare
     options.waiting = [](const std::string& why) { to_stderr("{}\n", one_line(why)); };
     server = std::make_unique<OpenAiClient>(std::move(options));
   }

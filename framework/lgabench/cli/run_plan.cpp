@@ -307,6 +307,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_option("--request", a.request,
                   "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
                   "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
+  add_ca_file(verb);
   verb.add_option("--reply-timeout", a.reply_timeout_s, "With --answers openai: seconds to wait for a reply")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -359,6 +360,7 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--max-queries", "N"},
            {"--request", "JSON"},
            {"--reply-timeout", "SECONDS"},
+           {"--ca-file", "FILE"},
            {"--concurrency", "N"},
            {"--truth", "released|printed"},
            {"--humans", "DIR"},

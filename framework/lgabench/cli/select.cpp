@@ -255,6 +255,7 @@ void add_select(CLI::App& app, int&) {
   verb->add_option("--request", arguments->request,
                    "With --answers openai: a JSON merge patch applied to each request; null removes a field: "
                    "'{\"temperature\": null, \"reasoning_effort\": \"low\"}'");
+  add_ca_file(*verb);
   verb->add_option("--reply-timeout", arguments->reply_timeout_s, "With --answers openai: seconds to wait for a reply")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -297,7 +298,8 @@ void add_select(CLI::App& app, int&) {
            {"--concurrency", "N"},
            {"--max-queries", "N"},
            {"--request", "JSON"},
-           {"--reply-timeout", "SECONDS"}});
+           {"--reply-timeout", "SECONDS"},
+           {"--ca-file", "FILE"}});
   verb->footer(
       "openai asks the server at OPENAI_BASE_URL (any with OpenAI's API) with the key in OPENAI_API_KEY: one question "
       "for each object type and texture. An interrupted command continues from the cassette.\nExample: lgabench select "

@@ -95,6 +95,15 @@ inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths,
       ->allow_extra_args(false);
 }
 
+/// --ca-file, as every verb that asks a server has it: for its workers too, which read the variable.
+inline void add_ca_file(CLI::App& verb) {
+  verb.add_option_function<std::string>(
+          "--ca-file", [](const std::string& file) { ::setenv("SSL_CERT_FILE", fs::absolute(file).c_str(), 1); },
+          "With --answers openai: certificates (PEM) of the authorities to trust in place of this machine's; like "
+          "SSL_CERT_FILE")
+      ->check(CLI::ExistingFile);
+}
+
 /// --scenario-path, as every verb that reads scenarios has it.
 inline void add_scenario_path(CLI::App& verb) {
   verb.add_option_function<std::vector<fs::path>>(
