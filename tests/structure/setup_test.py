@@ -109,5 +109,32 @@ tests_of tree all || echo failed""")
                                       r" +1  sleep, 2 tests; 1 Slow.one\n +0  cli_test.py, 1 tests; 0 integration.Class\n")
 
 
+class LongRuns(unittest.TestCase):
+    def test_what_passed_is_not_run_again(self):
+        with tempfile.TemporaryDirectory() as directory:
+            tree = pathlib.Path(directory) / "tree"
+            tree.mkdir()
+            (tree / "CTestTestfile.cmake").write_text("add_test(Passes true)\nadd_test(Fails false)\nadd_test(All/Passes.too/1 true)\n")
+
+            def left(sources):
+                done = subprocess.run([sys.executable, SOURCE / "cmake/remaining.py", tree, f"{directory}/full/{sources}",
+                                       f"{directory}/full/left"], capture_output=True, text=True)
+                self.assertEqual(done.stderr, "")
+                return (pathlib.Path(directory) / "full/left").read_text(), done.returncode
+
+            def run():
+                return subprocess.run(["ctest", "--test-dir", tree, "-I", f"{directory}/full/left"], capture_output=True, text=True).stdout
+
+            self.assertEqual(left("here"), ("0,0,0,1,2,3\n", 0))
+            self.assertIn("out of 3", run())
+            self.assertEqual(left("here"), ("0,0,0,2\n", 0))
+            self.assertIn("out of 1", run())
+            for _ in range(2):
+                self.assertEqual(left("changed"), ("0,0,0,1,2,3\n", 0), "of other sources nothing has passed")
+            self.assertEqual(left("here"), ("0,0,0,2\n", 0), "nor has here what passed of others")
+            (tree / "CTestTestfile.cmake").write_text("add_test(Passes true)\nadd_test(All/Passes.too/1 true)\n")
+            self.assertEqual(left("here"), ("0,0,0,\n", 1))
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

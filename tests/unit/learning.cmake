@@ -1,4 +1,4 @@
-lgabench_unit_test(learning_test WHOLE SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
+lgabench_unit_test(learning_test SHARDS 2 SOURCES learning_test.cpp centroid_policy_test.cpp heat_map_test.cpp stations_test.cpp noisy_copies_test.cpp shown_input_test.cpp
                    LINK lgabench_learning)
 target_compile_options(learning_test PRIVATE -O1)
 lgabench_unit_test(learning_allocations_test SOURCES learning_allocations_test.cpp LINK lgabench_learning)
@@ -6,7 +6,7 @@ add_dependencies(learning_test lga lga_hill human lga_s lga_l gcbc_dart gcbc_seg
 if(LGABENCH_TORCH)
   target_sources(learning_test PRIVATE learning_reference_test.cpp)
   target_link_libraries(learning_test PRIVATE ${TORCH_LIBRARIES})
-  lgabench_unit_test(sentence_encoder_test WHOLE SOURCES sentence_encoder_test.cpp LINK lgabench_learning lgabench_encoder)
+  lgabench_unit_test(sentence_encoder_test SHARDS 2 SOURCES sentence_encoder_test.cpp LINK lgabench_learning lgabench_encoder)
   foreach(reference_test learning_test sentence_encoder_test)
     target_compile_definitions(${reference_test} PRIVATE LGABENCH_TEST_REFERENCE="${PROJECT_SOURCE_DIR}/tests/reference")
   endforeach()

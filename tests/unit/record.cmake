@@ -1,1 +1,1 @@
-lgabench_unit_test(record_test SOURCES ${CMAKE_CURRENT_LIST_DIR}/record_test.cpp LINK lgabench_record)
+lgabench_unit_test(record_test READ SOURCES ${CMAKE_CURRENT_LIST_DIR}/record_test.cpp LINK lgabench_record)

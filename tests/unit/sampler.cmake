@@ -1,4 +1,4 @@
-lgabench_unit_test(sampler_test SOURCES sampler_test.cpp meant_scenes_test.cpp LINK lgabench_tabletop)
+lgabench_unit_test(sampler_test SHARDS 8 SOURCES sampler_test.cpp meant_scenes_test.cpp LINK lgabench_tabletop)
 target_compile_options(sampler_test PRIVATE -O1)
 lgabench_unit_test(scene_hashes_test SOURCES scene_hashes_test.cpp LINK lgabench_tabletop)
 target_compile_definitions(scene_hashes_test PRIVATE
