@@ -56,6 +56,7 @@ function(lgabench_install_package)
   # An SDK of another version is refused when a plugin is read; CMake may say so first.
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake COMPATIBILITY ExactVersion)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/lgabenchConfig.cmake ${PROJECT_SOURCE_DIR}/cmake/LgabenchPlugin.cmake
+                ${PROJECT_SOURCE_DIR}/cmake/FindOpenCV.cmake
                 ${PROJECT_BINARY_DIR}/lgabenchConfigVersion.cmake DESTINATION ${package})
 endfunction()
 

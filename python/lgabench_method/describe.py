@@ -143,5 +143,6 @@ def describe(written):
             "summary": _text(found, "summary", (ast.get_docstring(classes[class_name]) or "").split("\n")[0], file),
             "asks": _text(found, "asks", "", file), "options": options,
             "questionnaire": declares,
+            "selects_alone": kind == "method" and "learn" not in functions and not classes[class_name].bases,
             "sha256": hashlib.sha256(source).hexdigest(),
             "versions": {**_versions(tree), **_siblings(real.parent, tree, {real})}}

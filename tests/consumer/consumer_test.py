@@ -103,6 +103,20 @@ class Package(Consumer):
                       "human,gcbc_seg", "--demos", "2", "--seeds", "0", "--episodes", "2", "--set", "*.epochs=2", "--out", out)
         self.assertEqual({row["n_error"] for row in json.loads((out / "summary.json").read_text())["rows"]}, {0})
 
+    def test_opencv_is_found_as_the_page_says(self):
+        """docs/add-a-method.md; Debian's parts of OpenCV come without its CMake package."""
+        page = (self.prefix / "share/doc/lgabench/docs/add-a-method.md").read_text()
+        project, opencv = [block.split("```")[0] for block in page.split("```cmake\n")[1:]]
+        directory = self.dir / "opencv"
+        directory.mkdir()
+        (directory / "CMakeLists.txt").write_text(project + opencv)
+        source = (self.prefix / "share/doc/lgabench/examples/select_only/select_only.cpp").read_text()
+        (directory / "select_only.cpp").write_text("#include <opencv2/imgproc.hpp>\n" + source +
+                                                   "\ndouble area() { return cv::contourArea(cv::Mat(4, 1, CV_32SC2, cv::Scalar(0))); }\n")
+        self.call("cmake", "-S", directory, "-B", directory / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Release")
+        self.call("cmake", "--build", directory / "build")
+        self.assertIn("libopencv_imgproc", self.call("readelf", "-d", directory / "build/select_only.so").stdout)
+
     def test_every_public_header_compiles(self):
         headers = sorted(path.relative_to(self.prefix / "include") for path in self.prefix.glob("include/**/*.hpp"))
         self.assertLessEqual(len(headers), 29, "what a plugin's author has to know")

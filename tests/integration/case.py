@@ -12,6 +12,7 @@ import unittest
 
 BUILD = pathlib.Path(os.environ["LGABENCH_BUILD"])
 PROGRAM = BUILD / "bin" / "lgabench"
+FULL = os.environ.get("LGABENCH_FULL") == "1"
 FIXTURES = BUILD / "tests" / "plugins"
 ENGINE = {verb: (flag, os.environ["LGABENCH_TEST_ENGINE"]) for verb, flag in (("run", "--engines"), ("demos", "--engine"))}
 NO_CLOCK = ("cell.json", "selection.json", "training.jsonl", "episodes.jsonl")
@@ -22,6 +23,12 @@ def command_line(*arguments):
     words = [*map(str, arguments)]
     flag, engine = ENGINE.get(words[0] if words else "", (None, "mujoco"))
     return [PROGRAM, *words] + ([flag, engine] if engine != "mujoco" and flag not in words else [])
+
+
+def some_of(words):
+    """The first and the last of them, which stand for the others but in ./test --full."""
+    words = list(words)
+    return words if FULL else words[:1] + words[1:][-1:]
 
 
 def with_options(words, *more):

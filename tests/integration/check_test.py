@@ -3,17 +3,37 @@
 LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 check_test.py CheckPlugin
 """
 import json
+import subprocess
 import unittest
 
-from case import BUILD, Case, FIXTURES
+from case import BUILD, Case, FIXTURES, command_line
 
+PYTHON = "/usr/bin/python3"  # which has NumPy
 UNSOUND, FAULTY = (FIXTURES / "faulty" / f"fixture_{name}.so" for name in ("unsound", "faulty"))
+
+SELECTS = """
+from lgabench_method import select_features
+
+
+class Selects:
+    options = {"known": {"default": 1, "help": "a number", "source": "test"}}
+
+    def select(self, command, space, services):
+        return select_features(command, space, services.lm)
+
+
+class Undeclared(Selects):
+    options = {"known": {"default": 1, "help": "a number", "source": "test"}}
+
+    def select(self, command, space, services):
+        return services.options["hiden"]
+"""
 
 
 class CheckPlugin(Case):
     def check(self, file, *settings, expect=1):
         words = [word for setting in settings for word in ("--set", setting)]
-        done = self.call("check-plugin", file, "--json", *words, expect=expect)
+        done = self.call("check-plugin", file, "--json", "--python", PYTHON, *words, expect=expect)
         report = json.loads(done.stdout)
         self.assertEqual(report["good"], expect == 0)
         return {finding["check"]: finding for finding in report["findings"] if finding["state"] == "problem"}
@@ -21,8 +41,10 @@ class CheckPlugin(Case):
     def test_finds_what_is_unsound_and_nothing_else(self):
         for how, checks in {
             "sound": set(),
-            "clock": {"order of scenes", "same actions", "two processes"},
-            "remembers": {"order of scenes"},
+            "clock": {"same scenes", "same actions", "two processes"},
+            "remembers": {"same scenes"},
+            "process": {"processes"},
+            "undeclared": {"learn"},
             "address": {"two processes"},
             "leak": {"memory of act"},
             "outside": {"Selection"},
@@ -37,6 +59,32 @@ class CheckPlugin(Case):
                     problems.pop("same actions", None)
                 self.assertEqual(set(problems), checks)
                 self.assertTrue(all(problem["fix"] for problem in problems.values()))
+
+    def test_says_what_was_found_in_words_that_help(self):
+        self.assertRegex(self.check(UNSOUND, "how=process")["processes"]["detail"], r"left behind: \d+ lgabench-method")
+        self.assertRegex(self.check(UNSOUND, "how=undeclared")["learn"]["detail"], "key 'hiden' not found; options declared: how$")
+        (self.dir / "m.py").write_text(SELECTS)
+        undeclared = self.check("m.py:Undeclared")["select"]["detail"]
+        self.assertRegex(undeclared, r"KeyError: 'hiden' \(m.py:\d+\); options declared: known$")
+        problem = self.check(FIXTURES / "refused/bad_options.so")["descriptor"]
+        self.assertIn('options: /epochs: expected a member "default"', problem["detail"])
+        self.assertIn("correct the options", problem["fix"])
+
+    def test_a_method_that_selects_alone_is_good(self):
+        (self.dir / "m.py").write_text(SELECTS)
+        report = json.loads(self.call("check-plugin", "m.py:Selects", "--json", "--python", PYTHON).stdout)
+        found = {finding["check"]: finding["detail"] for finding in report["findings"]}
+        self.assertEqual(found["learn"], "none: it selects alone, as --methods selected_by:m asks it to")
+
+    def test_tells_what_it_found_before_it_ends_and_where_it_stays(self):
+        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=spin", "--timeout", "40"),
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment, cwd=self.dir)
+        first = process.stderr.readline()  # while the plugin spins
+        self.assertIsNone(process.poll())
+        out, _ = process.communicate()
+        self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 40 s \(--timeout\)$")
+        self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 40 s in phase act\n")
+        self.assertEqual(out.count("\n  ok       Selection "), 1, "each line once")
 
     def test_a_selection_of_which_nothing_can_be_shown_ends_a_cell_and_is_no_fault(self):
         report = json.loads(self.call("check-plugin", UNSOUND, "--json", "--set", "how=unshowable").stdout)

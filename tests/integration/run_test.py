@@ -14,7 +14,7 @@ import struct
 import subprocess
 import unittest
 
-from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM, command_line
+from case import BUILD, Case, FIXTURES, NO_CLOCK, PROGRAM, command_line, some_of
 
 # Small but real: both shipped methods train, for seconds.
 SMALL = ["q1", "--scenarios", "heart,letter", "--methods", "lga,gcbc_dart", "--demos", "10", "--seeds", "0",
@@ -131,7 +131,7 @@ class OptionsOfOthers(Case):
         names = sorted((BUILD / "share/lgabench/suites").glob("*.json"))
         self.assertGreater(len(names), 5)
         for file in names:
-            for preset in [None, *json.loads(file.read_text())["presets"]]:
+            for preset in some_of([None, *json.loads(file.read_text())["presets"]]):
                 with self.subTest(suite=file.stem, preset=preset):
                     self.call("run", file.stem, *(["--preset", preset] if preset else []), *self.PLUGINS, "--methods",
                               "fixture_own_loss,fixture_own_network", "--dry-run")

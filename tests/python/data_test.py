@@ -109,8 +109,23 @@ class Demonstrations(Case):
             self.assertTrue(numpy.array_equal(first.observation.ids, seen.ids))
             self.assertEqual(first.observation.instances, seen.instances)
             self.assertTrue(numpy.allclose(first.label, env.expert_action(), atol=1e-6))
-            mask = data.goal_mask(seen, env.scenario.truth(0))
+            self.assertEqual(one.instruction.selection, env.scenario.truth(0))
+            mask = data.goal_mask(seen, one.instruction.selection)
             self.assertEqual(set(numpy.unique(mask)), {0, 1})
+
+    def test_a_mask_of_nothing_warns(self):
+        seen = lgabench.Environment("heart", ENGINE, "cells").reset("test", 0)
+        with self.assertWarnsRegex(UserWarning, "goal_mask: the Selection is empty"):
+            self.assertFalse(data.goal_mask(seen, data.Selection()).any())
+
+    def test_they_carry_the_selection_that_they_were_drawn_from(self):
+        self.call("run", "q1", "--scenarios", "heart", "--methods", "lga", "--demos", 10, "--seeds", 0, "--episodes", 1,
+                  "--no-reference", "--set", "lga.epochs=1", "--out", "run")
+        cell = next((self.dir / "run/cells").iterdir())
+        self.call("demos", "heart", "--n", 2, "--engine", ENGINE, "--selection", cell / "selection.json", "--out", "lga.hdf5")
+        selected = json.loads((cell / "selection.json").read_text())["commands"][0]["selection"]["target"]
+        for one in data.load_demonstrations(self.dir / "lga.hdf5"):
+            self.assertEqual(one.instruction.selection.target.object_types, selected["object_types"])
 
     def test_robomimics_members(self):
         env = lgabench.Environment("heart", ENGINE, "cells")
@@ -138,7 +153,7 @@ class Demonstrations(Case):
                 if name not in ("total", "env_args"):
                     del file["data"].attrs[name]
             for i in range(10):
-                for name in ("next_obs", "rewards", "dones"):
+                for name in ("next_obs", "rewards", "dones", "selection"):
                     del file[f"data/demo_{i}/{name}"]
         shown = data.load_demonstrations(self.dir / "d.hdf5")
         self.assertEqual((len(shown), shown.scenario, shown.seed, shown.action_space), (10, "", None, None))

@@ -37,10 +37,12 @@ class Page(Case):
         self.call("run", "q1", "--preset", "smoke", "--scenarios", "heart", "--methods", "lga", "--demos", 10, "--seeds", 0,
                   "--episodes", 3, "--no-reference", "--out", "runs/NAME")
         blocks = code_of((SOURCE / "docs/python.md").read_text())
-        self.assertEqual(len(blocks), 5)
-        scene, neighbour, env, vector, run = blocks
+        self.assertEqual(len(blocks), 6)
+        scene, neighbour, masks, env, vector, run = blocks
         self.assertIn("True", self.python(scene))
         self.assertRegex(self.python(neighbour), r"Result\(success=0\.[0-9]+, low=")
+        imports = "from lgabench.data import load_demonstrations\n"
+        self.assertIn("[0, 1]", self.python(imports + masks + "\nprint(sorted({int(one) for mask in masks for one in mask.flat}))"))
         self.assertIn("True none", self.python(env + "\n" + vector))
         self.assertIn("lga", self.python(run))
 

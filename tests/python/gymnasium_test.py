@@ -130,6 +130,14 @@ class Gymnasium(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "path=FILE.json"):
             gymnasium.make("lgabench/own-v1")
 
+    def test_a_seed_beyond_a_splits_scenes_says_which_it_plays(self):
+        env = make("heart", layout="cells", split="test")
+        first = env.reset(seed=2**31 - 2)[1]["scene"]
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            self.assertEqual(env.reset(seed=2 * (2**31 - 1) - 1)[1]["scene"], first)
+        self.assertIn(f"plays scene {2**31 - 2}", "".join(str(one.message) for one in said))
+
     def test_scaled_actions(self):
         env = make("bring_fruit").unwrapped
         for seed in range(5):

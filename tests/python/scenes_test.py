@@ -222,6 +222,11 @@ class Scenes(unittest.TestCase):
         result = lgabench.evaluate(lambda seen, utterance: env.expert_action(), env, 20)
         self.assertEqual((result.success, result.high, result.failures), (1, 1, {}))
         self.assertAlmostEqual(result.low, .8389, 4)
+        numbers = iter([[.5, 0, 0, 0, 0, 0] * 2, [float("nan")] * 12, [.5] * 3] + [[.26, .49, 0, 0, 0, 1] * 2] * 2)
+        none = lgabench.evaluate(lambda seen, utterance: next(numbers), env, 5)
+        self.assertEqual((none.success, none.failures["method_error"]), (0, 3))
+        with self.assertRaisesRegex(ValueError, "rotation of norm"):
+            lgabench.evaluate(lambda seen, utterance: [.5, 0, 0, 0, 0, 0] * 2, env, 1, strict=True)
         nowhere = lgabench.evaluate(lambda seen, utterance: [.26, .49, 0, 0, 0, 1] * 2, env, 5)
         self.assertEqual((nowhere.success, nowhere.failures), (0, {"missed_object": 5}))
 

@@ -9,8 +9,8 @@
 
 namespace lgabench {
 
-/// Told before each step, so that whoever waits knows where a crash happened.
-using CheckPhase = std::function<void(const std::string& phase)>;
+/// Told before each step, so that whoever waits knows where a crash happened, and what was found before it.
+using CheckPhase = std::function<void(const std::string& phase, const CheckReport& so_far)>;
 
 /// Uses the method twice from loading to acting, on small but real cells of the job's environment: its first task's
 /// example, and a scenario with commands that are only tested, where it has one; examples with a second set are

@@ -103,11 +103,11 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
   const ProcessState at_first = ProcessState::now();
   std::string all, doing = "a world of boxes";
   try {
-    phase(doing);
+    phase(doing, report);
     use_alone(engine, report);
     judge_leftovers(report, [&at_first] { return ProcessState::now().beyond(at_first); });
     for (const TaskInfo& task : environment.empty() ? installed_tasks() : find_environment(environment).tasks()) {
-      phase(doing = "scenes of " + task.example);
+      phase(doing = "scenes of " + task.example, report);
       all += judge_task(task, engine, report);
     }
   } catch (const PluginError&) {

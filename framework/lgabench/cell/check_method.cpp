@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -6,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <regex>
+#include <thread>
 #include <utility>
 
 #include <lgabench/abstraction/human.hpp>
@@ -27,6 +30,9 @@ namespace {
 
 constexpr int demonstrations = 10, scenes_an_arm = 5;
 constexpr std::uint64_t seed = 7;
+constexpr const char* determinism =
+    "draw what is random from services.seed; let no clock, no address, no value that was never set and no number of "
+    "threads have a part in it";
 
 // Counts what is asked; or answers no to everything, as a model that sees nothing fitting would.
 class CountingModel : public LanguageModel {
@@ -206,9 +212,10 @@ class MethodCheck {
     } catch (const MethodGone&) {
       throw;
     } catch (const std::exception& e) {
-      report_.problem(doing_, e.what(), "this call must succeed: a run makes it too");
+      report_.problem(doing_, e.what() + undeclared_option(e.what()), "this call must succeed: a run makes it too");
     }
     if (is_library()) judge_process();
+    judge_processes();
     note_refused_calls();
     report_.ok("time", fmt::format("select {:.3f} s, learn {:.2f} s from {} demonstrations, act {:.2f} ms",
                                    seconds_["select"], seconds_["learn"], demonstrations, 1e3 * seconds_["act"]));
@@ -219,10 +226,12 @@ class MethodCheck {
   // A library can be looked at in its process. Python's has threads, files and a heap of the interpreter's.
   bool is_library() const { return job_.plugin.python.is_null(); }
 
+  void begin(const std::string& what) { phase_(doing_ = what, report_); }
+
   // Says what comes, does it, notes how long it took.
   template <class Call>
   auto timed(const std::string& what, Call&& c) {
-    phase_(doing_ = what);
+    begin(what);
     const auto start = std::chrono::steady_clock::now();
     auto result = c();
     seconds_[what] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -230,13 +239,35 @@ class MethodCheck {
   }
 
   void judge_process() {
-    phase_(doing_ = "destroy policy and method");  // which a call that threw left there
+    begin("destroy policy and method");  // which a call that threw left there
     method_.drop_policy();
     method_.drop_method();
     judge_leftovers(report_, [this] { return method_.state(); });
     report_.judge("rounding mode", method_.state().flushed ? "" : "the plugin cleared flush-to-zero",
                   "flush-to-zero kept",
                   "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
+  }
+
+  // What it started, and nobody waited for; likewise given half a second.
+  void judge_processes() {
+    std::vector<std::string> left = method_.processes();
+    for (int wait = 0; wait < 50 && !left.empty(); ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      left = method_.processes();
+    }
+    report_.judge("processes", left.empty() ? "" : fmt::format("left behind: {}", fmt::join(left, ", ")),
+                  "none left behind", "wait for every process before the call that started it returns");
+  }
+
+  // What a lookup of an option that the descriptor lacks throws, in either language, does not say.
+  std::string undeclared_option(const std::string& error) const {
+    std::smatch found;
+    static const std::regex lookup(R"((?:out_of_range\.403\] key |KeyError: )'([^']*)')");
+    if (!std::regex_search(error, found, lookup) || job_.options.contains(found[1].str())) return "";
+    std::vector<std::string> declared;
+    for (const auto& option : job_.options.items()) declared.push_back(option.key());
+    return fmt::format("; options declared: {}",
+                       declared.empty() ? "none" : fmt::format("{}", fmt::join(declared, ", ")));
   }
 
   void note_refused_calls() {
@@ -275,7 +306,15 @@ class MethodCheck {
       const std::vector<Scene> scenes = training_scenes(*bench, selected);
       if (scenes.empty()) {
         note_empty(*bench, judged);
-        phase_(doing_ = "destroy the method");
+        begin("destroy the method");
+        method_.drop_method();
+        continue;
+      }
+      if (!is_library() && job_.plugin.python.value("selects_alone", false)) {
+        if (first)
+          report_.ok("learn",
+                     fmt::format("none: it selects alone, as --methods {}{} asks it to", selected_by, job_.plugin.id));
+        begin("destroy the method");
         method_.drop_method();
         continue;
       }
@@ -285,7 +324,7 @@ class MethodCheck {
       if (first && asked.log.lines.empty())
         report_.note("training log", "learn() reported nothing", "call services.log.epoch() after each pass");
       use.training += asked.log.lines;
-      phase_(doing_ = "destroy the method");
+      begin("destroy the method");
       method_.drop_method();  // a policy may outlive it
       const Actor actor = policy_actor(*policy, selected.instructions, job_.plugin.id);
       std::vector<std::string> actions;
@@ -294,11 +333,11 @@ class MethodCheck {
       for (const std::string& action : actions) use.actions += action + '\n';
       if (judged) judge_policy(actor, *bench, actions, first);
       if (first) {
-        phase_(doing_ = "saved");
+        begin("saved");
         kept_ = {policy->saved(), selected.instructions, actions};
       }
       if (first && selected.needs.targets == Needs::Targets::truth) judge_without_selection(*policy, *bench);
-      phase_(doing_ = "destroy the policy");
+      begin("destroy the policy");
       method_.drop_policy();
     }
     return use;
@@ -310,7 +349,7 @@ class MethodCheck {
 
   // What is to be demonstrated; nothing where a run would end the cell as abstraction_empty.
   std::vector<Scene> training_scenes(const Bench& bench, const Selected& selected) {
-    phase_(doing_ = "demonstrations that needs() asks for");
+    begin("demonstrations that needs() asks for");
     if (selected.nothing_to_learn_from(bench.scenario)) return {};
     try {
       return sample(bench.scenario, bench.layout, selected, seed, demonstrations);
@@ -332,7 +371,7 @@ class MethodCheck {
                                      const std::vector<Scene>& scenes) {
     std::vector<Demonstration> shown = instructed(
         demonstrate(*bench.environment, scenes, selected.needs, bench.scenario.utterances()), scenes, selected);
-    phase_(doing_ = "revise");
+    begin("revise");
     revise(method_, job_.plugin.id, bench.scenario, shown, scenes, asked.services, selected);
     return timed("learn", [&] { return learn(method_, job_.plugin.id, shown, asked.services, selected); });
   }
@@ -400,11 +439,20 @@ class MethodCheck {
       report_.ok("unseen commands", fmt::format("{} scenes with a command that was not demonstrated: acted", unseen));
       return;
     }
-    std::string differs;
-    for (std::size_t i = bench.sights.size(); i-- > 0;)
-      if (act("act", actor, bench, bench.sights[i]) != actions[i]) differs = "act() gave another action";
-    report_.judge("order of scenes", differs.empty() ? "" : differs + " when scenes came in reverse order",
-                  "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
+    const auto differs = [&](bool reversed) {
+      for (std::size_t k = 0; k < bench.sights.size(); ++k) {
+        const std::size_t i = reversed ? bench.sights.size() - 1 - k : k;
+        if (act("act", actor, bench, bench.sights[i]) != actions[i]) return true;
+      }
+      return false;
+    };
+    const bool by_itself = differs(false);
+    report_.judge("same scenes", by_itself ? "act() gave other actions when they came once more in the same order" : "",
+                  "the same actions once more", determinism);
+    if (!by_itself)
+      report_.judge("order of scenes",
+                    differs(true) ? "act() gave another action when scenes came in reverse order" : "",
+                    "changes no action", "keep nothing from one episode to the next, or drop it in reset()");
     report_.ok("actions", fmt::format("finite, {} numbers each", bench.environment->action_space().size()));
 
     if (!is_library()) return;
@@ -424,9 +472,7 @@ class MethodCheck {
   void judge_repetition(const Use& first, const Use& second, long long grown) {
     const auto same = [&](const char* check, const std::string& a, const std::string& b) {
       report_.judge(fmt::format("same {}", check), a == b ? "" : "others the second time, with the same seed",
-                    "twice in one process, bit for bit",
-                    "draw what is random from services.seed; let no clock, no address, no value that was never set "
-                    "and no number of threads have a part in it");
+                    "twice in one process, bit for bit", determinism);
       report_.hashes[check] = sha256(a);
     };
     same("Selections", first.selections, second.selections);
@@ -468,7 +514,7 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
   const std::string& example = find_environment(job.environment).tasks().front().example;
   benches.push_back(std::make_unique<Bench>(load_scenario(example), engine));
   if (unseen) benches.push_back(std::make_unique<Bench>(*std::move(unseen), engine));
-  phase("load");
+  phase("load", {});
   std::optional<Kept> kept;
   CheckReport report;
   {
@@ -476,7 +522,7 @@ CheckReport check_method(HostJob job, const PluginInfo& engine, const CheckPhase
     report = check.run(benches);
     kept = check.kept();
   }  // a worker has one method's process at a time
-  phase("restore");
+  phase("restore", report);
   if (kept) judge_restored(job, *kept, *benches.front(), report);
   return report;
 }

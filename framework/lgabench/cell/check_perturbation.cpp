@@ -78,7 +78,7 @@ class AxisCheck {
     std::string all;
     for (int level = 1; level <= axis_.most(); ++level) {
       const std::string doing = fmt::format("level {}{}", level, in_);
-      phase(doing);
+      phase(doing, report_);
       try {
         all += judge_level(level);
       } catch (const MethodError& e) {
@@ -178,7 +178,7 @@ CheckReport check_perturbation(HostJob job, const CheckPhase& phase) {
     job.environment = environment;
     job.scratch = scratch / environment;
     fs::create_directory(job.scratch);
-    phase("load");
+    phase("load", report);
     report.hashes["perceived, " + environment] = AxisCheck(job, axis, report).run(phase);
   }
   return report;

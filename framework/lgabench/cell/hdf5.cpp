@@ -154,6 +154,11 @@ void write_demonstration(const Library& h5, hid_t group, const Demonstration& de
   write_dataset(h5, group, "actions", H5T_IEEE_F32LE, {steps, first.label.size()}, actions.data(), false);
   write_dataset(h5, group, "instances", H5T_STD_U8LE, {table.size()}, table.data(), false);
   write_observations(h5, group, "obs", demonstration.steps);
+  if (demonstration.instruction.selection.empty()) return;  // as in the cache, whose steps serve whoever selects
+  Json about = distribution_json(demonstration.instruction.selection);
+  about["provenance"] = to_string(demonstration.instruction.selection.provenance);
+  const std::string selection = canonical(about);
+  write_dataset(h5, group, "selection", H5T_STD_U8LE, {selection.size()}, selection.data(), false);
 }
 
 void write_results(const Library& h5, hid_t group, const std::vector<StepResult>& results) {

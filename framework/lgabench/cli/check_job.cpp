@@ -12,7 +12,12 @@ namespace {
 void check(const JsonReader& reader, const Messages& messages) {
   const CheckJob job = read_check_job(reader);
   perturb_heap(job.perturb);  // of an engine, which runs in this process
-  const CheckPhase phase = [&messages](const std::string& name) { messages.at({name}); };
+  std::size_t written = 0;
+  const CheckPhase phase = [&](const std::string& name, const CheckReport& so_far) {
+    if (so_far.findings.size() > written) write_file(job.report, canonical(to_json(so_far)) + '\n');
+    written = so_far.findings.size();
+    messages.at({name});
+  };
   const auto on_method = [&] {
     HostJob method{*job.method, job.environment, job.options, 0, job.scratch};
     method.perturb = job.perturb;

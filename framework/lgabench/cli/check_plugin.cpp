@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <cstdio>
 #include <memory>
+#include <string_view>
 
 #include <lgabench/cli/findings.hpp>
 #include <lgabench/cli/help.hpp>
@@ -40,9 +43,52 @@ Json options_of(const PluginInfo& plugin, const std::vector<std::string>& settin
   return resolve_options(plugin, given);
 }
 
-// Two processes use the plugin: their findings, and whether they agree.
-CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a) {
-  CheckReport report;
+// What is told while the first process works: each finding once, and where it stays for long.
+class Watching {
+ public:
+  Watching(CheckReport& report, fs::path found, const CheckPluginArguments& a)
+      : report_(report), found_(std::move(found)), a_(a) {}
+  std::size_t printed() const { return printed_; }
+  void phase(const std::string& name) {
+    phase_ = name;
+    began_ = Clock::now();
+    is_told_ = false;
+  }
+  void tick() {
+    const double seconds = std::chrono::duration<double>(Clock::now() - began_).count();
+    if (!is_told_ && !phase_.empty() && seconds > long_s) {
+      to_stderr("still in {} after {:.0f} s; it is stopped after {} s (--timeout)\n", phase_, seconds, a_.timeout_s);
+      is_told_ = true;
+    }
+    if (!a_.json) print_new();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr double long_s = 20;
+
+  void print_new() {
+    CheckReport all = report_;
+    if (fs::exists(found_)) {
+      const CheckReport found = read_check_report(read_json(found_), found_.string());
+      all.findings.insert(all.findings.end(), found.findings.begin(), found.findings.end());
+    }
+    for (; printed_ < all.findings.size(); ++printed_) print(all.findings[printed_]);
+    std::fflush(stdout);
+  }
+
+  CheckReport& report_;  // what was found before
+  const fs::path found_;
+  const CheckPluginArguments& a_;
+  std::string phase_;
+  Clock::time_point began_ = Clock::now();
+  bool is_told_ = false;
+  std::size_t printed_ = 0;
+};
+
+// Two processes use the plugin: their findings, and whether they agree. Returns how many findings are printed already.
+std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const CheckPluginArguments& a,
+                  CheckReport& report) {
   report.ok("descriptor", fmt::format("fits lgabench {}", LGABENCH_VERSION));
   for (const PluginInfo& other : catalogue.plugins)
     if (other.kind == plugin.kind && other.id == plugin.id && other.sha256 != plugin.sha256)
@@ -74,23 +120,23 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     fs::create_directory(job.scratch);
     return WorkerTask{to_json(job), scratch.path / fmt::format("log{}.txt", i), "check-job"};
   };
-  const PoolEvents events{[](std::size_t) {}, [](std::size_t, const std::string&, long long) {},
-                          [&](std::size_t i, const WorkerEnd& end) { ends[i] = end; }, [] {}};
+  Watching watching(report, reports[0], a);
+  const PoolEvents events{[](std::size_t) {},
+                          [&](std::size_t, const std::string& phase, long long) { watching.phase(phase); },
+                          [&](std::size_t i, const WorkerEnd& end) { ends[i] = end; }, [&] { watching.tick(); }};
   if (!run_workers(ends.size(), make, pool, events)) throw InputError("interrupted");
 
   std::array<CheckReport, 2> found;
   for (std::size_t i = 0; i < ends.size(); ++i) {
-    if (ends[i].exit_code == 0 && ends[i].signal == 0 && fs::exists(reports[i])) {
-      found[i] = read_check_report(read_json(reports[i]), reports[i].string());
-      continue;
-    }
+    if (fs::exists(reports[i])) found[i] = read_check_report(read_json(reports[i]), reports[i].string());
+    if (i == 0) report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
+    if (ends[i].exit_code == 0 && ends[i].signal == 0 && fs::exists(reports[i])) continue;
     const bool said_why = ends[i].complaint && ends[i].complaint->signal == 0;
     const auto tail = log_tail(scratch.path / fmt::format("log{}.txt", i));
     report.problem("process", why_it_ended(ends[i], a.timeout_s).reason,
                    said_why || tail.empty() ? "" : fmt::format("it printed: {}", fmt::join(tail, "\n")));
-    if (i == 0) return report;
+    if (i == 0) return watching.printed();
   }
-  report.findings.insert(report.findings.end(), found[0].findings.begin(), found[0].findings.end());
   std::vector<std::string> differing;
   for (const auto& [what, hash] : found[0].hashes.items())
     if (found[1].hashes.value(what, Json()) != hash) differing.push_back(what);
@@ -98,18 +144,23 @@ CheckReport check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
     report.judge("two processes", differing.empty() ? "" : fmt::format("disagree on: {}", fmt::join(differing, ", ")),
                  "agree bit for bit",
                  "look for values that were never set, addresses that are compared, a clock, a shared file");
-  return report;
+  return watching.printed();
 }
 
 int check_plugin(const CheckPluginArguments& a) {
   CheckReport report;
   PluginInfo plugin;
+  std::size_t printed = 0;
   try {
     plugin = is_python_method(a.file) ? describe_python(a.file, a.python) : read_plugin(a.file);
-    report = check(plugin, scan_plugins(plugin_directories()), a);
+    if (!a.json)
+      to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
+    printed = check(plugin, scan_plugins(plugin_directories()), a, report);
   } catch (const PluginError& e) {
+    const bool in_options = std::string_view(e.what()).find(": options: ") != std::string_view::npos;
     report.problem("descriptor", e.what(),
                    is_python_method(a.file) ? "see docs/add-a-method-in-python.md"
+                   : in_options             ? "correct the options that LGABENCH_METHOD, or the like, is given"
                                             : "build it with lgabench_add_plugin() from this very lgabench's package");
   }
   const bool good = !has_problem(report);
@@ -121,9 +172,7 @@ int check_plugin(const CheckPluginArguments& a) {
     json["good"] = good;
     to_stdout("{}\n", canonical(json));
   } else {
-    if (!plugin.id.empty())
-      to_stdout("{} {}, {} {}\n", plugin.id, plugin.version, plugin.kind == "engine" ? "an" : "a", plugin.kind);
-    print(report);
+    print(report, printed);
   }
   return good ? ok : regression;
 }

@@ -6,6 +6,7 @@
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cell/demonstrations.hpp>
 #include <lgabench/cell/hdf5.hpp>
+#include <lgabench/cell/steps.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/core/environments.hpp>
@@ -58,7 +59,12 @@ void write(const DemosArguments& a) {
   for (int i = 0; i < a.n; ++i) scenes.push_back(training_scene(scenario, layout, selections, a.seed, i));
   const Needs needs{Needs::Targets::truth, a.noisy, a.noise};
   Circumstances circumstances{scenario.id, engine.id, layout, "train", a.seed, environment->action_space(), {}};
-  const auto demonstrations = demonstrate(*environment, scenes, needs, scenario.utterances(), &circumstances.outcomes);
+  Selected selected;
+  for (std::size_t c = 0; c < scenario.commands.size(); ++c)
+    selected.instructions.push_back(
+        {scenario.commands[c].utterance, selections.empty() ? scenario.commands[c].truth : selections[c]});
+  const auto demonstrations = instructed(
+      demonstrate(*environment, scenes, needs, scenario.utterances(), &circumstances.outcomes), scenes, selected);
   write_file(a.out, demonstrations_hdf5(demonstrations, "lgabench/" + scenario.id + "-v1", &circumstances));
   to_stdout("{}\n", a.out);
 }

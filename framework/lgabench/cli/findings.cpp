@@ -14,13 +14,16 @@ bool has_problem(const CheckReport& report) {
                      [](const Finding& f) { return f.state == Finding::State::problem; });
 }
 
-void print(const CheckReport& report) {
-  for (const auto& [state, check, detail, fix] : report.findings) {
-    const std::string word = fmt::format("{:<8}", to_string(state));
-    put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
-    to_stdout(" {:<22} {}\n", check, detail);
-    if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
-  }
+void print(const Finding& finding) {
+  const auto& [state, check, detail, fix] = finding;
+  const std::string word = fmt::format("{:<8}", to_string(state));
+  put(stdout, "  " + (state == Finding::State::problem ? painted(stdout, Colour::red, word) : word));
+  to_stdout(" {:<22} {}\n", check, detail);
+  if (!fix.empty()) to_stdout("           {:<22} -> {}\n", "", fix);
+}
+
+void print(const CheckReport& report, std::size_t first) {
+  for (std::size_t i = first; i < report.findings.size(); ++i) print(report.findings[i]);
   const bool good = !has_problem(report);
   put(stdout, painted(stdout, good ? Colour::green : Colour::red, good ? "good" : "not good: see the problems above"));
   to_stdout("\n");

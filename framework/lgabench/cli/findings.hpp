@@ -6,7 +6,9 @@ namespace lgabench::cli {
 
 bool has_problem(const CheckReport& report);
 
-/// A line for each finding, one for what to do about it, and the verdict, to stdout.
-void print(const CheckReport& report);
+/// A line for the finding, and one for what to do about it, to stdout.
+void print(const Finding& finding);
+/// The findings from number `first` on, and the verdict on all.
+void print(const CheckReport& report, std::size_t first = 0);
 
 }  // namespace lgabench::cli

@@ -200,6 +200,16 @@ void HostProcess::watch_use() {
       0);
 }
 
+std::vector<std::string> HostProcess::started() const {
+  std::vector<std::string> all;
+  for (const pid_t pid : descendants(pid_)) {
+    std::string name;
+    std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
+    if (pid != pid_ && !name.empty()) all.push_back(fmt::format("{} {}", pid, name));
+  }
+  return all;
+}
+
 void HostProcess::pass_on_output() {
   constexpr std::size_t most = 16 << 20;
   char block[1 << 16];

@@ -46,6 +46,8 @@ class HostProcess {
   void wait(int fd, short events);
   /// Names of the system calls that it was refused so far.
   const std::vector<std::string>& refused_calls() const { return refused_.names(); }
+  /// Processes that it started, directly or not, and that are still there: "NUMBER NAME" each.
+  std::vector<std::string> started() const;
   /// The connection is at its end. @throws MethodGone that says how the process ended, always.
   [[noreturn]] void explain();
 

@@ -56,6 +56,8 @@ class HostSession {
   protocol::SharedMemory& observation() { return observation_; }
   /// As ProcessState, of a C++ plugin's process beyond what it held before the plugin came.
   ProcessState state();
+  /// Processes that the plugin started and that are still there, "NUMBER NAME" each.
+  std::vector<std::string> processes() const { return process_.started(); }
 
  private:
   template <class Call>

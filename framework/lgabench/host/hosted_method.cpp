@@ -181,4 +181,6 @@ void HostedMethod::drop_policy() { session_->call({{"type", "drop"}, {"what", "p
 
 ProcessState HostedMethod::state() const { return session_->state(); }
 
+std::vector<std::string> HostedMethod::processes() const { return session_->processes(); }
+
 }  // namespace lgabench

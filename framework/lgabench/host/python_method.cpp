@@ -161,7 +161,7 @@ PluginInfo describe_python(const std::string& written, const std::string& interp
     for (const auto& option : plugin.options.items())  // a CloningMethod's alone
       JsonReader(option.value(), "options", "/" + option.key())
           .only({"default", "help", "source", "values", "min", "max", "needs"});
-    for (const char* member : {"class", "interpreter", "reads", "user_base", "versions"})
+    for (const char* member : {"class", "interpreter", "reads", "selects_alone", "user_base", "versions"})
       plugin.python[member] = reader.at(member).json();
     plugin.fingerprint = canonical(plugin.python["versions"]);
   } catch (const InputError& e) {

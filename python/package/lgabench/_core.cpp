@@ -379,7 +379,8 @@ std::vector<std::string> engine_ids() {
 
 NB_MODULE(_core, m) {
   using namespace lgabench;
-  nb::exception<EngineError>(m, "EngineError", PyExc_RuntimeError);
+  nb::exception<EngineError>(m, "EngineError", PyExc_RuntimeError).attr("__doc__") =
+      "The physics engine failed: it cannot be loaded, or a world is not as it must be.";
   nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
     try {
       std::rethrow_exception(thrown);

@@ -7,13 +7,16 @@ import os
 import pathlib
 import re
 import stat
+import warnings
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Union
 
 import numpy
 
 from lgabench.scenes import ActionSpace
-from lgabench_method import Demonstration, Instance, Instruction, Observation, Selection, Step, goal_mask
+import lgabench_method
+from lgabench_method import Demonstration, Instance, Instruction, Observation, Selection, Step
+from lgabench_method.values import selection
 
 if TYPE_CHECKING:
     import pandas
@@ -109,7 +112,8 @@ class Demonstrations(list[Demonstration]):
 
 
 def load_demonstrations(file: Path) -> Demonstrations:
-    """Reads what `lgabench demos` wrote, also with recovery steps. Instructions come without a Selection."""
+    """Reads what `lgabench demos` wrote, also with recovery steps. Instructions hold the true Selection, or that of
+    `demos --selection`; in files of versions before 0.4 they hold none."""
     import h5py
 
     all_of_them = Demonstrations()
@@ -129,8 +133,16 @@ def load_demonstrations(file: Path) -> Demonstrations:
             rgb, ids, actions = one["obs/rgb"][()], one["obs/ids"][()], one["actions"][()].astype(numpy.float64)
             steps = [Step(Observation(rgb[t], ids[t], [Instance(row["id"], row["object_type"], row["texture"], row["pixels"])
                                                        for row in table]), actions[t]) for t, table in enumerate(tables)]
-            all_of_them.append(Demonstration(Instruction(_text(one.attrs["utterance"]), Selection()), steps))
+            meant = selection(json.loads(one["selection"][()].tobytes())) if "selection" in one else Selection()
+            all_of_them.append(Demonstration(Instruction(_text(one.attrs["utterance"]), meant), steps))
     return all_of_them
+
+
+def goal_mask(observation: Observation, selection: Selection) -> lgabench_method.Bytes:
+    """The mask of the paper (section 3.1), rows x columns of 0 and 1. Warns of an empty Selection, of which nothing is visible."""
+    if selection.second is None and not any(one.object_types and one.textures for one in selection.meaning.sets):
+        warnings.warn("goal_mask: the Selection is empty, so that the mask is 0 everywhere", stacklevel=2)
+    return lgabench_method.goal_mask(observation, selection)
 
 
 def _text(value: Any) -> str:

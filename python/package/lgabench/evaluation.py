@@ -33,14 +33,24 @@ def wilson(successes: int, episodes: int) -> tuple[float, float]:
 
 def evaluate(act: Callable[[Observation, str], numpy.typing.ArrayLike], scenario: Union[str, Scenario, Environment],
              episodes: int = 100, *, arm: Optional[str] = None, layout: Optional[str] = None, seed: int = 0,
-             own_scenes: Optional[int] = None, engine: str = "mujoco") -> Result:
-    """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres."""
+             own_scenes: Optional[int] = None, engine: str = "mujoco", strict: bool = False) -> Result:
+    """Plays the first `episodes` test scenes: act(observation, utterance) -> an action, in metres.
+
+    An action that is none (too few numbers, NaN, a rotation of norm 0) is a failure, `method_error`, as in a run; with `strict`
+    its ValueError is raised. What act() itself raises is always raised.
+    """
     if episodes < 1:
         raise ValueError(f"episodes {episodes}: expected 1 or more")
     environment = scenario if isinstance(scenario, Environment) else Environment(scenario, engine, layout)
     failures: collections.Counter[str] = collections.Counter()
     for index in range(episodes):
         seen = environment.reset("test", index, arm=arm, seed=seed, own_scenes=own_scenes)
-        failures[environment.step(act(seen, environment.utterance)).failure] += 1
+        action = act(seen, environment.utterance)
+        try:
+            failures[environment.step(action).failure] += 1
+        except ValueError:
+            if strict:
+                raise
+            failures["method_error"] += 1
     won = failures.pop("none", 0)
     return Result(won / episodes, *wilson(won, episodes), episodes, dict(failures))

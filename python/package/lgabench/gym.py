@@ -15,6 +15,7 @@ from lgabench.scenes import Batch, Environment, Numbers, Pool, Scenario, SPLITS
 
 __all__ = ["SceneEnv", "SceneVectorEnv"]
 
+SEEDS = 2**31 - 1  # as many scenes as a split has: from 0 on, one for each seed
 PRINTABLE = "".join(map(chr, range(32, 127)))
 Path = Union[str, os.PathLike[str]]
 
@@ -47,9 +48,11 @@ class _Choice:
             raise ValueError(f"options {sorted(unknown)}: expected split, arm, index, scene_seed")
         index = chosen.get("index")
         if index is None and chosen["split"] == "train":
-            index = random.integers(2**31 - 1)
+            index = random.integers(SEEDS)
         elif index is None:
-            index = self.next if seed is None else seed % (2**31 - 1)
+            index = self.next if seed is None else seed % SEEDS
+            if seed is not None and seed != index:
+                gymnasium.logger.warn(f"seed {seed} plays scene {index}, as seed {index} does: a split has {SEEDS} scenes")
         if chosen["split"] != "train":
             self.next = int(index) + 1
         return chosen["split"], chosen["arm"], int(chosen["scene_seed"]), int(index)

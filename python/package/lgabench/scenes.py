@@ -139,6 +139,7 @@ class Environment:
 
     @property
     def action_space(self) -> ActionSpace:
+        """The scenario's: names, units and bounds of an action's numbers."""
         return self.scenario.action_space
 
     def reset(self, split: str = "train", index: int = 0, *, arm: Optional[str] = None, seed: int = 0,
@@ -180,6 +181,7 @@ class Environment:
         return str(self._open().scene_hash)
 
     def close(self) -> None:
+        """Frees the engine's world; every later call raises RuntimeError."""
         self._one = None
 
     def _open(self) -> _core.Environment:

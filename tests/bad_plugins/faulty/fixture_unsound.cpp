@@ -1,5 +1,6 @@
 // Works, but not as a method should: in the way that its option names. For `lgabench check-plugin`.
 #include <fcntl.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <set>
@@ -60,6 +61,9 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
     for (const Demonstration& demonstration : demonstrations) seen.insert(demonstration.instruction.utterance);
     const std::string how = services.options.at("how");
     services.log.epoch(1, 1, 0.0);
+    if (how == "process" && ::fork() == 0)
+      while (true) ::pause();
+    if (how == "undeclared") static_cast<void>(services.options.at("hiden"));
     if (how == "thread") std::thread([] { std::this_thread::sleep_for(std::chrono::hours(1)); }).detach();
     if (how == "descriptor") static_cast<void>(::open("/dev/null", O_RDONLY));
     return std::make_unique<Unsound>(how, std::move(seen));
@@ -73,5 +77,5 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
 
 LGABENCH_METHOD("fixture_unsound", "0.1", "works, but not as a method should", UnsoundMethod, R"({
   "how": {"default": "sound", "help": "what it does", "source": "test fixture", "values": ["sound", "clock", "remembers",
-    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen", "forgets"]}
+    "address", "leak", "outside", "unshowable", "thread", "descriptor", "unseen", "process", "undeclared", "forgets"]}
 })")
