@@ -332,6 +332,33 @@ class Live(Asking):
         (self.dir / "mine.py").write_text((self.dir / "mine.py").read_text().replace("questionnaire = True", "pass"))
         self.assertNotIn("before the cells", self.call(*words, *self.ANSWERS, "--dry-run").stdout)
 
+    @unittest.skipUnless(has(PYTHON, "numpy"), "needs NumPy")
+    def test_finding_causes_asks_nothing_again(self):
+        (self.dir / "mine.py").write_text(textwrap.dedent("""
+            import lgabench_method as lgabench
+
+            class Mine:
+                def select(self, command, space, services):
+                    return lgabench.select_features(command, space, services.lm)
+
+                def learn(self, demonstrations, services):
+                    services.log.epoch(1, 1, 0.0)
+                    return Elsewhere()
+
+            class Elsewhere:
+                def act(self, observation, instruction):
+                    return [.5, 0, 0, 0, 0, 1, .5, 0, 0, 0, 0, 1]
+            """))
+        words = with_options(self.run_it, "--methods", "mine.py:Mine")
+        words = words[:words.index("--set")] + words[words.index("--set") + 2:]
+        said = self.call(*words, "--python", PYTHON, *self.ANSWERS, "--max-queries", "112", "--out", "out").stderr
+        self.assertIn("finding the causes of failures of mine: 4 cells, about ", said)
+        self.assertNotIn("left out", said)
+        self.assertEqual(len(self.server.asked), 224)
+        causes = {json.loads(line)["attribution"] for path in (self.dir / "out/cells").glob("*/episodes.jsonl")
+                  for line in path.read_text().splitlines()}
+        self.assertLessEqual(causes, {"abstraction", "policy"})
+
     def test_waiting_for_others_questions_is_no_time_of_a_cell(self):
         """Methods that do not declare them ask as they run, in turn: the second of two cells waits, then asks itself."""
         self.server.seconds = 8

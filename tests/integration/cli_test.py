@@ -128,7 +128,9 @@ class DryRuns(Case):
         self.assertRegex(said, r"^runs/q1-\w{8}: 806 cells, 0 already computed, 806 to compute\n")
         self.assertRegex(said, r"\nlga +195 +0 +\d+ min  cells measured elsewhere\n")
         self.assertRegex(said, r"\nfixture_constant +195 +0 +\d+ min  LGA's cells\n")
-        self.assertRegex(said, r"\nabout \d+ min with 1 worker\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
+        self.assertRegex(said, r"\nabout \d+ min with 1 worker\nthen at most as long again for cells of fixture_constant, to find the "
+                               r"causes of failures\ndisk: \d+ MB in runs/q1-\w{8}, and at most \d+ MB")
+        self.assertNotIn("causes", self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart").stdout)
         self.assertIn("shard 2/2 of a run of 806 cells",
                       self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN,
                                 "--shard", "2/2").stdout)

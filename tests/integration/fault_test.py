@@ -15,7 +15,7 @@ import subprocess
 import time
 import unittest
 
-from case import BUILD, BesideOneRun, FIXTURES, NO_CLOCK, command_line
+from case import BUILD, BesideOneRun, FIXTURES, NO_CLOCK, command_line, with_options
 
 FULL = os.environ.get("LGABENCH_FULL") == "1"
 # Tiny but real: one method that trains, one that does not, the reference rows.
@@ -179,6 +179,38 @@ class Killed(Faults):
                     break
             self.call(*RUN, "--out", out)
             self.assert_as_undisturbed(out)
+
+    def test_while_causes_are_found(self):
+        """All cells are scored by then: the run is a finished one, and goes on to the same bytes."""
+        words = with_options(NO_TRAINING, "--methods", "fixture_keeper", "--plugin-path", FIXTURES / "faulty", "--seeds", "0:3",
+                             "--jobs", "1", "--out")
+        began = time.monotonic()
+        self.call(*words, "whole")
+        moments, lasts = random.Random(6), time.monotonic() - began
+        for number in [signal.SIGINT, signal.SIGTERM] + (40 if FULL else 5) * [signal.SIGKILL]:
+            shutil.rmtree(self.dir / "out", ignore_errors=True)
+            run = self.start(*words, "out")
+            for line in run.stderr:
+                if line.startswith("finding the causes of failures of fixture_keeper: 3 cells, about "):
+                    break
+            self.first_worker(run)
+            if number == signal.SIGKILL:
+                time.sleep(moments.uniform(0, lasts))
+            run.send_signal(number)
+            said = run.communicate(timeout=60)[1]
+            self.assertIn(run.returncode, (0, -9) if number == signal.SIGKILL else (130,), said)
+            self.assert_nothing_left_behind()
+            self.call("status", "out")
+            self.call("report", "out")
+            self.assert_matches_schemas("out")
+            resume = [*command_line(*words, "out"), "--resume"]
+            if number != signal.SIGKILL:
+                self.assertIn("interrupted; all cells are scored, some causes of failures are not found. To find them:\n", said)
+                resume = said.splitlines()[-1].split()
+            done = subprocess.run(resume, capture_output=True, text=True, env=self.environment, cwd=self.dir, timeout=60)
+            self.assertIn("0 cells computed, 3 reused, 0 failed", done.stderr)
+            self.assert_same_results("whole", "out")
+            self.assertEqual([path.name for path in (self.dir / "out").rglob(".*")], [])
 
     def interrupted(self, number, impatiently=False):
         run = self.start(*RUN, "--jobs", "2")

@@ -118,16 +118,24 @@ class Keepers(Harm):
             shutil.copy(FIXTURES / "faulty/fixture_keeper.so", folder)
         words = with_options(["run", "q1", "--scenarios", "heart", "--layout", "cells", "--demos", "10", "--seeds", "0:3",
                               "--episodes", "3", "--no-reference", "--jobs", "1"], *more)
-        self.call(*words, "--plugin-path", folder, "--methods", f"fixture_keeper+keep={keep}+folder={folder}", "--out", out)
+        return self.call(*words, "--plugin-path", folder, "--methods", f"fixture_keeper+keep={keep}+folder={folder}", "--out", out)
 
     def selected(self, run):
         """Seed -> what was selected."""
         return {cell["training_seed"]: (self.dir / run / "cells" / key / "selection.json").read_text()
                 for key, (cell, _) in self.cells(run).items()}
 
+    def scored(self, run):
+        """Seed -> what was selected and done."""
+        return {cell["training_seed"]: [(e["failure"], e["action"]) for e in self.episodes(self.dir / run / "cells" / key)]
+                for key, (cell, _) in self.cells(run).items()}, self.selected(run)
+
+    @staticmethod
+    def episodes(cell):
+        return [json.loads(line) for line in (cell / "episodes.jsonl").read_text().splitlines()]
+
     def causes(self, run):
-        return {json.loads(line)["attribution"] for path in (self.dir / run).glob("cells/*/episodes.jsonl")
-                for line in path.read_text().splitlines()}
+        return {episode["attribution"] for cell in (self.dir / run / "cells").iterdir() for episode in self.episodes(cell)}
 
     def assert_keeping_helps_nothing(self, *more):
         for keep in "no", "yes":
@@ -142,6 +150,58 @@ class Keepers(Harm):
         self.assert_keeping_helps_nothing()
         self.assertLessEqual(self.causes("yes"), {"abstraction", "policy"})
         self.call("verify", "yes", "--all", "--plugin-path", "mine_yes")  # which tells no truth
+
+    def test_nothing_true_is_told_before_the_last_cell_of_the_run_is_scored(self):
+        """Unconfined, so that what one cell is told another hears: who hears it in time selects and acts otherwise."""
+        for jobs in "1", "2":
+            out = {keep: f"{keep}_{jobs}" for keep in ("no", "yes")}
+            said = {keep: self.play(keep, out[keep], "--unconfined", "--jobs", jobs).stderr for keep in out}
+            self.assertEqual(self.scored(out["yes"]), self.scored(out["no"]))
+            self.assertLessEqual(self.causes(out["no"]), {"abstraction", "policy"})
+            self.assertNotIn("left out", said["no"])
+            # There it is heard by the cells that are computed again, else this test would show nothing.
+            self.assertIn("is left out, its failures have no causes: ", said["yes"])
+            self.assertEqual(self.causes(out["yes"]), {None})
+            shutil.rmtree(self.dir / "mine_yes")
+            pathlib.Path("/tmp/lgabench-kept").unlink()
+
+    def test_causes_are_those_of_attribute_and_nothing_else_of_a_cell_changes(self):
+        said = self.play("no", "whole").stderr
+        self.assertIn("finding the causes of failures of fixture_keeper: 3 cells, about ", said)
+        for part in "1", "2":
+            said = self.play("no", "part" + part, "--shard", part + "/2").stderr
+            self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: once the parts are merged, "
+                          "by lgabench attribute MERGED\n", said)
+            self.assertEqual(self.causes("part" + part), {None})
+        refused = self.call("attribute", "part1", "--plugin-path", "mine_no", expect=2).stderr
+        self.assertRegex(refused, r"part1: 1 of its cells have not been played, expected a finished run")
+        self.call("merge", "both", "part1", "part2")
+        self.call("attribute", "both", "--plugin-path", "mine_no")
+        self.assert_same_results("both-attributed", "whole")
+        before = Hostile.bytes_of(self.dir / "both/cells")
+        said = self.play("no", "both").stderr  # in place, as all cells are there
+        self.assertIn("0 cells computed, 3 reused", said)
+        self.assert_same_results("both", "whole")
+        self.assert_matches_schemas("both")
+        after = Hostile.bytes_of(self.dir / "both/cells")
+        self.assertEqual({path.name for path in after if after[path] != before.get(path)}, {"episodes.jsonl", "status.json"})
+        self.assertEqual(set(after), set(before))
+        self.assertNotIn("finding", self.play("no", "both").stderr)
+
+    def test_a_method_that_acts_otherwise_each_time_is_left_out_by_name(self):
+        def play(*rows, expect=0):
+            return self.call(*with_options(RUN, "--methods", ",".join(rows)), "--out", "out", "--resume", expect=expect).stderr
+        self.assertRegex(play("fixture_keeper", "fixture_unsound+how=clock"),
+                         r"\nfixture_unsound is left out, its failures have no causes: fixture_unsound heart .*: not the same when computed again\n")
+        causes = {cell["method"]["id"]: {e["attribution"] for e in self.episodes(self.dir / "out/cells" / key)}
+                  for key, (cell, _) in self.cells("out").items()}
+        self.assertLessEqual(causes["fixture_keeper"], {"abstraction", "policy"})
+        self.assertEqual(causes["fixture_unsound"], {None})
+        # Where a cell is still to be scored, as it failed, nobody is told anything.
+        shutil.rmtree(self.dir / "out")
+        self.assertIn("the causes of failures of fixture_keeper are found after the run's last cell: once none fails, or by "
+                      "lgabench attribute out\n", play("fixture_keeper", "fixture_faulty+where=learn+how=throw", expect=3))
+        self.call("attribute", "out", "--plugin-path", FIXTURES / "faulty")
 
     def test_presets_of_the_board_tell_others_methods_no_truth(self):
         board = "--preset", "leaderboard"

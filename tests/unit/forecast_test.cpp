@@ -86,6 +86,7 @@ TEST(Remaining, OfAScheduleIsThatOfTheCellsNotGivenOut) {
   EXPECT_NEAR(schedule.left_s(), expected(played, 0) - usual_seconds(*first), 1e-9);
   schedule.learn(*first, 3 * usual_seconds(*first));
   EXPECT_NEAR(schedule.left_s(), 3 * (expected(played, 0) - usual_seconds(*first)), 1e-6);
+  EXPECT_NEAR(Schedule(cells, std::nullopt, schedule.costs()).left_s(), 3 * expected(played, 0), 1e-6);
 }
 
 TEST(UsualSeconds, GrowWithWhatIsLearntAndPlayed) {
@@ -141,6 +142,7 @@ TEST(Forecasts, CountByRow) {
   EXPECT_NEAR(all.wall_s, seconds, 1e-6) << "one worker";
   EXPECT_NEAR(rows["lga"].seconds / 7, 2.3, .5) << "as the five took";
   EXPECT_EQ(all.text(1), "75 cells to compute, 5 already computed: about 6 min with 1 worker");
+  EXPECT_EQ(all.text(1, "finding causes"), "finding causes: 75 cells, about 6 min with 1 worker");
   EXPECT_GT(all.run_bytes, 75 * 28e3);
 }
 

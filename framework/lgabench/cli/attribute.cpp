@@ -3,22 +3,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <set>
 
+#include <lgabench/cli/causes.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
-#include <lgabench/cli/recorded_run.hpp>
 #include <lgabench/cli/verbs.hpp>
-#include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/harness/recompute.hpp>
 #include <lgabench/host/python_method.hpp>
-#include <lgabench/record/cell_status.hpp>
-#include <lgabench/record/layout.hpp>
-#include <lgabench/report/agreement.hpp>
-#include <lgabench/report/results.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -32,60 +25,26 @@ struct AttributeArguments {
   std::string python = "python3";
 };
 
-// Whether the cell has failures whose causes could be known, and are not.
-bool lacks_causes(const Recorded& recorded) {
-  if (recorded.cell.method.is_reference()) return false;
-  const report::CellResult result = report::read_cell(recorded.directory);
-  bool failed = false;
-  for (const auto& [arm, episodes] : result.episodes)
-    for (const Episode& episode : episodes) {
-      if (!episode.attribution.empty()) return false;
-      failed |= !episode.success();
-    }
-  return failed && std::all_of(result.commands.begin(), result.commands.end(),
-                               [](const report::CommandResult& command) { return !command.quality.empty(); });
-}
-
-std::vector<Recorded> without_causes(const AttributeArguments& a, const RunRecord& record) {
+// Of the rows that are wanted. @throws InputError for a run that is not all played: what is told, is told after that.
+std::vector<Recorded> wanted_cells(const AttributeArguments& a, const RunRecord& record) {
   const Inventory inventory = take_stock(a.run, record);
   if (!inventory.edited.empty()) throw InputError(inventory.edited.front());
+  if (inventory.not_played != 0)
+    throw InputError(
+        fmt::format("{}: {} of its cells have not been played, expected a finished run: methods are told "
+                    "the truth after the last cell",
+                    a.run.string(), inventory.not_played));
   std::set<std::string> rows;
   std::vector<Recorded> chosen;
   for (const Recorded& recorded : inventory.cells) {
     const std::string& row = recorded.cell.method.name;
     rows.insert(row);
-    const bool wanted = a.rows.empty() || std::find(a.rows.begin(), a.rows.end(), row) != a.rows.end();
-    if (wanted && lacks_causes(recorded)) chosen.push_back(recorded);
+    if (a.rows.empty() || std::find(a.rows.begin(), a.rows.end(), row) != a.rows.end()) chosen.push_back(recorded);
   }
   for (const std::string& row : a.rows)
     if (rows.count(row) == 0)
       throw InputError(fmt::format("{}: no row {}, the run has: {}", a.run.string(), row, fmt::join(rows, ", ")));
-  return chosen;
-}
-
-// Row -> why its causes cannot be told: a cell that is another one now.
-std::map<std::string, std::string> rows_that_differ(const std::vector<Recorded>& cells, const Recomputed& again) {
-  std::map<std::string, std::string> why;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Recorded& recorded = cells[i];
-    const fs::path& now = again.cells[i];
-    const std::string title = recorded.cell.title();
-    if (!has_status(now))
-      why.emplace(recorded.cell.method.name, title + ": not computed");
-    else if (const CellStatus status = read_cell_status(now); status.failed)
-      why.emplace(recorded.cell.method.name, fmt::format("{} fails now: {}", title, status.reason));
-    else if (report::compare_cells(recorded.directory, now, false).agreement != report::Agreement::identical)
-      why.emplace(recorded.cell.method.name, title + ": not the recorded actions");
-  }
-  return why;
-}
-
-void take_causes(const fs::path& cell, const fs::path& from) {
-  const std::string episodes = read_file(from / cell_file::episodes, Links::refused);
-  write_file(cell / cell_file::episodes, episodes);
-  CellStatus status = read_cell_status(cell);
-  status.files[cell_file::episodes] = sha256(episodes);
-  write_cell_status(cell, status);
+  return without_causes(chosen);
 }
 
 int attribute(AttributeArguments a) {
@@ -95,26 +54,19 @@ int attribute(AttributeArguments a) {
   if (fs::exists(fs::symlink_status(a.out))) throw InputError(a.out.string() + ": exists already");
   const RunRecord record = read_run_record(a.run);
   expect_same_version(a.run, record, "attribute");
-  const std::vector<Recorded> cells = without_causes(a, record);
+  const std::vector<Recorded> cells = wanted_cells(a, record);
   if (cells.empty()) throw InputError(a.run.string() + ": every failure that can be attributed is");
-  std::vector<Cell> again;
-  for (const Recorded& recorded : cells) again.push_back(recorded.cell);
-  RunPlan plan = plan_again(a.run, record, std::move(again), a.jobs, a.timeout_s);
+  RunPlan plan = plan_again(a.run, record, {cells.front().cell}, a.jobs, a.timeout_s);
   plan.command = "lgabench attribute";
   Catalogue catalogue = plugins_at(a.plugin_path, a.python);
   for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
-  const std::optional<Recomputed> recomputed = recompute(plan, catalogue);
-  if (!recomputed) return interrupted;
-
-  const std::map<std::string, std::string> differing = rows_that_differ(cells, *recomputed);
-  for (const auto& [row, why] : differing) to_stderr("{}: left out: {}\n", row, one_line(why));
+  const std::optional<Causes> causes = find_causes(cells, plan, catalogue);
+  if (!causes) return interrupted;
   fs::copy(a.run, a.out, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    if (differing.count(cells[i].cell.method.name) == 0)
-      take_causes(a.out / "cells" / cells[i].directory.filename(), recomputed->cells[i]);
+  keep_causes(*causes, RunDirectory(a.out, record, Existing::same));
   print_report(a.out, false);
   to_stderr("written to {}\n", a.out.string());
-  return differing.empty() ? ok : regression;
+  return causes->left_out.empty() ? ok : regression;
 }
 
 }  // namespace

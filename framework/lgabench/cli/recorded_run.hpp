@@ -1,4 +1,4 @@
-// A run that is there, and its cells computed again: for `verify` and `attribute`.
+// A run that is there, and its cells computed again: for `verify`, `attribute` and, at its end, `run`.
 #pragma once
 #include <string>
 #include <vector>

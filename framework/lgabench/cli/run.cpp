@@ -1,10 +1,12 @@
 // lgabench run: a suite, or a part of it, from cells to the table.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
 #include <set>
 
+#include <lgabench/cli/causes.hpp>
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/run_plan.hpp>
 #include <lgabench/core/shell.hpp>
@@ -27,7 +29,7 @@ std::string resuming_command(const RunArguments& a, const fs::path& out) {
 }
 
 // What --dry-run says.
-int print_forecast(const RunPlan& plan, const Forecast& all) {
+int print_forecast(const RunPlan& plan, const Catalogue& catalogue, const Forecast& all) {
   to_stdout("{}: {} cells, {} already computed, {} to compute\n", plan.out.string(), all.cells, all.there,
             all.cells - all.there);
   if (all.cells < plan.cells.size())
@@ -40,6 +42,11 @@ int print_forecast(const RunPlan& plan, const Forecast& all) {
               row.based_on.empty() ? "all there" : row.based_on);
   if (all.questions) to_stdout("\nbefore the cells: {}\n", all.questions->text());
   to_stdout("\nabout {} with {} worker{}\n", duration_text(all.wall_s), plan.pool.jobs, plan.pool.jobs == 1 ? "" : "s");
+  std::set<std::string> others;
+  for (const Cell& cell : plan.cells)
+    if (is_strangers(cell, catalogue)) others.insert(cell.method.name);
+  if (!others.empty() && plan.shard.count == 1 && plan.strangers == Strangers::told_afterwards)
+    to_stdout("then at most as long again for cells of {}, to find the causes of failures\n", fmt::join(others, ", "));
   to_stdout("disk: {} in {}, and at most {} of demonstrations in {}\n", size_text(all.run_bytes), plan.out.string(),
             size_text(all.cache_bytes), plan.cache.string());
   return ok;
@@ -62,11 +69,46 @@ Words commands_of(const RunPlan& plan) {
   return {commands.begin(), commands.end()};
 }
 
+// Cells of the shard that a method of others played, with failures whose causes are not known.
+std::vector<Recorded> without_causes(const RunPlan& plan, const Catalogue& catalogue) {
+  std::vector<Recorded> cells;
+  for (const Cell* cell : cells_of(plan.cells, plan.shard))
+    if (const fs::path directory = plan.out / "cells" / key(*cell);
+        is_strangers(*cell, catalogue) && has_status(directory))
+      cells.push_back({directory, *cell, {}});
+  return without_causes(cells);
+}
+
+// Finds the causes of failures of others' methods, which takes telling them the truth: after the run's last cell, as a
+// cell that is told can tell those that are still being scored. False where it was interrupted.
+bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const RunOutcome& outcome) {
+  if (plan.strangers != Strangers::told_afterwards) return true;
+  const std::vector<Recorded> cells = without_causes(plan, catalogue);
+  if (cells.empty()) return true;
+  const bool is_part = plan.shard.count > 1;
+  if (is_part || !outcome.failed.empty()) {
+    to_stderr("the causes of failures of {} are found after the run's last cell: {}\n", one_line(rows_of(cells)),
+              is_part ? "once the parts are merged, by lgabench attribute MERGED"
+                      : "once none fails, or by lgabench attribute " + shell_line({plan.out.string()}));
+    return true;
+  }
+  const RunRecord record = read_run_record(plan.out);
+  const RunDirectory directory(plan.out, record, Existing::same);
+  RunPlan again = plan_again(plan.out, record, {cells.front().cell}, plan.pool.jobs, plan.pool.timeout_s);
+  again.command = plan.command;
+  again.pool = plan.pool;
+  again.cache = plan.cache;
+  again.confined = plan.confined;
+  const std::optional<Causes> causes = find_causes(cells, again, catalogue);
+  if (causes) keep_causes(*causes, directory);
+  return causes.has_value();
+}
+
 int run(const RunArguments& a) {
   const auto [catalogue, plan] = plan_run(a);
   if (const std::string missing = missing_encoder(commands_of(plan)); !missing.empty())
     to_stderr("note: {}\n", missing);
-  if (a.dry_run) return print_forecast(plan, forecast(plan, catalogue));
+  if (a.dry_run) return print_forecast(plan, catalogue, forecast(plan, catalogue));
   if (!a.debug.empty()) return debug_cell(plan, catalogue, a.debug);
   if (a.unconfined) to_stderr("--unconfined: methods run as you, with your files\n");
   const RunOutcome outcome = run_suite(plan, catalogue);
@@ -74,7 +116,16 @@ int run(const RunArguments& a) {
     to_stderr("interrupted; what was finished is kept. To resume:\n  {}\n", resuming_command(a, plan.out));
     return interrupted;
   }
-  std::string no_report;
+  std::string no_causes, no_report;
+  try {
+    if (!find_others_causes(plan, catalogue, outcome)) {
+      to_stderr("interrupted; all cells are scored, some causes of failures are not found. To find them:\n  {}\n",
+                resuming_command(a, plan.out));
+      return interrupted;
+    }
+  } catch (const std::exception& e) {  // a full disk, or replies that were not kept: the cells are there all the same
+    no_causes = e.what();
+  }
   try {
     if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
   } catch (const std::exception& e) {  // a full disk, or a damaged run: the counts are told all the same
@@ -83,9 +134,10 @@ int run(const RunArguments& a) {
   print_counts(outcome, plan);
   if (!outcome.failed.empty())
     to_stderr("To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
+  if (!no_causes.empty()) to_stderr("no causes of failures: {}\n", no_causes);
   if (!no_report.empty()) to_stderr("no report: {}\n", no_report);
   if (outcome.plugin_refused) return plugin_refused;
-  if (!no_report.empty() && outcome.failed.empty()) return usage;
+  if (!(no_causes + no_report).empty() && outcome.failed.empty()) return usage;
   return outcome.failed.empty() ? ok : cells_failed;
 }
 

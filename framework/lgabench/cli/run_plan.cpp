@@ -237,7 +237,8 @@ PlannedRun plan_run(RunArguments a) {
   plan.confined = !a.unconfined;
   plan.keeps_policies = a.keep_policy;
   // A preset with a scene seed of its own is one of the board's.
-  plan.attributes_others = a.preset.empty() || !suite.presets.at(a.preset).contains("scene_seed");
+  const bool is_boards = !a.preset.empty() && suite.presets.at(a.preset).contains("scene_seed");
+  plan.strangers = is_boards ? Strangers::told_nothing : Strangers::told_afterwards;
   return planned;
 }
 

@@ -207,7 +207,6 @@ int verify(const VerifyArguments& a) {
     for (std::size_t i = 0; i < cells.size(); ++i) present.push_back(with_present_data(cells[i], excuses[i]));
     RunPlan plan = plan_again(a.run, record, std::move(present), a.jobs, a.timeout_s);
     plan.command = "lgabench verify";
-    plan.attributes_others = false;
     Catalogue catalogue = plugins_at(a.plugin_path, a.python);
     for (const std::string& method : a.methods) with_python_method(method, a.python, catalogue);
     const std::optional<Recomputed> recomputed = recompute(plan, catalogue);

@@ -31,9 +31,11 @@ std::string size_text(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-std::string Forecast::text(int jobs) const {
-  return fmt::format("{} cell{} to compute, {} already computed: about {} with {} worker{}", cells - there,
-                     cells - there == 1 ? "" : "s", there, duration_text(wall_s), jobs, jobs == 1 ? "" : "s");
+std::string Forecast::text(int jobs, const std::string& purpose) const {
+  const std::string count = fmt::format("{} cell{}", cells - there, cells - there == 1 ? "" : "s");
+  const std::string what = purpose.empty() ? fmt::format("{} to compute, {} already computed:", count, there)
+                                           : fmt::format("{}: {},", purpose, count);
+  return fmt::format("{} about {} with {} worker{}", what, duration_text(wall_s), jobs, jobs == 1 ? "" : "s");
 }
 
 Forecast forecast(const std::vector<const Cell*>& complete, const std::vector<const Cell*>& missing, const Costs& costs,

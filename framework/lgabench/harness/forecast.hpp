@@ -24,8 +24,8 @@ struct Forecast {
   std::optional<Questions> questions;     // asked before the cells, where any are
   double run_bytes = 0, cache_bytes = 0;  // more on the disk; of the cache at most
 
-  /// "1365 cells to compute, 26 already computed: about 1 h 25 min with 2 workers"
-  std::string text(int jobs) const;
+  /// "1365 cells to compute, 26 already computed: about 1 h 25 min with 2 workers"; "PURPOSE: 1365 cells, about ..."
+  std::string text(int jobs, const std::string& purpose = "") const;
 };
 
 /// `costs` has learnt from the complete cells. With more jobs than cores, cores count.

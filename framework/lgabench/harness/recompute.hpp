@@ -1,4 +1,4 @@
-// Cells that were played before, computed again: for `verify` and for the leaderboard.
+// Cells that were played before, computed again: for `verify`, for causes of failures, and for the leaderboard.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -17,8 +17,8 @@ struct Recomputed {
   std::vector<std::filesystem::path> cells;  // directories, in the plan's order
 };
 
-/// Plays the plan's cells, on an empty cache; where the plan says that a run and a cache are has no influence. None
-/// where it was interrupted. @throws InputError and PluginError as run_suite().
+/// Plays the plan's cells, on its cache or, where it names none, on an empty one; where the plan says that a run is has
+/// no influence. None where it was interrupted. @throws InputError and PluginError as run_suite().
 std::optional<Recomputed> recompute(RunPlan plan, const Catalogue& catalogue);
 
 }  // namespace lgabench

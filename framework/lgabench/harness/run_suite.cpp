@@ -62,17 +62,9 @@ Json answers_json(const std::vector<AnswerFile>& files) {
   return answers;
 }
 
-// Told by its bytes: among the plugins that the installation came with.
-bool is_own(const PluginInfo& method, const Catalogue& catalogue) {
-  const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
-  return std::any_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
-    return one.sha256 == method.sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
-  });
-}
-
-// A method that is told nothing true in any cell, and knows of no order of the cells, has nothing to pass on.
+// Cells that others will compute again are played in another order each time: who passes anything on acts otherwise.
 std::optional<std::uint32_t> order_of(const RunPlan& plan) {
-  if (plan.attributes_others) return std::nullopt;
+  if (plan.strangers != Strangers::told_nothing) return std::nullopt;
   return std::random_device()();
 }
 
@@ -279,6 +271,15 @@ std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue)
   return sha256(all).substr(0, 8);
 }
 
+bool is_strangers(const Cell& cell, const Catalogue& catalogue) {
+  const PluginInfo* const method = cell.method.acts ? acting_plugin(cell, catalogue) : method_plugin(cell, catalogue);
+  if (!method) return false;
+  const fs::path shipped = fs::weakly_canonical(shipped_plugin_directory());
+  return std::none_of(catalogue.plugins.begin(), catalogue.plugins.end(), [&](const PluginInfo& one) {
+    return one.sha256 == method->sha256 && fs::weakly_canonical(one.file).parent_path() == shipped;
+  });
+}
+
 std::string TimeSpent::text(int jobs) const {
   double all = 0;
   for (const auto& phase : phase_s) all += phase.second;
@@ -321,9 +322,8 @@ CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& ce
   job.axes = axis_plugins(cell, catalogue);
   if (const PluginInfo* method = method_plugin(cell, catalogue)) {
     job.method = *method;
-    const PluginInfo* acts = acting_plugin(cell, catalogue);  // which alone is told the truth
-    if (acts) job.acts = *acts;
-    job.attributed = plan.attributes_others || is_own(acts ? *acts : *method, catalogue);
+    if (const PluginInfo* acts = acting_plugin(cell, catalogue)) job.acts = *acts;  // which alone is told the truth
+    job.attributed = plan.strangers == Strangers::told_in_cells || !is_strangers(cell, catalogue);
   }
   return job;
 }
@@ -342,15 +342,15 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   if (!plan.confined && !missing.empty()) directory.amend([](RunRecord& run) { run.confinement = unconfined_run; });
   RunOutcome outcome;
   outcome.reused = complete.size();
-  Schedule schedule(missing, order_of(plan));
+  Schedule schedule(missing, order_of(plan), plan.costs);
   for (const Cell* cell : complete) schedule.learn(*cell, recorded_seconds(directory.cell(key(*cell))));
 
   const Forecast expected = forecast(complete, missing, schedule.costs(), plan.pool.jobs);
   if (!missing.empty()) {
     constexpr double long_s = 600;
     const bool is_long = expected.wall_s > long_s;
-    put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs)) +
-                    (is_long ? "; --dry-run shows of what\n" : "\n"));
+    put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs, plan.purpose)) +
+                    (is_long && plan.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
   }
 
   if (asks && !ask_for(missing, plan, catalogue)) {

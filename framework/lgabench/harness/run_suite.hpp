@@ -15,6 +15,13 @@
 
 namespace lgabench {
 
+/// Whether a method that did not come with the installation is told the truth, as finding causes of failures takes.
+enum class Strangers {
+  told_nothing,     // on the leaderboard, and where cells are checked; cells are then played in an order that is drawn
+  told_afterwards,  // not by run_suite(), but by who calls it, once the run's last cell is scored (cli/causes.hpp)
+  told_in_cells     // at the end of each
+};
+
 struct RunPlan {
   std::vector<Cell> cells;    // of the whole run
   Shard shard;                // the part of them that is played here
@@ -31,8 +38,9 @@ struct RunPlan {
   PoolOptions pool;
   bool confined = true;         // methods' processes, see host/confine.hpp
   bool keeps_policies = false;  // of cells that are computed
-  bool attributes_others =
-      true;  // failures of methods that are not the installation's own, too: they are told the truth
+  Strangers strangers = Strangers::told_nothing;
+  std::string purpose{};  // what is computed, where it is no run: begins the forecast's line
+  Costs costs{};          // learnt beforehand
 };
 
 struct FailedCell {
@@ -61,6 +69,9 @@ struct RunOutcome {
 /// The first 8 digits of a hash of the cells and of what computes them: names a run's default directory, so that
 /// another configuration or build never meets its results.
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue);
+
+/// Whether what acts in the cell is a method that did not come with the installation, told by its bytes.
+bool is_strangers(const Cell& cell, const Catalogue& catalogue);
 
 /// What lgabench-worker is told of a cell. `answers` holds the plan's (keep_answers), `scratch` is empty.
 CellJob cell_job(const RunPlan& plan, const Catalogue& catalogue, const Cell& cell,

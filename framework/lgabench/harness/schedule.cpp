@@ -33,8 +33,8 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard) {
   return dealt;
 }
 
-Schedule::Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by)
-    : drawn_(drawn_by.has_value()) {
+Schedule::Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by, Costs learnt)
+    : drawn_(drawn_by.has_value()), costs_(std::move(learnt)) {
   std::map<std::string, std::size_t> known;
   std::vector<int> places(cells.size());
   std::iota(places.begin(), places.end(), 0);

@@ -27,7 +27,8 @@ std::vector<const Cell*> cells_of(const std::vector<Cell>& cells, Shard shard);
 class Schedule {
  public:
   /// The cells must outlive it. With a number they are given out in the order that it draws, whatever they take.
-  explicit Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by = std::nullopt);
+  explicit Schedule(const std::vector<const Cell*>& cells, std::optional<std::uint32_t> drawn_by = std::nullopt,
+                    Costs learnt = {});
 
   /// What a cell of this run took, played now or earlier.
   void learn(const Cell& cell, double seconds) { costs_.learn(cell, seconds); }

@@ -60,7 +60,6 @@ RunPlan plan_of(const fs::path& board, const Entry& entry, std::vector<Cell> cel
   plan.command = "lgabench leaderboard verify";
   plan.program = options.program;
   plan.pool = options.pool;
-  plan.attributes_others = false;
   const fs::path kept = answers_file(entry.identity);
   if (std::holds_alternative<LiveAnswers>(entry.identity.answers))
     plan.live.emplace(LiveModel{board / kept, false, -1});

@@ -53,7 +53,8 @@ class UnsoundMethod : public fixture::FixtureMethod<fixture::StayPolicy> {
     Selection selection;
     if (how == "outside") selection.target = {{"unicorn"}, space.textures};
     if (how == "unshowable") selection.target = {{"pallet"}, space.textures};
-    if (how == "outside") selection.provenance = Provenance::rule;
+    if (how == "clock") selection.target = {{space.object_types.back()}, space.textures};
+    if (how == "outside" || how == "clock") selection.provenance = Provenance::rule;
     return selection;
   }
   std::unique_ptr<Policy> learn(const std::vector<Demonstration>& demonstrations, Services& services) override {
