@@ -92,11 +92,11 @@ void add_attribute(CLI::App& app, int& exit) {
   arrange(*verb, "How cells are computed",
           {{"--jobs", "N"}, {"--timeout", "SECONDS"}, {"--methods", "FILE.py:CLASS,..."}, {"--python", "PROGRAM"}});
   verb->footer(
-      "Example: lgabench attribute runs/q1-leaderboard --rows my_method\nIn the leaderboard's presets, a method that "
-      "did not come with this installation is never told the truth, so its failures are not attributed. This command "
-      "computes the cells again, in fresh processes that learn the truth at the end, and writes a copy of the run with "
-      "the causes; it says first how long that will take. A row whose actions are not the recorded ones, bit for bit, "
-      "is left out: exit 1. `leaderboard add` takes the original run.");
+      "Example: lgabench attribute runs/q1-leaderboard --rows my_method\nIn the leaderboard's presets and in parts of "
+      "a run, a method that did not come with this installation is not told the truth, so its failures are not "
+      "attributed. This command computes the cells again, in fresh processes that learn the truth at the end, and "
+      "writes a copy of the run with the causes; it says first how long that will take. A row whose actions are not "
+      "the recorded ones, bit for bit, is left out: exit 1. `leaderboard add` takes the original run.");
   verb->callback([a, &exit] { exit = attribute(*a); });
 }
 
