@@ -70,11 +70,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }();
   const std::string_view text = fuzz::text_of(data, size);
   std::string lines;
-  Vouched all;
+  Vouched all{{}, {{entry.hash(), entry.rest_hash()}}};
   for (const std::string_view line : fuzz::split(text, "\n")) {
     Json json = json_or_null(line);
     put_right(json, entry);
-    if (json.is_object()) all[entry.hash()].insert(line_hash(json));
+    if (json.is_object()) all.lines[entry.hash()].insert(line_hash(json));
     lines += (json.is_object() ? canonical(json) : std::string(line)) + (line.empty() ? "" : "\n");
   }
   fuzz::write(board / entry.place() / "verifications.jsonl", lines);

@@ -9,6 +9,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -33,15 +34,19 @@ class Forgeries(Case):
         for entry in BOARD.glob("entries/*/*/q2-leaderboard"):
             shutil.copytree(entry, self.board / entry.relative_to(BOARD))
         hashes = {entry_hash(entry) for entry in self.board.glob("entries/*/*/*")}
-        if (BOARD / "vouched.json").exists():
-            vouched = json.loads((BOARD / "vouched.json").read_text())
-            (self.board / "vouched.json").write_text(json.dumps({key: vouched[key] for key in hashes & vouched.keys()}, indent=1, sort_keys=True) + "\n")
+        for name in "vouched.json", "vouched_entries.json":
+            if (BOARD / name).exists():
+                vouched = json.loads((BOARD / name).read_text())
+                (self.board / name).write_text(json.dumps({key: vouched[key] for key in hashes & vouched.keys()}, indent=1, sort_keys=True) + "\n")
         self.leaderboard("build")
-        for words in (["init", "-q"], ["add", "board"], ["commit", "-qm", "before"]):
-            subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b.c", *words], cwd=self.dir, check=True)
+        for words in (["init", "-q", "-b", "main"], ["add", "board"], ["commit", "-qm", "before"]):
+            self.git(*words)
         self.lga = self.entry("lga", network="text", policy="regression", picture="none")
         self.rival = self.entry("lga_s", network="plain")
         self.before = self.rows()
+
+    def git(self, *words, cwd=None):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b.c", *words], cwd=cwd or self.dir, check=True, capture_output=True)
 
     def leaderboard(self, *words, expect=0):
         return self.call("leaderboard", *words, "--board", "board", expect=expect)
@@ -162,6 +167,15 @@ class Forgeries(Case):
         self.assertIn("is vouched for already", self.leaderboard("vouch", self.rival.parent.name, "1", expect=2).stderr)
         self.assertEqual(self.rows()[self.rival.parent.name][3], "replayed; claimed by Prof. B. Independent: reproduced")
 
+    def test_what_is_vouched_for_is_said(self):
+        self.add_line(self.rival, by="Prof. B.\n", cells=12)
+        self.add_line(self.rival, nonce="8" * 32, cells=12, passed=False, flips=999, only_recorded=999)
+        self.leaderboard("withdraw", self.rival.parent.name, "--reason", "its replay differed")
+        for line, says in (("2", r"replay by Prof. B.\\n on 2026-12-01: agrees, 0 of 12 cells bit-identical, 0 of "),
+                           ("3", "replay by Prof. B. Independent on 2026-12-01: DIFFERS, 0 of 12 cells bit-identical, 999 of "),
+                           ("withdrawn", "withdrawal on ")):
+            self.assertRegex(self.leaderboard("vouch", self.rival.parent.name, line).stdout, f"^vouched for {says}.*: [0-9a-f]{{64}}\n$")
+
     def test_what_is_vouched_for_counts(self):
         self.add_line(self.rival, by="Anonymous", cells=12, passed=False)
         self.leaderboard("vouch", self.rival.parent.name, "2")
@@ -211,9 +225,137 @@ class Forgeries(Case):
         (self.board / "more.html").unlink()
         self.assertIn("0 problems", against(0))
 
+    def request(self):
+        """What somebody sends, as docs/leaderboard.md has it: a worktree beside the one whose build checks it."""
+        self.git("worktree", "add", "-q", "--detach", "request")
+        return self.dir / "request/board"
+
+    def check_request(self, expect, against="main", cwd=None, **more):
+        done = subprocess.run(command_line("leaderboard", "check", "--board", self.dir / "request/board", "--against", against),
+                              capture_output=True, text=True, env={**self.environment, **more}, cwd=cwd or self.dir)
+        self.assertEqual(done.returncode, expect, done.stdout + done.stderr)
+        return done.stdout + done.stderr
+
+    def win(self, board):
+        """Every episode of the rival succeeds, and what was vouched for is made to fit."""
+        place = self.rival.relative_to(self.board)
+        before, cells = entry_hash(board / place), board / place / "cells.jsonl"
+        cells.write_text("".join(canonical({**line, "outcomes": {arm: "." * len(letters) for arm, letters in line["outcomes"].items()}})
+                                 for line in map(json.loads, cells.read_text().splitlines())))
+        (board / place / "verifications.jsonl").unlink()
+        self.add_line(board / place, cells=12)
+        line = (board / place / "verifications.jsonl").read_text()
+        for name, value in ("vouched.json", [sha256(line.strip())]), ("vouched_entries.json", None):
+            if (board / name).exists():
+                vouched = json.loads((board / name).read_text())
+                vouched[entry_hash(board / place)] = value or vouched[before]
+                del vouched[before]
+                (board / name).write_text(json.dumps(vouched, indent=1, sort_keys=True) + "\n")
+        self.call("leaderboard", "build", "--board", board)
+
+    def test_a_board_that_is_a_repository_runs_nothing(self):
+        """git takes a directory with HEAD, objects and refs for a repository, and its config names commands."""
+        board = self.request()
+        for forged in False, True:
+            with self.subTest(forged=forged):
+                if forged:
+                    self.win(board)
+                git = ("git", "--git-dir", board, "--work-tree", board, "-c", "user.name=a", "-c", "user.email=a@b.c")
+                if not forged:
+                    subprocess.run(["git", "init", "-q", "--bare", "-b", "main", board], check=True)
+                (board / "config").write_text("[core]\n\trepositoryformatversion = 0\n\tbare = false\n\tworktree = .\n")
+                subprocess.run([*git, "add", "-A", "."], cwd=board, check=True)
+                blob = subprocess.run([*git, "rev-parse", ":README.md"], cwd=board, check=True, capture_output=True, text=True).stdout.strip()
+                for name in "index", "COMMIT_EDITMSG", "objects/x", "refs/x", "logs/x", "branches/x":  # git adds none of them
+                    subprocess.run([*git, "update-index", "--add", "--cacheinfo", f"100644,{blob},{name}"], cwd=board, check=True)
+                subprocess.run([*git, "commit", "-qm", "mine"], cwd=board, check=True)
+                with open(board / "config", "a") as config:
+                    config.write(f'\tfsmonitor = "touch {self.dir}/PWNED; false"\n')
+                for where in self.dir, board, self.dir / "request":
+                    said = self.check_request(1, cwd=where)
+                    self.assertFalse((self.dir / "PWNED").exists())
+                    for name in "HEAD", "config", "index", "objects", "refs":
+                        self.assertIn(f"\n{name}: no file of a board", said)
+                    self.assertEqual("an outcome or a cell changed since main" in said, forged)
+        for name in "HEAD", "config", "index", "objects", "refs", "description", "hooks", "info", "branches", "logs", "COMMIT_EDITMSG":
+            shutil.rmtree(board / name) if (board / name).is_dir() else (board / name).unlink(missing_ok=True)
+        self.assertIn("cells.jsonl: an outcome or a cell changed since main", self.check_request(1))
+        (board / ".git").write_text("gitdir: ../../.git\n")
+        self.assertIn("request/board: a repository of its own; a board is a directory of one", self.check_request(2))
+
+    def test_a_revision_is_that_of_the_repository_in_which_check_is_called(self):
+        """Not of the board's, nor of one that variables name; a branch is none of a fork's tags."""
+        board = self.request()
+        self.assertIn("0 problems", self.check_request(0))
+        self.win(board)
+        for words in ["add", "board"], ["commit", "-qm", "forged"], ["checkout", "-q", "-b", "theirs"], ["tag", "main"]:
+            self.git(*words, cwd=board.parent)
+        self.git("clone", "-q", "-b", "theirs", ".", "fork")
+        self.git("branch", "-qf", "main", cwd=self.dir / "fork")
+        said = "cells.jsonl: an outcome or a cell changed since main"
+        self.assertIn(said, self.check_request(1))
+        self.git("tag", "-d", "main")
+        self.assertIn(said, self.check_request(1, GIT_DIR=str(self.dir / "fork/.git")))
+        shutil.rmtree(board.parent)
+        (self.dir / "fork").rename(board.parent)
+        self.assertIn(said, self.check_request(1))
+        shutil.rmtree(board.parent / ".git")
+        outside = pathlib.Path(tempfile.mkdtemp(prefix="lgabench-test-"))
+        self.addCleanup(shutil.rmtree, outside)
+        self.assertIn("--against main: call it in the checkout that has this revision", self.check_request(2, cwd=outside))
+        board.parent.rename(outside / "request")
+        (board.parent).symlink_to(outside / "request")
+        self.assertIn("request: a symbolic link; a board is in a working tree of git", self.check_request(2))
+
+    def test_what_a_board_does_not_have(self):
+        """A web server, git or a browser may obey it."""
+        shutil.copytree(self.board, self.dir / "before")
+        for name, says in ((".htaccess", ".htaccess: no file of a board"), (".gitattributes", ".gitattributes: no file of a board"),
+                           (".well-known/x.html", ".well-known: no file of a board"), ("answers/.htaccess", "answers/.htaccess: no entry is based on it"),
+                           ("vouched.json.1234abcd.tmp", "vouched.json.1234abcd.tmp: no file of a board"), ("q9.html", "q9.html: no file of a board"),
+                           ("entries/.gitattributes", "entries/.gitattributes: expected only directories"), (".adding/x.html", ".adding/x.html: no file of a board"),
+                           (".adding/entries/a/b/.htaccess", ".adding/entries/a/b/.htaccess: no file of a board"),
+                           (".adding/README.md", ".adding/README.md: no file of a board"),
+                           ("entries/lga/.htaccess", "entries/lga/.htaccess: expected only directories"), ("entries/lga/a/HEAD", "a/HEAD: expected only directories"),
+                           (f"{self.rival.relative_to(self.board)}/.git/config", ".git: expected only entry.json, cells.jsonl and verifications.jsonl")):
+            for words in [], ["--against", "HEAD"]:
+                with self.subTest(name, words=words):
+                    file = self.board / name
+                    file.parent.mkdir(parents=True, exist_ok=True)
+                    file.write_text("<script>alert(1)</script>")
+                    self.assertIn(says, self.leaderboard("check", *words, expect=1).stderr)
+                    shutil.rmtree(self.board)
+                    shutil.copytree(self.dir / "before", self.board)
+        (self.rival / "cells.jsonl").unlink()
+        (self.rival / "cells.jsonl").symlink_to(self.dir / "before" / self.rival.relative_to(self.board) / "cells.jsonl")
+        self.assertIn("cells.jsonl: a symbolic link; a run holds none", self.leaderboard("check", "--against", "HEAD", expect=1).stderr)
+        shutil.rmtree(self.board)
+        shutil.copytree(self.dir / "before", self.board)
+        (self.board / ".adding").symlink_to("/")
+        self.assertIn(".adding: a symbolic link", self.leaderboard("check", expect=1).stderr)
+        (self.board / "answers").symlink_to(self.dir / "request")
+        (self.dir / "request").mkdir()
+        (self.dir / "request/mine").write_text("")
+        self.assertIn("answers: a symbolic link", self.leaderboard("check", expect=1).stderr)
+        self.leaderboard("build")
+        self.assertTrue((self.dir / "request/mine").exists())
+
+    def test_a_score_that_nobody_computed(self):
+        score = json.loads((next(BOARD.glob("entries/lga/*/words-abstraction/entry.json"))).read_text())["score"]
+        file = self.rival / "entry.json"
+        entry = json.loads(file.read_text())
+        self.assertNotIn("score", entry)
+        file.write_text(json.dumps({**entry, "score": {**score, "wrong": {}}}, sort_keys=True, indent=1, ensure_ascii=False) + "\n")
+        said = self.check(expect=1)
+        self.assertIn("entry.json: /score appeared since HEAD", said)
+        self.assertIn(f"{self.rival.relative_to(self.board)}: entry.json is not the one that vouched_entries.json has the hash of", said)
+        self.assertEqual(self.rows()[self.rival.parent.name][2], "recomputed; not yet replayed; claimed by The lgabench authors: replayed")
+        (self.board / "vouched_entries.json").unlink()
+        self.assertIn("q2-leaderboard: vouched_entries.json has no hash of its entry.json", self.leaderboard("check", expect=1).stderr)
+
     def test_a_revision_that_is_not_there(self):
         said = self.leaderboard("check", "--against", "origin/mian", expect=2).stderr
-        self.assertIn("--against origin/mian: expected a revision of git that board has, and its history", said)
+        self.assertIn(f"--against origin/mian: expected a revision of git that {self.dir} has, and its history", said)
 
     def test_a_preset_or_an_engine_that_nobody_has(self):
         def few(entry):

@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import tarfile
 import time
@@ -110,7 +111,7 @@ class Submissions(Board):
         self.replay()
         self.assertIn("5 entries, 0 problems", self.leaderboard("check").stdout)
         self.assertEqual(sorted(file.name for file in board.glob("*.*")),
-                         ["README.md", "index.html", "leaderboard.csv", "tiny.html", "vouched.json"])
+                         ["README.md", "index.html", "leaderboard.csv", "tiny.html", "vouched.json", "vouched_entries.json"])
         self.assertRegex((board / "README.md").read_text(), r"\| 1 \| fixture_constant, demonstration=[01] \|")
         entry = json.loads(next(board.glob("entries/fixture_constant/*/tiny-board/entry.json")).read_text())
         self.assertEqual(entry["about"], META)
@@ -178,6 +179,48 @@ class Submissions(Board):
         entry = json.loads(next((self.dir / "board").glob("entries/oracle/*/*/entry.json")).read_text())
         self.assertEqual(len(entry["evidence"]), 2)
 
+    def test_an_add_that_was_killed_stops_nothing(self):
+        """At each write, fsync and rename: of new entries, one with a file of answers, and of evidence for some that are there."""
+        self.prepare()
+        (self.dir / "mine.json").write_text(json.dumps({"model": "me", "space": "tabletop", "answers": [
+            {"scenario": name, "command": name, "target": {"object_types": ["heart"], "textures": "ALL"}} for name in ("heart", "letter")]}))
+        self.play("run", "--answers", "mine.json", "--no-reference")
+        count, board = self.dir / "count", self.dir / "board"
+        more = {"LD_PRELOAD": str(BUILD / "tests/full_disk.so"), "FULL_DISK_UNDER": str(board), "FULL_DISK_COUNT": str(count), "FULL_DISK_KILLS": "1"}
+
+        def add_killed_at(number):
+            count.write_bytes(struct.pack("i", 0))
+            done = subprocess.run(command_line("leaderboard", "add", "run", "--entry", "me.json", "--board", "board"), cwd=self.dir,
+                                  env={**self.environment, **more, "FULL_DISK_AT": str(number)}, capture_output=True, text=True)
+            self.assertEqual(done.returncode, -9 if number else 0, done.stderr)
+            return struct.unpack("i", count.read_bytes())[0]
+
+        def files():
+            return {file.relative_to(board): file.read_bytes() for file in board.rglob("*") if file.is_file()}
+
+        for evidence in False, True:
+            before = self.dir / f"before-{evidence}"
+            shutil.copytree(board, before) if evidence else before.mkdir()
+            if evidence:
+                self.change_run(started="2030-01-01T00:00:00Z")
+            calls = add_killed_at(0)
+            self.assertGreater(calls, 9)
+            self.leaderboard("build")
+            whole = files()
+            for number in range(1, calls + 1):
+                with self.subTest(number, evidence=evidence):
+                    shutil.rmtree(board)
+                    shutil.copytree(before, board)
+                    add_killed_at(number)
+                    said = self.leaderboard("check", expect=1 - evidence).stderr  # pages are not those of new entries
+                    self.assertEqual([line for line in said.splitlines() if line and "lgabench leaderboard build" not in line], [])
+                    self.leaderboard("build")
+                    self.leaderboard("check")
+                    self.add()
+                    self.leaderboard("build")
+                    self.assertIn("2 entries, 0 problems", self.leaderboard("check").stdout)
+                    self.assertEqual(files(), whole)
+
     def test_other_outcomes_of_one_identity_are_refused(self):
         self.take_run()
         self.add()
@@ -228,7 +271,7 @@ class Submissions(Board):
         self.assertRegex((root / "CITATION.cff").read_text(), "(?m)^cff-version: ")
         self.assertIn("5 entries, 0 problems", self.call("leaderboard", "check", "--board", root / "leaderboard").stdout)
         (self.dir / "board/elsewhere").symlink_to("/etc/passwd")
-        self.assertIn("a symbolic link", self.leaderboard("build", "--archive", "none.tar.gz", expect=2).stderr)
+        self.assertIn("elsewhere: no file of a board", self.leaderboard("build", "--archive", "none.tar.gz", expect=1).stderr)
         self.assertFalse((self.dir / "none.tar.gz").exists())
 
     def test_withdrawn_entries_keep_their_record(self):

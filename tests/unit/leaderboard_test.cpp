@@ -1,6 +1,8 @@
 // Entries of a leaderboard: what is written is read again, what was changed is found.
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include <cmath>
 #include <functional>
 
@@ -42,6 +44,34 @@ TEST(LeaderboardEntry, IsReadAsItWasWrittenAndIsAsItsSchemasSay) {
   for (const Json& line : documents(path / "cells.jsonl")) EXPECT_EQ(complaints("cells", line), Complaints());
   for (const Json& line : documents(path / "verifications.jsonl"))
     EXPECT_EQ(complaints("verifications", line), Complaints());
+  Json vouched = read_json(board.path / "vouched_entries.json");
+  EXPECT_EQ(complaints("vouched_entries", vouched), Complaints());
+  vouched[entry.hash()] = 1;
+  EXPECT_NE(complaints("vouched_entries", vouched), Complaints());
+}
+
+TEST(LeaderboardEntry, NoLineCountsOnceTheEntrySaysSomethingElse) {
+  const TemporaryDirectory board;
+  Entry entry = made_entry(small_setting(), "a", .5);
+  write_replayed(board.path, entry);
+  const auto is_replayed = [&] { return read_entries(board.path).front().was_replayed(); };
+  entry.evidence.push_back(entry.evidence.front());
+  entry.withdrawn = {{"when", "2026-01-01"}, {"reason", "a mistake"}};
+  write_entry(board.path, entry);
+  EXPECT_TRUE(is_replayed()) << "evidence and a claimed withdrawal may come";
+  const Json about = std::exchange(entry.about["by"], "somebody else");
+  write_entry(board.path, entry);
+  EXPECT_FALSE(is_replayed());
+  EXPECT_SAYS(message_of<InputError>([&] { vouch(board.path, entry.id(), "withdrawn"); }),
+              "entry.json is not the one that vouched_entries.json has the hash of");
+  entry.about["by"] = about;
+  write_entry(board.path, entry);
+  EXPECT_TRUE(is_replayed());
+  fs::remove(board.path / "vouched_entries.json");
+  EXPECT_FALSE(is_replayed());
+  vouch(board.path, entry.id(), "1");  // which was vouched for before there was the file
+  EXPECT_TRUE(is_replayed());
+  EXPECT_SAYS(message_of<InputError>([&] { vouch(board.path, entry.id(), "1"); }), "line 1 is vouched for already");
 }
 
 TEST(LeaderboardEntry, AVersionOrASceneSeedIsAnotherEntryAndABuildIsNot) {
@@ -109,7 +139,7 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
   EXPECT_SAYS(after([&](auto& path) { edit(path / "cells.jsonl", "\"lm_queries\":112.0", "\"lm_queries\":1e+300"); }),
               "/lm_queries: expected a number from 0 to 1e+15");
   EXPECT_SAYS(after([&](auto& path) { write_file(path / "cells.jsonl", std::string((16 << 20) + 1, ' ')); }),
-              "cells.jsonl: expected at most 16777216 bytes");
+              "cells.jsonl: cannot be read: 16777217 bytes or more, expected at most 16777216");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),

@@ -127,7 +127,18 @@ int withdraw(const LeaderboardArguments& a) {
 int vouch(const LeaderboardArguments& a) {
   if (a.what.empty() || a.line.empty())
     throw InputError("leaderboard vouch: expected ENTRY, and LINE: its number in verifications.jsonl, or withdrawn");
-  to_stdout("vouched for {}\n", leaderboard::vouch(a.board, a.what, a.line));
+  const Json line = leaderboard::vouch(a.board, a.what, a.line);
+  const std::string kind = line.value("kind", "withdrawal"), when = line.at("when");
+  std::string words;
+  if (kind == "withdrawal") {
+    words = fmt::format("withdrawal on {}: {}", when, line.at("reason").get<std::string>());
+  } else {
+    const leaderboard::Entry entry = leaderboard::read_entry(a.board, leaderboard::find_entry(a.board, a.what));
+    words = fmt::format("{} by {} on {}: {} {}", kind, line.at("by").get<std::string>(), when,
+                        line.at("passed").get<bool>() ? "agrees," : "DIFFERS,",
+                        kind == "fresh" ? fresh_words(entry, line) : replay_words(line));
+  }
+  to_stdout("vouched for {}: {}\n", one_line(words), leaderboard::line_hash(line));
   return ok;
 }
 
@@ -180,9 +191,11 @@ void add_leaderboard(CLI::App& app, int& exit) {
   verb->add_option("--methods", a->methods, "verify: methods in Python, as FILE.py:Class")->delimiter(',');
   verb->add_option("--python", a->python, "verify: the interpreter for methods in Python")->capture_default_str();
   add_plugin_path(*verb, a->plugin_path);
-  verb->add_option("--against", a->against, "build, check: a git revision; outcomes that it has must not have changed");
+  verb->add_option(
+      "--against", a->against,
+      "build, check: a revision of the repository that this is called in; outcomes that it has must not have changed");
   verb->add_flag("--maintainer", a->maintainer,
-                 "build, check: with --against, vouched.json, labels.json and tracks.json may differ");
+                 "build, check: with --against, files that are the maintainers' may differ");
   verb->add_option("--documents", a->documents,
                    "build, check: documents that contain tables of the board between markers")
       ->delimiter(',');

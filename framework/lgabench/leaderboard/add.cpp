@@ -282,6 +282,7 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
   if (rows.empty()) reasons.add("no cell has been played");
   const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
   std::vector<Entry> entries, known;
+  std::vector<std::string> there_already;  // of a run that was added in part, when `add` was killed
   for (const auto& item : rows) {
     const std::size_t before = reasons.lines().size();
     entries.push_back(entry_of(run, *installed, shipped, item.second, about, reasons));
@@ -290,27 +291,29 @@ Added add_run(const fs::path& board, const fs::path& directory, const Json& abou
     if (!fs::exists(board / entry.place())) continue;
     Entry there = read_entry(board, entry.place());
     const Json evidence = entry.evidence.front();
+    const bool is_there = std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end();
     if (const int differing = other_cells(there, entry))
       reasons.add(fmt::format("{}: this identity is on the board, with other outcomes in {} of {} cells",
                               entry.place().string(), differing, there.cells.size()));
     else if (!there.withdrawn.is_null())
       reasons.add(fmt::format("{}: this identity was withdrawn", entry.place().string()));
-    else if (std::find(there.evidence.begin(), there.evidence.end(), evidence) != there.evidence.end())
-      reasons.add(fmt::format("{}: this run is on the board already", entry.place().string()));
+    else if (is_there)
+      there_already.push_back(fmt::format("{}: this run is on the board already", entry.place().string()));
+    entries.pop_back();
+    if (is_there) continue;
     there.evidence.push_back(evidence);
     known.push_back(std::move(there));
-    entries.pop_back();
   }
   added.refused = reasons.lines();
+  if (added.refused.empty() && entries.empty() && known.empty()) added.refused = there_already;
   if (!added.refused.empty()) return added;
   for (const Entry& entry : entries) {
-    keep_answers(answers_of(directory, entry), board);
-    write_entry(board, entry);
+    write_entry(board, entry, answers_of(directory, entry));
     read_entry(board, entry.place());  // what is written is what every reader takes
     added.entries.push_back(entry.place().string());
   }
   for (const Entry& entry : known) {
-    write_file(board / entry.place() / "entry.json", entry_text(entry));
+    write_entry(board, entry);
     added.evidence.push_back(entry.place().string());
   }
   return added;

@@ -14,7 +14,7 @@ struct Added {
 };
 
 /// Adds the rows of a run: those named in `rows`, or all. `about`: what its authors say (docs/formats). Writes all of
-/// them or none.
+/// them or none; of those that a killed call would have written, the next one writes the rest.
 /// @throws InputError for a run that cannot be read, an `about` that is not as docs/formats says, and a row that the
 /// run does not have.
 Added add_run(const fs::path& board, const fs::path& run, const Json& about, const std::vector<std::string>& rows);

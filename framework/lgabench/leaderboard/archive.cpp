@@ -61,7 +61,6 @@ void write_archive(const fs::path& board, const fs::path& out) {
                                                             {"{{version}}", LGABENCH_VERSION}}));
   for (const char* file : {"CITATION.cff", "LICENSE"}) write_file(root / file, read_file(data / "archive" / file));
   copy_tree(data / "formats", root / "formats");
-  for (const fs::path& plain : {board, board / "answers"}) expect_plain_entries(plain);  // entries were read as such
   copy_tree(board, root / "leaderboard");
   pack(scratch.path, when, scratch.path / "packed");
   write_file(out, read_file(scratch.path / "packed"));

@@ -1,45 +1,26 @@
 #include <lgabench/leaderboard/check.hpp>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include <lgabench/abstraction/recorded.hpp>
 #include <lgabench/core/hash.hpp>
-#include <lgabench/core/process.hpp>
-#include <lgabench/core/scratch.hpp>
 #include <lgabench/leaderboard/pages.hpp>
 #include <lgabench/leaderboard/recompute.hpp>
+#include <lgabench/leaderboard/revision.hpp>
 
 namespace lgabench::leaderboard {
 namespace {
-
-// What git prints, in the board's directory; none where it fails.
-std::optional<std::string> git(const fs::path& board, std::vector<std::string> words) {
-  const Scratch scratch("git");
-  const fs::path out = scratch.path / "out";
-  const int file = ::open(out.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600),
-            null = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-  words.insert(words.begin(), {"git", "-C", board.string()});
-  const int status = wait_for(start_process({words, environment_with({"LC_ALL=C"}), {{file, 1}, {null, 2}}}));
-  ::close(file);
-  ::close(null);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return std::nullopt;
-  return read_file(out);
-}
 
 bool begins_with(const Json& list, const Json& first) {
   return list.size() >= first.size() && std::equal(first.begin(), first.end(), list.begin());
 }
 
-// entry.json may gain evidence and be withdrawn; nothing else in it changes.
+// entry.json may gain evidence and be withdrawn; nothing else in it changes or appears.
 std::string changed_entry(const std::string& before, const std::string& now) {
   const Json there = json_or_null(before), here = json_or_null(now);
   if (!there.is_object() || !here.is_object()) return "is no JSON object any more";
@@ -47,43 +28,39 @@ std::string changed_entry(const std::string& before, const std::string& now) {
     const Json other = here.value(member, Json());
     if (member == "evidence" ? !begins_with(other, value) : other != value) return fmt::format("/{} changed", member);
   }
+  for (const auto& [member, value] : here.items())
+    if (!there.contains(member) && member != "withdrawn") return fmt::format("/{} appeared", member);
   return "";
 }
 
-void compare_with(const fs::path& board, const CheckOptions& options, Checked& checked) {
-  const std::string& revision = options.against;
-  const auto changes = git(
-      board, {"diff", "--name-status", "--no-renames", "--relative", "--end-of-options", revision, "--", "entries"});
-  if (!changes)
-    throw InputError(
-        fmt::format("--against {}: expected a revision of git that {} has, and its history", revision, board.string()));
+// What became of an entry's file that the revision has; "" where that may be.
+std::string changed(const fs::path& file, const std::string& before) {
+  if (!fs::exists(fs::symlink_status(file))) return "is gone (leaderboard withdraw keeps the record)";
+  const std::string now = read_file(file, Links::refused);
+  if (now == before) return "";
+  if (file.filename() == "entry.json") return changed_entry(before, now);
+  if (file.filename() == "verifications.jsonl") return now.rfind(before, 0) == 0 ? "" : "a verification changed";
+  return "an outcome or a cell changed";
+}
+
+using Files = std::map<std::string, std::string>;
+
+void compare_with(const Files& before, const fs::path& board, const CheckOptions& options, Checked& checked) {
   for (const char* file : maintainers_files) {
-    const std::string before = git(board, {"show", fmt::format("{}:./{}", revision, file)}).value_or("");
-    const bool there = fs::exists(fs::symlink_status(board / file));
-    if (!options.maintainer && (there ? read_file(board / file, Links::refused) : "") != before)
+    const auto there = before.find(file);
+    const bool is = fs::exists(fs::symlink_status(board / file)), was = there != before.end();
+    if (!options.maintainer && (is != was || (is && read_file(board / file, Links::refused) != there->second)))
       checked.problems.push_back(
-          fmt::format("{}: changed since {}: it is the maintainers' (--maintainer)", file, revision));
+          fmt::format("{}: changed since {}: it is the maintainers' (--maintainer)", file, options.against));
   }
-  std::istringstream lines(*changes);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t tab = line.find('\t');
-    if (tab == std::string::npos || line[0] == 'A') continue;
-    const std::string file = line.substr(tab + 1), name = fs::path(file).filename();
-    const auto complain = [&](const std::string& what) {
-      checked.problems.push_back(fmt::format("{}: {} since {}", file, what, revision));
-    };
-    if (line[0] == 'D') {
-      complain("is gone (leaderboard withdraw keeps the record)");
-      continue;
+  for (const auto& [file, bytes] : before) {
+    try {
+      if (file.rfind("entries/", 0) != 0) continue;
+      if (const std::string what = changed(board / file, bytes); !what.empty())
+        checked.problems.push_back(fmt::format("{}: {} since {}", file, what, options.against));
+    } catch (const InputError& e) {  // a link, say, in the place of a file
+      checked.problems.emplace_back(e.what());
     }
-    const auto before = git(board, {"show", fmt::format("{}:./{}", revision, file)});
-    const std::string now = read_file(board / file);
-    if (name == "cells.jsonl")
-      complain("an outcome or a cell changed");
-    else if (!before || (name == "verifications.jsonl" && now.rfind(*before, 0) != 0))
-      complain("a verification changed");
-    else if (const std::string what = name == "entry.json" ? changed_entry(*before, now) : ""; !what.empty())
-      complain(what);
   }
 }
 
@@ -113,15 +90,15 @@ void expect_answers(const fs::path& board, const Entry& entry, Checked& checked)
         fmt::format("{}: {} is not there, or not what its name says", entry.place().string(), file.string()));
 }
 
-// Files of answers that no entry names: nobody would ever read them.
+// One that is what its name says may be of an `add` that was killed.
 void expect_no_other_answers(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
-  std::set<fs::path> named;
-  for (const Entry& entry : entries) named.insert(answers_file(entry.identity));
-  std::error_code none_there;
-  for (const auto& file : fs::directory_iterator(board / "answers", none_there)) {
-    const fs::path kept = "answers" / file.path().filename();
-    if (named.count(kept) == 0)
-      checked.problems.push_back(fmt::format("{}: no entry is based on it; remove it", kept.string()));
+  const bool was_killed = fs::exists(board / adding_directory);
+  for (const fs::path& file : other_answers(board, entries)) {
+    const std::string ending = file.extension();
+    if (was_killed && fs::symlink_status(board / file).type() == fs::file_type::regular &&
+        (ending == ".json" || ending == ".jsonl") && sha256_file(board / file) == file.stem())
+      continue;
+    checked.problems.push_back(fmt::format("{}: no entry is based on it; remove it", file.string()));
   }
 }
 
@@ -157,28 +134,36 @@ std::string frame(std::string bytes) {
   return bytes;
 }
 
-// A page may be as it was at the revision, or as this build writes it; whoever opens one runs its scripts. No other
-// file lies beside the pages.
-void expect_frames(const fs::path& board, const std::vector<Entry>& entries, const std::string& revision,
-                   Checked& checked) {
-  const std::map<fs::path, std::string> made = made_files(board, entries, {});
-  for (const auto& item : fs::directory_iterator(board)) {
-    const fs::path file = item.path(), name = file.filename();
-    if (name == "entries" || name == "answers" || name == vouched_file || name == labels_file || name == tracks_file ||
-        name.string()[0] == '.')
-      continue;
-    const auto before = git(board, {"show", fmt::format("{}:./{}", revision, name.string())});
-    const auto ours = made.find(file);
-    const auto complain = [&](const char* what) {
-      checked.problems.push_back(fmt::format("{}: {}", name.string(), what));
-    };
-    if (ours == made.end() && !before) {
-      complain("no file of a board");
-    } else if (file.extension() == ".html" && ours != made.end()) {
-      const std::string now = frame(read_file(file, Links::refused));
-      if (now != frame(ours->second) && now != frame(before.value_or("")))
-        complain("changed outside its tables; lgabench leaderboard build writes it");
-    }
+// A page may be as it was at the revision, or as this build writes it; whoever opens one runs its scripts.
+void expect_frames(const fs::path& board, const std::vector<Entry>& entries, const Files& before, Checked& checked) {
+  for (const auto& [file, bytes] : made_files(board, entries, {})) {
+    if (file.extension() != ".html") continue;
+    const std::string name = file.filename(), now = frame(read_file(file, Links::refused));
+    const auto there = before.find(name);
+    if (now != frame(bytes) && (there == before.end() || now != frame(there->second)))
+      checked.problems.push_back(
+          fmt::format("{}: changed outside its tables; lgabench leaderboard build writes it", name));
+  }
+}
+
+// Nothing lies beside what a board has: git, a web server or a browser obeys some names.
+void expect_nothing_else(const fs::path& board, const std::vector<Entry>& entries, Checked& checked) {
+  std::set<std::string> files{"README.md", "index.html", "leaderboard.csv"};
+  const std::set<std::string> directories{"entries", "answers", adding_directory};
+  files.insert(maintainers_files.begin(), maintainers_files.end());
+  for (const Entry& entry : entries) files.insert(entry.setting.suite + ".html");
+  const auto expect = [&](const fs::directory_entry& item, bool known) {
+    if (!known || item.is_symlink())
+      checked.problems.push_back(fmt::format("{}: {}", item.path().lexically_relative(board).string(),
+                                             known ? "a symbolic link" : "no file of a board"));
+  };
+  for (const auto& item : fs::directory_iterator(board))
+    expect(item, (item.is_directory() ? directories : files).count(item.path().filename()) > 0);
+  if (fs::symlink_status(board / adding_directory).type() != fs::file_type::directory) return;
+  for (const auto& item : fs::recursive_directory_iterator(board / adding_directory)) {
+    const std::string name = item.path().filename(), ending = item.path().extension();
+    expect(item, name[0] != '.' &&
+                     (item.is_directory() || ending == ".json" || ending == ".jsonl" || is_temporary(item.path())));
   }
 }
 
@@ -197,20 +182,32 @@ void expect_installed(const Entry& entry, const Catalogue& installed, Checked& c
 void expect_vouched(const std::vector<Entry>& entries, const Vouched& vouched, Checked& checked) {
   std::set<std::string> there;
   for (const Entry& entry : entries) {
-    for (const Json& line : entry.verifications) there.insert(entry.hash() + line_hash(line));
-    if (!entry.withdrawn.is_null()) there.insert(entry.hash() + line_hash(entry.withdrawn));
+    const std::string hash = entry.hash();
+    for (const Json& line : entry.verifications) there.insert(hash + line_hash(line));
+    if (!entry.withdrawn.is_null()) there.insert(hash + line_hash(entry.withdrawn));
+    if (vouched.lines.count(hash) > 0 && entry.vouched.empty())
+      checked.problems.push_back(fmt::format(
+          vouched.entries.count(hash) > 0 ? "{}: entry.json is not the one that {} has the hash of"
+                                          : "{}: {} has no hash of its entry.json; lgabench leaderboard vouch adds it",
+          entry.place().string(), vouched_entries_file));
   }
-  for (const auto& [entry, lines] : vouched)
+  for (const auto& [entry, lines] : vouched.lines)
     for (const std::string& line : lines)
       if (there.count(entry + line) == 0)
         checked.problems.push_back(
             fmt::format("{}: /{}: no entry of this hash has the line {}", vouched_file, entry, line));
+  for (const auto& [entry, ignored] : vouched.entries)
+    if (vouched.lines.count(entry) == 0)
+      checked.problems.push_back(
+          fmt::format("{}: /{}: no line of this entry is vouched for", vouched_entries_file, entry));
 }
 
 }  // namespace
 
 Checked check(const fs::path& board, const CheckOptions& options) {
   Checked checked;
+  Files before;
+  if (!options.against.empty()) before = files_at(options.against, board);
   std::vector<Entry> entries;
   try {
     const Vouched vouched = read_vouched(board);
@@ -229,11 +226,12 @@ Checked check(const fs::path& board, const CheckOptions& options) {
   } catch (const InputError& e) {  // something else than directories, or vouched.json is not as it should be
     checked.problems.emplace_back(e.what());
   }
+  expect_nothing_else(board, entries, checked);
   expect_same_scenes(entries, checked);
   if (checked.problems.empty()) expect_current(board, entries, options.documents, checked);
   if (options.against.empty()) return checked;
-  compare_with(board, options, checked);
-  if (checked.problems.empty()) expect_frames(board, entries, options.against, checked);
+  compare_with(before, board, options, checked);
+  if (checked.problems.empty()) expect_frames(board, entries, before, checked);
   return checked;
 }
 

@@ -19,22 +19,22 @@ struct Checked {
 };
 
 /// Files of the board that nobody else's request may change.
-inline constexpr std::array maintainers_files{vouched_file, labels_file, tracks_file};
+inline constexpr std::array maintainers_files{vouched_file, vouched_entries_file, labels_file, tracks_file};
 
 struct CheckOptions {
-  std::string against;      // a revision of git, whose outcomes must not have changed; "": none
+  std::string against;      // a revision (files_at()) whose outcomes must not have changed; "": none
   bool maintainer = false;  // who asks may change maintainers_files
   std::vector<fs::path> documents;
   std::optional<Catalogue> installed{};  // what entries that are not yet replayed must fit; none: it is not asked
 };
 
 /// Schema, identity and completeness of every entry; that entries of one table played the same scenes; that cassettes
-/// are there; that what vouched.json lists is there; that a preset and engine that an entry names are the installed
-/// ones, unless it was replayed; that the pages and the tables in documents are those of the entries; and, with a
-/// revision, that the directories of its entries differ by appended verifications, evidence and a withdrawal at most,
-/// and the maintainers' files not at all, and that pages are around their tables as they were or as this build writes
-/// them, with no other file beside them. Keeps on after a problem. @throws InputError for a revision that git does not
-/// know.
+/// are there; that lines and entries that are vouched for are those that were; that a preset and engine that an entry
+/// names are the installed ones, unless it was replayed; that the pages and the tables in documents are those of the
+/// entries; that nothing else lies in the board; and, with a revision, that the directories of its entries differ by
+/// appended verifications, evidence and a withdrawal at most, and the maintainers' files not at all, and that pages are
+/// around their tables as they were or as this build writes them. Keeps on after a problem. @throws InputError as
+/// files_at().
 Checked check(const fs::path& board, const CheckOptions& options = {});
 
 }  // namespace lgabench::leaderboard

@@ -1,14 +1,32 @@
 #include <lgabench/leaderboard/entry.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <set>
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/leaderboard/verification.hpp>
 #include <lgabench/plugin/loader.hpp>
 
 namespace lgabench::leaderboard {
+namespace {
+
+Json json_of(const Entry& entry) {
+  Json json{{"id", entry.id()},          {"identity", to_json(entry.identity)}, {"preset", to_json(entry.setting)},
+            {"about", entry.about},      {"failures", entry.failures},          {"phi", entry.phi},
+            {"evidence", entry.evidence}};
+  if (!entry.score.is_null()) json["score"] = entry.score;
+  if (!entry.withdrawn.is_null()) json["withdrawn"] = entry.withdrawn;
+  return json;
+}
+
+}  // namespace
+
 Json to_json(const Identity& identity) {
   Json json{{"method", identity.row.id},
             {"kind", identity.row.kind},
@@ -90,6 +108,13 @@ fs::path Entry::place() const {
 
 std::string Entry::hash() const { return sha256(id() + "\n" + cells_text(*this)); }
 
+std::string Entry::rest_hash() const {
+  Json json = json_of(*this);
+  json["evidence"] = Json::array({evidence.front()});
+  json.erase("withdrawn");
+  return sha256(canonical(json));
+}
+
 bool Entry::has_answers_as_submitted() const {
   return !identity.row.is_reference() && std::holds_alternative<FileAnswers>(identity.answers);
 }
@@ -157,14 +182,19 @@ std::vector<Entry> read_entries(const fs::path& board) {
   return all;
 }
 
-std::string entry_text(const Entry& entry) {
-  Json json{{"id", entry.id()},          {"identity", to_json(entry.identity)}, {"preset", to_json(entry.setting)},
-            {"about", entry.about},      {"failures", entry.failures},          {"phi", entry.phi},
-            {"evidence", entry.evidence}};
-  if (!entry.score.is_null()) json["score"] = entry.score;
-  if (!entry.withdrawn.is_null()) json["withdrawn"] = entry.withdrawn;
-  return json.dump(1) + "\n";
+std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Entry>& entries) {
+  std::set<fs::path> named;
+  for (const Entry& entry : entries) named.insert(answers_file(entry.identity));
+  std::vector<fs::path> others;
+  if (fs::is_symlink(board / "answers")) return others;  // nobody's files of another place
+  std::error_code none_there;
+  for (const auto& file : fs::directory_iterator(board / "answers", none_there))
+    if (const fs::path kept = "answers" / file.path().filename(); file.is_symlink() || named.count(kept) == 0)
+      others.push_back(kept);
+  return others;
 }
+
+std::string entry_text(const Entry& entry) { return json_of(entry).dump(1) + "\n"; }
 
 std::string cells_text(const Entry& entry) {
   std::string text;
@@ -172,10 +202,37 @@ std::string cells_text(const Entry& entry) {
   return text;
 }
 
-void write_entry(const fs::path& board, const Entry& entry) {
-  const fs::path path = board / entry.place();
-  write_file(path / "cells.jsonl", cells_text(entry));
-  write_file(path / "entry.json", entry_text(entry));
+BoardWriter::BoardWriter(const fs::path& board) : adding_(board / adding_directory) {
+  const fs::path entries = board / "entries";
+  std::error_code error;
+  fs::create_directories(entries, error);
+  lock_ = Descriptor{::open(entries.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
+  if (lock_.fd < 0) throw InputError(fmt::format("{}: cannot be written: {}", entries.string(), std::strerror(errno)));
+  ::flock(lock_.fd, LOCK_EX);  // a file system without locks has one writer by agreement
+  remove_temporaries(board);
+  fs::remove_all(adding_, error);
+}
+
+BoardWriter::~BoardWriter() {
+  std::error_code error;
+  fs::remove_all(adding_, error);
+}
+
+void write_entry(const fs::path& board, const Entry& entry, const std::vector<AnswerFile>& answers) {
+  const BoardWriter writer(board);
+  const fs::path place = board / entry.place(), adding = board / adding_directory, staged = adding / entry.place();
+  keep_answers(answers, adding);
+  write_file(staged / "cells.jsonl", cells_text(entry));
+  write_file(staged / "entry.json", entry_text(entry));
+  const auto move = [](const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::create_directories(to.parent_path(), error);
+    if (!error) fs::rename(from, to, error);
+    if (error) throw InputError(fmt::format("{}: cannot be written: {}", to.string(), error.message()));
+  };
+  for (const AnswerFile& file : answers) move(adding / "answers" / file.name, board / "answers" / file.name);
+  if (!fs::exists(place)) return move(staged, place);
+  for (const char* file : {"cells.jsonl", "entry.json"}) move(staged / file, place / file);
 }
 
 void add_verification(const fs::path& board, const Entry& entry, const Json& verification) {
@@ -198,7 +255,7 @@ void withdraw(const fs::path& board, const std::string& name, const std::string&
   Entry entry = read_entry(board, find_entry(board, name));
   if (!entry.withdrawn.is_null()) throw InputError(name + ": was withdrawn before");
   entry.withdrawn = {{"when", when}, {"reason", reason}};
-  write_file(board / entry.place() / "entry.json", entry_text(entry));
+  write_entry(board, entry);
 }
 
 std::vector<std::size_t> chosen_cells(const Entry& entry, const std::string& nonce, std::size_t cells) {

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/core/descriptor.hpp>
 #include <lgabench/core/files.hpp>
+#include <lgabench/harness/answers.hpp>
 #include <lgabench/leaderboard/setting.hpp>
 #include <lgabench/leaderboard/vouched.hpp>
 #include <lgabench/record/outcome.hpp>
@@ -74,6 +76,9 @@ struct Entry {
   fs::path place() const;
   /// SHA-256 over id and cells: what a nonce is drawn against.
   std::string hash() const;
+  /// SHA-256 of what it says beside its cells: entry.json with its first evidence alone and without /withdrawn, as
+  /// canonical JSON. Nothing of that changes.
+  std::string rest_hash() const;
   /// Of the machine that computed it first.
   std::string processor() const { return evidence.front().at("machine").at("processor"); }
   /// Whether the maintainers vouch for the line.
@@ -105,14 +110,34 @@ std::vector<fs::path> entry_directories(const fs::path& board);
 /// All entries, with what the board's vouched.json says. @throws InputError as read_entry().
 std::vector<Entry> read_entries(const fs::path& board);
 
+/// What lies in answers/ and no entry names, or is a link, relative to the board: nobody would ever read it.
+std::vector<fs::path> other_answers(const fs::path& board, const std::vector<Entry>& entries);
+
 /// What authors say of their rows, from a file. @throws InputError for what is not as docs/formats says.
 Json read_about(const fs::path& file);
 
 /// entry.json and cells.jsonl, as text.
 std::string entry_text(const Entry& entry);
 std::string cells_text(const Entry& entry);
-/// Writes both. Verifications are appended by add_verification() alone.
-void write_entry(const fs::path& board, const Entry& entry);
+/// Where entries are written before they get their place in a board.
+inline constexpr const char* adding_directory = ".adding";
+/// Held by whoever changes files of a board, which one process does at a time. What a killed one left is gone: its
+/// temporaries, and what it was about to add. @throws InputError where the board cannot be made or read.
+class BoardWriter {
+ public:
+  explicit BoardWriter(const fs::path& board);
+  ~BoardWriter();
+  BoardWriter(const BoardWriter&) = delete;
+  BoardWriter& operator=(const BoardWriter&) = delete;
+
+ private:
+  fs::path adding_;
+  Descriptor lock_;
+};
+
+/// Writes entry.json and cells.jsonl, and before them the answers that they name: a new entry is there with both files
+/// or not at all. Verifications are appended by add_verification() alone. @throws InputError
+void write_entry(const fs::path& board, const Entry& entry, const std::vector<AnswerFile>& answers = {});
 void add_verification(const fs::path& board, const Entry& entry, const Json& verification);
 
 /// The entry of that directory or id. @throws InputError where there is none, or several.

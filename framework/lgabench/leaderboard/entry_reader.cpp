@@ -17,11 +17,7 @@ namespace {
 constexpr std::uintmax_t most_bytes = 16 << 20;
 
 // Reads a file of an entry; the largest published one has 100 kB.
-std::string read_bounded(const fs::path& file) {
-  if (const std::uintmax_t bytes = fs::file_size(file); bytes > most_bytes)
-    throw InputError(fmt::format("{}: expected at most {} bytes, got {}", file.string(), most_bytes, bytes));
-  return read_file(file, Links::refused);
-}
+std::string read_bounded(const fs::path& file) { return read_file(file, Links::refused, most_bytes); }
 
 void expect_sha256(const JsonReader& reader) {
   const std::string text = reader.string();
@@ -242,7 +238,11 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
       expect_verification(at, entry);
       entry.verifications.push_back(line);
     }
-  if (const auto own = vouched.find(entry.hash()); own != vouched.end()) entry.vouched = own->second;
+  const std::string hash = entry.hash();
+  const auto own = vouched.lines.find(hash);
+  const auto rest = vouched.entries.find(hash);
+  if (own != vouched.lines.end() && rest != vouched.entries.end() && rest->second == entry.rest_hash())
+    entry.vouched = own->second;
   return entry;
 }
 

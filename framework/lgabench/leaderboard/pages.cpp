@@ -219,7 +219,9 @@ std::map<fs::path, std::string> made_files(const fs::path& board, const std::vec
 }
 
 std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents) {
-  const std::map<fs::path, std::string> files = made_files(board, read_entries(board), documents);
+  const BoardWriter writer(board);
+  const std::vector<Entry> entries = read_entries(board);
+  const std::map<fs::path, std::string> files = made_files(board, entries, documents);
   std::vector<fs::path> paths;
   for (const auto& [path, bytes] : files) {
     write_file(path, bytes);
@@ -227,6 +229,8 @@ std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& 
   }
   for (const auto& file : fs::directory_iterator(board))
     if (file.path().extension() == ".html" && files.count(board / file.path().filename()) == 0) fs::remove(file.path());
+  std::error_code stays;  // a directory, of which check complains
+  for (const fs::path& file : other_answers(board, entries)) fs::remove(board / file, stays);
   return paths;
 }
 

@@ -15,7 +15,8 @@ namespace lgabench::leaderboard {
 std::map<fs::path, std::string> made_files(const fs::path& board, const std::vector<Entry>& entries,
                                            const std::vector<fs::path>& documents);
 
-/// Reads the entries and writes these files; pages of suites that are gone are removed. Returns their paths.
+/// Reads the entries and writes these files; pages of suites that are gone and answers that no entry names are
+/// removed, and what a killed writer left. Returns their paths.
 std::vector<fs::path> build(const fs::path& board, const std::vector<fs::path>& documents = {});
 
 }  // namespace lgabench::leaderboard

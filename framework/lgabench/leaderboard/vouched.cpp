@@ -22,27 +22,8 @@ const Json& line_of(const Entry& entry, const std::string& line) {
                                entry.place().string(), line, entry.verifications.size()));
 }
 
-}  // namespace
-
-std::string line_hash(const Json& line) { return sha256(canonical(line)); }
-
-Vouched read_vouched(const fs::path& board) {
-  Vouched vouched;
-  const fs::path file = board / vouched_file;
-  if (!fs::exists(fs::symlink_status(file))) return vouched;
-  const Json json = read_json(file, Links::refused);
-  const JsonReader reader(json, file.string());
-  if (!json.is_object()) reader.fail("an object");
-  for (const auto& item : json.items()) {
-    const std::vector<std::string> lines = reader.at(item.key()).strings();
-    vouched[item.key()] = {lines.begin(), lines.end()};
-  }
-  return vouched;
-}
-
-std::string vouch(const fs::path& board, const std::string& name, const std::string& which) {
-  const Entry entry = read_entry(board, find_entry(board, name));
-  const Json& line = line_of(entry, which);
+// Whether the line is enough for an entry to count.
+void expect_enough(const Entry& entry, const Json& line, const std::string& which) {
   const std::size_t enough = std::min(enough_cells, entry.cells.size());
   if (line.value("kind", "") == "replay" && line.at("cells").size() < enough)
     throw InputError(fmt::format("{}: line {} is a replay of {} cells; expected {} or more: verify it with --cells {}",
@@ -50,12 +31,49 @@ std::string vouch(const fs::path& board, const std::string& name, const std::str
   if (line.value("kind", "") == "fresh" && !line.contains("successes"))
     throw InputError(fmt::format("{}: line {} is of lgabench 0.2.0, which looked at one arm alone: verify it again",
                                  entry.place().string(), which));
+}
+
+// Calls it with each member of a file, an object; with none where there is no such file.
+template <typename Function>
+void for_each_hash(const fs::path& file, const Function& call) {
+  if (!fs::exists(fs::symlink_status(file))) return;
+  const Json json = read_json(file, Links::refused);
+  const JsonReader reader(json, file.string());
+  if (!json.is_object()) reader.fail("an object");
+  for (const auto& item : json.items()) call(item.key(), reader.at(item.key()));
+}
+
+}  // namespace
+
+std::string line_hash(const Json& line) { return sha256(canonical(line)); }
+
+Vouched read_vouched(const fs::path& board) {
+  Vouched vouched;
+  for_each_hash(board / vouched_file, [&](const std::string& entry, const JsonReader& value) {
+    const std::vector<std::string> lines = value.strings();
+    vouched.lines[entry] = {lines.begin(), lines.end()};
+  });
+  for_each_hash(board / vouched_entries_file,
+                [&](const std::string& entry, const JsonReader& value) { vouched.entries[entry] = value.string(); });
+  return vouched;
+}
+
+Json vouch(const fs::path& board, const std::string& name, const std::string& which) {
+  const BoardWriter writer(board);
+  const Entry entry = read_entry(board, find_entry(board, name));
+  const Json& line = line_of(entry, which);
   Vouched vouched = read_vouched(board);
-  const std::string hash = line_hash(line);
-  if (!vouched[entry.hash()].insert(hash).second)
+  const bool is_new = vouched.lines[entry.hash()].insert(line_hash(line)).second;
+  const auto [rest, has_new] = vouched.entries.try_emplace(entry.hash(), entry.rest_hash());
+  if (rest->second != entry.rest_hash())
+    throw InputError(fmt::format("{}: entry.json is not the one that {} has the hash of", entry.place().string(),
+                                 vouched_entries_file));
+  if (is_new) expect_enough(entry, line, which);
+  if (!is_new && !has_new)
     throw InputError(fmt::format("{}: line {} is vouched for already", entry.place().string(), which));
-  write_file(board / vouched_file, Json(vouched).dump(1) + "\n");
-  return hash;
+  write_file(board / vouched_entries_file, Json(vouched.entries).dump(1) + "\n");
+  write_file(board / vouched_file, Json(vouched.lines).dump(1) + "\n");
+  return line;
 }
 
 }  // namespace lgabench::leaderboard

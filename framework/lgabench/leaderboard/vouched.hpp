@@ -1,4 +1,5 @@
-// vouched.json: the lines of entries that the board's maintainers answer for. Others are claims.
+// vouched.json and vouched_entries.json: the lines of entries that the board's maintainers answer for, and what these
+// entries say beside their cells. Other lines are claims.
 #pragma once
 #include <map>
 #include <set>
@@ -10,19 +11,25 @@ namespace lgabench::leaderboard {
 
 struct Entry;
 
-/// SHA-256 of lines (of verifications.jsonl, or /withdrawn of entry.json, as canonical JSON), by their entry's hash.
-using Vouched = std::map<std::string, std::set<std::string>>;
+/// What counts: both by their entry's hash.
+struct Vouched {
+  std::map<std::string, std::set<std::string>> lines;  // SHA-256 of lines (of verifications.jsonl, or /withdrawn of
+                                                       // entry.json, as canonical JSON)
+  std::map<std::string, std::string> entries;          // Entry::rest_hash()
+};
 
 inline constexpr const char* vouched_file = "vouched.json";
+inline constexpr const char* vouched_entries_file = "vouched_entries.json";
 
 std::string line_hash(const Json& line);
 
-/// vouched.json of a board; nothing where there is none. @throws InputError with file and place
+/// Both files of a board; nothing where there is none. @throws InputError with file and place
 Vouched read_vouched(const fs::path& board);
 
-/// Adds a line of the entry, by its number in verifications.jsonl, or "withdrawn". Returns its hash.
-/// @throws InputError for a line that is not there or was vouched for, for a replay of fewer cells than 30 or all,
-/// and for one on fresh scenes that does not tell its arms apart.
-std::string vouch(const fs::path& board, const std::string& entry, const std::string& line);
+/// Adds a line of the entry, by its number in verifications.jsonl, or "withdrawn", and the hash of what else the entry
+/// says. Returns the line. @throws InputError for a line that is not there or was vouched for, for an entry that is
+/// another than when a line of it was vouched for, for a replay of fewer cells than 30 or all, and for one on fresh
+/// scenes that does not tell its arms apart.
+Json vouch(const fs::path& board, const std::string& entry, const std::string& line);
 
 }  // namespace lgabench::leaderboard
