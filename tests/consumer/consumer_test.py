@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import shutil
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -146,6 +147,27 @@ class NewPlugin(Consumer):
         self.runs("my_method", plugin.parent, "--set", "my_method.epochs=2")
         said = self.lgabench("new-plugin", "my_method", expect=2).stderr
         self.assertIn("exists already; nothing was written", said)
+
+    @unittest.skipUnless(shutil.which("bwrap"), "bubblewrap is not installed")
+    def test_a_strangers_source_is_built_confined(self):
+        """By the commands of docs/leaderboard.md: no file of ours, variable or port is there, and only the plugin is taken."""
+        commands = (SOURCE / "docs/leaderboard.md").read_text().split("--detach COMMIT\n")[1].split("\n\n")[0]
+        here = self.dir / "request/trusted"
+        here.mkdir(parents=True)
+        (here.parent / "installed").symlink_to(self.prefix)
+        self.lgabench("new-plugin", "stranger")
+        (self.dir / "stranger").rename(here.parent / "source")
+        (self.dir / "key").write_text("our key")
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            with open(here.parent / "source/CMakeLists.txt", "a") as file:
+                file.write(f"""execute_process(COMMAND bash -c "cat {self.dir}/key; echo $KEY; ls /home /root {SOURCE}; touch /source/x;
+                    (echo > /dev/tcp/127.0.0.1/{server.getsockname()[1]}) && echo connected" OUTPUT_FILE /built/found)
+                    execute_process(COMMAND ln -s /etc/passwd /built/taken.so)\n""")
+            done = subprocess.run(["bash", "-ec", commands], cwd=here, env={**os.environ, "KEY": "our key"}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((here.parent / "built/found").read_text(), "\n")
+        self.assertEqual([file.name for file in (here.parent / "plugin").iterdir()], ["stranger.so"])
+        self.assertIn("any_texture", self.lgabench("info", "stranger", "--plugin-path", here.parent / "plugin").stdout)
 
     @unittest.skipUnless(shutil.which("gdb"), "gdb is not installed")
     def test_stepping_through_a_method(self):

@@ -237,30 +237,34 @@ class Documents(unittest.TestCase):
                 wrong += [f"{file.relative_to(SOURCE)}: {name}" for name in names]
         self.assertEqual(wrong, [])
 
-    def test_each_line_of_trust_names_tests_that_are_there(self):
+    named = r"`((?:integration|consumer)\.\w+|test_\w+|[A-Z]\w+\.[A-Za-z]\w+)`"
+
+    def test_each_line_of_trust_names_a_test(self):
         page = (SOURCE / "docs/trust.md").read_text()
-        classes = dict((name, file) for file, names in re.findall(
+        lines = page.split("## What remains possible")[0].split("\n|")[3:]
+        self.assertEqual([line[:40] for line in lines if not re.search(self.named, line.rsplit(" | ", 1)[-1])], [])
+        self.assertEqual([line[:40] for line in re.split(r"\n\d\. ", page)[1:] if not re.search(self.named, line)], [])
+
+    def test_tests_that_pages_name_are_there(self):
+        classes = {f"integration.{name}": SOURCE / "tests/integration" / file for file, names in re.findall(
             r"^integration_tests\((\w+\.py) ([\w ]+)\)", (SOURCE / "tests/integration/CMakeLists.txt").read_text(), re.M)
-            for name in names.split())
-        native = set(re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", "".join(
-            file.read_text() for file in sorted((SOURCE / "tests/unit").glob("*.cpp"))), re.M))
-        wrong, named = [], r"`(integration\.\w+|test_\w+|[A-Z]\w+\.[A-Za-z]\w+)`"
-        for line in page.split("## What remains possible")[0].split("\n|")[3:]:
-            if not re.search(named, line.rsplit(" | ", 1)[-1]):
-                wrong.append(f"no test: {line[:40]}")
-        body = ""
-        for name in re.findall(named, page):
-            kind, _, rest = name.partition(".")
-            if kind == "integration":
-                source = (SOURCE / "tests/integration" / classes[rest]).read_text() if rest in classes else ""
-                found = re.search(rf"^class {rest}\(.*?(?=^\S|\Z)", source, re.M | re.S)
-                body = found[0] if found else ""
-                there = bool(body)
-            else:
-                there = f"    def {name}(" in body if name.startswith("test_") else (kind, rest) in native
-            if not there:
-                wrong.append(f"not there: {name}")
-        self.assertEqual(wrong, [])
+            for name in names.split()}
+        classes.update({f"consumer.{name}": SOURCE / "tests/consumer/consumer_test.py" for name in ("Package", "NewPlugin", "Examples")})
+        native = {".".join(names) for names in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", "".join(
+            file.read_text() for file in sorted((SOURCE / "tests/unit").glob("*.cpp"))), re.M)}
+        for page, at_least in ("trust", 60), ("leaderboard", 30):
+            names, wrong, body = re.findall(self.named, (SOURCE / f"docs/{page}.md").read_text()), [], ""
+            self.assertGreater(len(names), at_least)
+            for name in names:
+                if name in classes:
+                    found = re.search(rf"^class {name.split('.')[1]}\(.*?(?=^\S|\Z)", classes[name].read_text(), re.M | re.S)
+                    body = found[0] if found else ""
+                    there = bool(body)
+                else:
+                    there = f"    def {name}(" in body if name.startswith("test_") else name in native
+                if not there:
+                    wrong.append(name)
+            self.assertEqual(wrong, [], page)
 
     def test_files_that_documents_name_are_there(self):
         wrong = []
