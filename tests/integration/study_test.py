@@ -1,7 +1,9 @@
 """The user study without a browser: its directory, its server, kills, a disk that is full, and what runs make of it."""
+import gzip
 import json
 import os
 import re
+import resource
 import shutil
 import signal
 import socket
@@ -10,6 +12,7 @@ import struct
 import threading
 import time
 import unittest
+from pathlib import Path
 
 from case import BUILD
 from study_people import Person, SMALL, Server, StudyCase, events
@@ -212,6 +215,88 @@ class StudyServer(StudyCase):
         self.assertEqual(self.participants(), [f"p0{i}.json" for i in range(1, 5)])
         slots = [e["slot"] for e in events(self.dir / "data/study.events") if e["kind"] == "assigned"]
         self.assertEqual(slots, [0, 1, 2, 3])
+
+
+class StudyMemory(StudyCase):
+    """Nobody who lacks an invitation takes memory from those who have one."""
+
+    def setUp(self):
+        super().setUp()
+        self.new(**SMALL)
+        self.server = Server(self, "data")
+
+    def peak_mib(self):
+        return int(re.search(r"VmHWM:\s+(\d+)", Path(f"/proc/{self.server.process.pid}/status").read_text())[1]) >> 10
+
+    def statuses(self, count, request, *headers, body=()):
+        """What `count` clients at once are answered, while somebody else asks: a set of statuses, 0 where a connection was ended."""
+        head = [f"{request} HTTP/1.1", f"Host: 127.0.0.1:{self.server.port}", *headers]
+        said = set()
+
+        def one():
+            with socket.create_connection(("127.0.0.1", self.server.port), timeout=5 if body else 30) as connection:
+                answer = b""
+                try:
+                    connection.sendall("\r\n".join(head).encode() + (b"\r\n" if callable(body) else b"\r\n\r\n"))
+                    for part in body() if callable(body) else body:
+                        connection.sendall(part)
+                except OSError:
+                    pass  # refused before it was sent
+                try:
+                    while part := connection.recv(1 << 16):
+                        answer = answer[:12] or part
+                except OSError:
+                    pass
+                said.add(int(answer[9:12] or 0))
+
+        clients = [threading.Thread(target=one) for _ in range(count)]
+        for client in clients:
+            client.start()
+        self.assertEqual(self.server.ask("GET", "/")[0], 200)
+        for client in clients:
+            client.join()
+        return said
+
+    def test_ranges(self):
+        many = "bytes=" + ",".join(["0-"] * 2600)
+        for path, ranges, status in (("/object_types.png", "bytes=0-", 200), ("/object_types.png", many, 200), ("/nothing", many, 404),
+                                     ("/object_types.png", many + ",5-1", 416), ("/object_types.png", "bytes=" + "0" * 7900, 416)):
+            with self.subTest(path=path, ranges=ranges[-9:]):
+                before = self.peak_mib()
+                self.assertEqual(self.statuses(24, f"GET {path}", f"Range: {ranges}"), {status})
+                self.assertLess(self.peak_mib() - before, 50)
+
+    def test_bodies_that_hide_their_length(self):
+        zeros = gzip.compress(bytes(100 << 20))
+        chunk = b"100000\r\n" + bytes(1 << 20) + b"\r\n"
+        for headers, body, status in ((["Transfer-Encoding: chunked"], [chunk] * 100 + [b"0\r\n\r\n"], 411),
+                                      ([], [bytes(1 << 20)] * 100, 411),
+                                      ([f"Content-Length: {100 << 20}"], [bytes(1 << 20)] * 100, 413),
+                                      (["Content-Encoding: gzip", f"Content-Length: {len(zeros)}"], [zeros], 415)):
+            with self.subTest(headers):
+                before = self.peak_mib()
+                said = self.statuses(4, "POST /begin", "Content-Type: application/json", *headers, body=body)
+                self.assertLessEqual(said, {status, 0})
+                self.assertLess(self.peak_mib() - before, 50)
+
+    def test_heads_without_end(self):
+        many = b"".join(b"a%d: b\r\n" % i for i in range(100000))
+        for name, parts in (("a line", [b"a: "] + [b"x" * (1 << 20)] * 100), ("lines", [many] * 50)):
+            with self.subTest(name):
+                before = self.peak_mib()
+                self.assertEqual(self.statuses(4, "GET /", body=lambda: parts), {0})
+                self.assertLess(self.peak_mib() - before, 100)
+
+    def test_a_stack_of_any_size(self):
+        """httplib reads a Range by a regular expression that goes as deep as the header is long."""
+        self.server.kill()
+        limits = resource.getrlimit(resource.RLIMIT_STACK)
+        resource.setrlimit(resource.RLIMIT_STACK, (1 << 20, limits[1]))
+        try:
+            self.server.start()
+        finally:
+            resource.setrlimit(resource.RLIMIT_STACK, limits)
+        self.assertEqual(self.statuses(1, "GET /", "Range: bytes=" + ",".join(["0-"] * 2600)), {200})
 
 
 class StudyKilled(StudyCase):

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 #include <httplib.h>
+#include <pthread.h>
+#include <sys/mman.h>
 
 #include <chrono>
 #include <deque>
@@ -11,7 +13,7 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/study/deadline.hpp>
+#include <lgabench/study/connection_limits.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 namespace lgabench::study {
@@ -20,7 +22,8 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t largest_body = 256 << 10, most_events = 50, threads = 128;
+constexpr std::size_t largest_body = 256 << 10, largest_request = 2 * largest_body, most_events = 50, threads = 128;
+constexpr std::size_t stack = 16 << 20, kept_stack = 64 << 10;
 constexpr double longest_request_s = 10;
 constexpr const char* json_type = "application/json";
 
@@ -35,6 +38,37 @@ const httplib::Headers guards{
     {"Cross-Origin-Opener-Policy", "same-origin"},
     {"Cross-Origin-Resource-Policy", "same-origin"},
 };
+
+// httplib reads a Range by a regular expression that goes deeper with each character of a header: more than the
+// system's stack may hold, and what one request took each thread would keep.
+httplib::ThreadPool* pool_with_own_stacks() {
+  pthread_attr_t attributes;
+  ::pthread_getattr_default_np(&attributes);
+  ::pthread_attr_setstacksize(&attributes, stack);
+  ::pthread_setattr_default_np(&attributes);
+  ::pthread_attr_destroy(&attributes);
+  return new httplib::ThreadPool(threads);
+}
+
+void give_stack_back() {
+  pthread_attr_t attributes;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  if (::pthread_getattr_np(::pthread_self(), &attributes) != 0) return;
+  ::pthread_attr_getstack(&attributes, &lowest, &size);
+  ::pthread_attr_destroy(&attributes);
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const auto used = static_cast<std::size_t>(reinterpret_cast<char*>(&attributes) - static_cast<char*>(lowest));
+  if (used > kept_stack) ::madvise(lowest, (used - kept_stack) / page * page, MADV_DONTNEED);
+}
+
+// Answers are whole and as they are: httplib would build one of thousands of ranges in memory, and compress each anew.
+void answer_whole(const Request& request) {
+  auto& own = const_cast<Request&>(request);  // httplib's, which it reads after this
+  own.ranges.clear();
+  own.headers.erase("Accept-Encoding");
+  give_stack_back();
+}
 
 void reply(Response& response, int status, const Json& json) {
   response.status = status;
@@ -83,7 +117,7 @@ struct Server::Impl {
   std::deque<std::chrono::steady_clock::time_point> begun;  // of the last minute
 
   Impl(Study& of, Site made_of, Listening at) : study(of), site(std::move(made_of)), where(std::move(at)) {
-    http.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+    http.new_task_queue = pool_with_own_stacks;
     http.set_payload_max_length(largest_body);
     http.set_read_timeout(10);
     http.set_keep_alive_max_count(1);  // so that a connection's deadline is a request's
@@ -91,7 +125,8 @@ struct Server::Impl {
     http.set_default_headers(guards);
     http.set_pre_routing_handler(
         [this](const Request& request, Response& response) { return admit(request, response); });
-    http.set_error_handler([](const Request&, Response& response) {
+    http.set_error_handler([](const Request& request, Response& response) {
+      answer_whole(request);  // one that is malformed comes here first
       if (response.body.empty()) response.set_content(fmt::format("{}\n", response.status), "text/plain");
     });
     pages();
@@ -112,6 +147,7 @@ struct Server::Impl {
 
   // Another Host is a name that somebody else points here; another Origin is somebody else's page.
   httplib::Server::HandlerResponse admit(const Request& request, Response& response) const {
+    answer_whole(request);
     const auto refuse = [&response](int status, const char* why) {
       reply(response, status, {{"error", why}});
       return httplib::Server::HandlerResponse::Handled;
@@ -124,6 +160,10 @@ struct Server::Impl {
         !origin.empty() && origin != "http://" + host && origin != "https://" + host)
       return refuse(403, "another Origin");
     if (request.get_header_value("Content-Type") != json_type) return refuse(415, "expected JSON");
+    // httplib bounds a body by its Content-Length alone, before it is decompressed.
+    if (request.has_header("Content-Encoding")) return refuse(415, "expected a body that is not compressed");
+    if (request.has_header("Transfer-Encoding") || !request.has_header("Content-Length"))
+      return refuse(411, "expected a Content-Length");
     return httplib::Server::HandlerResponse::Unhandled;
   }
 
@@ -200,7 +240,8 @@ Server::Server(Study& study, Site site, Listening where)
 Server::~Server() = default;
 int Server::port() const { return impl_->port; }
 void Server::run() {
-  const ConnectionDeadline deadline(impl_->port, longest_request_s);  // a thread: with the caller's mask of signals
+  // A thread: with the caller's mask of signals.
+  const ConnectionLimits limits(impl_->port, longest_request_s, largest_request);
   impl_->http.listen_after_bind();
 }
 void Server::stop() { impl_->http.stop(); }

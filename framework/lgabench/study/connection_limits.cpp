@@ -1,6 +1,7 @@
-#include <lgabench/study/deadline.hpp>
+#include <lgabench/study/connection_limits.hpp>
 
 #include <arpa/inet.h>
+#include <linux/tcp.h>  // netinet/tcp.h's tcp_info lacks the bytes that were received
 #include <sys/socket.h>
 
 #include <chrono>
@@ -35,12 +36,18 @@ std::map<std::pair<int, std::string>, Clock::time_point> connections(int port) {
   return all;
 }
 
+std::uint64_t bytes_received(int connection) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return ::getsockopt(connection, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 ? info.tcpi_bytes_received : 0;
+}
+
 }  // namespace
 
-ConnectionDeadline::ConnectionDeadline(int port, double seconds)
-    : port_(port), seconds_(seconds), thread_([this] { watch(); }) {}
+ConnectionLimits::ConnectionLimits(int port, double seconds, std::uint64_t bytes)
+    : port_(port), seconds_(seconds), bytes_(bytes), thread_([this] { watch(); }) {}
 
-ConnectionDeadline::~ConnectionDeadline() {
+ConnectionLimits::~ConnectionLimits() {
   {
     const std::lock_guard lock(mutex_);
     end_ = true;
@@ -49,14 +56,15 @@ ConnectionDeadline::~ConnectionDeadline() {
   thread_.join();
 }
 
-void ConnectionDeadline::watch() {
+void ConnectionLimits::watch() {
   std::map<std::pair<int, std::string>, Clock::time_point> before;
   std::unique_lock lock(mutex_);
-  while (!ended_.wait_for(lock, std::chrono::milliseconds(500), [this] { return end_; })) {
+  while (!ended_.wait_for(lock, std::chrono::milliseconds(100), [this] { return end_; })) {
     auto now = connections(port_);
     for (auto& [connection, since] : now) {
       if (const auto seen = before.find(connection); seen != before.end()) since = seen->second;
-      if (std::chrono::duration<double>(Clock::now() - since).count() > seconds_)
+      if (std::chrono::duration<double>(Clock::now() - since).count() > seconds_ ||
+          bytes_received(connection.first) > bytes_)
         ::shutdown(connection.first, SHUT_RDWR);
     }
     before = std::move(now);
