@@ -131,8 +131,10 @@ class PluginAxes(case.Case):
     def test_what_there_is_not_is_refused_in_a_line(self):
         suite = self.suite({"axis": "fixture_axi", "levels": [1]})
         said = self.call("run", suite, "--dry-run", "--plugin-path", AXIS, expect=2).stderr
-        self.assertIn('mine.json: /perturbations/0: no axis "fixture_axi" (did you mean "fixture_axis"?), expected one of: distractors, ',
-                      said)
+        self.assertIn('mine.json: /perturbations/0: no axis "fixture_axi" (did you mean "fixture_axis"?)', said)
+        suite = self.suite({"axis": "moon", "levels": [1]})
+        said = self.call("run", suite, "--dry-run", "--plugin-path", AXIS, expect=2).stderr
+        self.assertIn('no axis "moon", expected one of: distractors, ', said)
         self.assertIn("selection_errors, fixture_axis, all", said)
         suite = self.suite({"axis": "fixture_axis", "levels": [11]})
         self.assertIn("expected a level from 1 to 10 (as it should; dead; ",

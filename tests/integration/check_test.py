@@ -120,7 +120,7 @@ class CheckPlugin(Case):
         problems = self.check(FIXTURES / "refused/wrong_strings.so")
         self.assertRegex(problems["descriptor"]["detail"], r'string ABI "old" \(this program: "cxx11"\)')
         self.assertRegex(self.check(FIXTURES / "refused/missing_symbol.so")["process"]["detail"], "undefined symbol")
-        self.assertIn("not a regular file", self.check(self.dir / "none.so")["descriptor"]["detail"])
+        self.assertIn("not a regular file", self.check(self.dir)["descriptor"]["detail"])
         self.assertIn("expected option=value", self.call("check-plugin", UNSOUND, "--set", "how", expect=2).stderr)
 
     def test_an_id_that_another_plugin_has(self):

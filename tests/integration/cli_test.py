@@ -75,10 +75,17 @@ class Mistakes(Case):
             (["merge"], r"OUT is missing; usage: lgabench merge \[OPTIONS\] OUT RUN\.\.\.$"),
             (["compare", "a"], r"compare: expected A B, or A --rows ROW_A,ROW_B$"),
             (["verify", "a", "b"], r'"b" is a word too many; usage: lgabench verify \[OPTIONS\] RUN$'),
-            (["run", "q11"], r'no suite "q11".*expected one of: .*q1.*or a \.json file'),
+            (["run", "q11"], r'no suite "q11" \(did you mean "q1"\?\)$'),
+            (["run", "moon"], r'no suite "moon", expected one of: .*q1.*, or a \.json file$'),
             (["run", "q1", "--preset", "smokey"], r'q1.json: no preset "smokey" \(did you mean "smoke"\?\)'),
-            (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)'),
-            (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\), expected one of: cells, continuous, released$'),
+            (["run", "q1", "--scenarios", "hart"], r'^lgabench: --scenarios: no scenario "hart" \(did you mean "heart"\?\)$'),
+            (["run", "q1", "--layout", "cell"], r'--layout: no layout "cell" \(did you mean "cells"\?\)$'),
+            (["run", "q1", "--preset"], r"^lgabench: --preset: expected PRESET after it$"),
+            (["run", "q1", "--plugin-path", "nowhere"], r"^lgabench: --plugin-path: nowhere: no such file or directory$"),
+            (["run", "q1", "--plugin-path", "nowhere.py:Mine"], r"^lgabench: --plugin-path: nowhere.py: no such file or directory$"),
+            (["list", "--plugin-path", "empty:empty"], r"^lgabench: --plugin-path: empty:empty: no such file or directory; for several, repeat --plugin-path$"),
+            (["check-plugin", "nofile.so"], r"^lgabench: nofile.so: no such file or directory$"),
+            (["check-plugin", "nofile.py:Mine"], r"^lgabench: nofile.py: no such file or directory$"),
             (["run", "q1", "--jobs", "0"], r"^lgabench: --jobs: expected a number from 1 to 4096, got 0$"),
             (["study", "chek", "x"], r'^lgabench: study: no action "chek" \(did you mean "check"\?\)'),
             (["check-scenario", "none.json"], r"^lgabench: none.json: no such file$"),
@@ -103,7 +110,7 @@ class Mistakes(Case):
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
                 self.assertRegex(done.stderr, re.compile(says, re.M))
         self.assertRegex(self.call("run", "q1", "--methods", "lag", expect=4).stderr,
-                         r'no method "lag" \(did you mean "lga"\?\), expected one of: .*; other plugins are found with --plugin-path')
+                         r'no method "lag" \(did you mean "lga"\?\); other plugins are found with --plugin-path')
         (self.dir / "bad.py").write_text("class Bad:\n    pass\n\n\nclass Other(Bad):\n    pass\n")
         self.assertIn("bad.py: expected bad.py:CLASS; it has: Bad, Other",
                       self.call("run", "q1", "--methods", "bad.py", expect=4).stderr)
@@ -237,6 +244,15 @@ class CacheCommand(Case):
         self.assertEqual(sorted(p.name for p in cache.iterdir()), ["0" * 32 + ".hdf5", "notes.tmp", "thesis.hdf5"])
         self.assertIn("no action \"claer\" (did you mean \"clear\"?)", self.call("cache", "claer", expect=2).stderr)
         self.assertIn("4 reused", self.call(*RUN, "--out", "out").stderr)
+
+    def test_one_that_cannot_be_written_is_said_once(self):
+        for words in (["--cache", "/proc/cache"], []):
+            self.environment["LGABENCH_CACHE"] = "/proc/cache"
+            said = self.call(*RUN, *words, "--fresh", "--out", "out").stderr
+            self.assertEqual(said.count("/proc/cache: cannot be written: No such file or directory; each cell makes its "
+                                        "demonstrations again\n"), 1, said)
+        self.environment["LGABENCH_CACHE"] = str(self.dir / "cache")
+        self.assertNotIn("cannot be written", self.call(*RUN, "--fresh", "--out", "out").stderr)
 
     def test_a_file_says_which_programs_made_it(self):
         """Another build of any of them makes its own."""

@@ -91,6 +91,44 @@ class Elements(Case):
         shutil.rmtree(next((self.dir / "both/cells").iterdir()))
         self.assertRegex(self.call("status", "both", expect=3).stdout, r" 1/1 +20 +19 +0 +0 +1 ")
 
+    def test_status_counts_as_failed_what_a_report_leaves_out(self):
+        self.call("run", *RUN, "--out", "run")
+        self.call("status", "run")
+        cells = sorted((self.dir / "run/cells").iterdir())
+        with (cells[0] / "timing.json").open("a") as timing:
+            timing.write(" ")  # its checksum alone says so
+        (cells[1] / "status.json").unlink()
+        done = self.call("status", "run", expect=3)
+        self.assertRegex(done.stdout, r" 1/1 +20 +18 +0 +2 +0  run\nto finish: --array=1\n")
+        left_out = [line for line in self.call("report", "run", expect=2).stderr.splitlines() if line.startswith("left out: ")]
+        self.assertEqual(sorted(done.stderr.splitlines()), sorted(left_out))
+        self.assertEqual(len(left_out), 2)
+        self.call("run", *RUN, "--out", "run")
+        self.assertEqual(self.call("status", "run").stderr, "")
+
+    def test_a_merge_that_lacks_a_cell_is_no_success(self):
+        self.cluster("--elements", "2")
+
+        def merged():
+            return subprocess.run(["bash", self.dir / "out/merge.sbatch"], capture_output=True, text=True, cwd="/",
+                                  env=self.environment, timeout=300)
+
+        self.play(1)
+        done = merged()  # though element 2 never ran
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("10 cells finished, 0 failed, 0 left out, 10 in none of the runs\n", done.stderr)
+        self.call("merge", "some", "out/part-1", "--partial")
+        self.play(2)
+        torn = next((self.dir / "out/part-2/cells").glob("*/episodes.jsonl"))
+        torn.write_bytes(torn.read_bytes().replace(b":1", b":0", 1))
+        for words in ([], ["--partial"]):
+            said = self.call("merge", "all", "out/part-1", "out/part-2", *words, expect=3).stderr
+            self.assertIn("19 cells finished, 0 failed, 1 left out, 0 in none of the runs\n", said)
+        self.assertEqual(merged().returncode, 3)
+        self.play(2)
+        self.assertEqual(merged().returncode, 0)
+        self.call("merge", "some", "out/part-2")  # into what the other part was merged into
+
     def test_what_is_wrong_is_said_before_anything_is_written(self):
         for words, reason in [(("--elements", "99"), "--elements 99: the run has 20 cells"),
                               (("--elements", "2", "--seeds", "x"), "--seeds: expected whole numbers"),

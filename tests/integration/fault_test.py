@@ -313,6 +313,13 @@ class FullDisk(Faults):
                               env={**self.environment, **more})
         return done, struct.unpack("i", count.read_bytes())[0]
 
+    def test_too_little_space_is_said_before_the_first_cell(self):
+        self.environment.update(LD_PRELOAD=str(BUILD / "tests/full_disk.so"), FULL_DISK_FREE=str(1 << 40))
+        self.assertNotIn("of disk", self.call(*NO_TRAINING, "--fresh", "--out", "out").stderr)
+        self.environment["FULL_DISK_FREE"] = "10000"
+        said = self.call(*NO_TRAINING, "--fresh", "--out", "out").stderr
+        self.assertRegex(said, r"(?s)out: the cells need about [\d.]+ KB of disk, and 8 KB are free\n.*1 cells computed")
+
     def test_at_every_write(self):
         done, writes = self.with_full_disk_at(0, False)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -367,6 +374,24 @@ class TornFiles(Faults):
                 self.assertRegex(said, r"status.json: .*computed again|(?:computed by another build|failed: ).*computed again")
                 self.assert_as_undisturbed()
 
+    def test_a_run_without_its_record(self):
+        """The cells are there: the command that computed them takes them up again, and no other does."""
+        self.copy_first("out")
+        record = self.dir / "out/run.json"
+        before = json.loads(record.read_text())
+        record.unlink()
+        for words in (NO_TRAINING, [*NO_TRAINING, "--fresh"], [*with_options(NO_TRAINING, "--episodes", "3"), "--resume"]):
+            self.assertRegex(self.call(*words, "--out", "out", expect=2).stderr, "out: cells without their run.json; the command "
+                             "that computed them, with --resume, writes it again\n$")
+            self.assertFalse(record.exists())
+        said = self.call(*NO_TRAINING, "--out", "out", "--resume").stderr
+        self.assertIn("0 cells computed, 1 reused, 0 failed", said)
+        self.assert_as_undisturbed()
+        again = json.loads(record.read_text())
+        self.assertEqual(again["confinement"], "none, by --unconfined")  # nothing says what it was
+        own = ("command", "started", "confinement")
+        self.assertEqual(*({name: value for name, value in run.items() if name not in own} for run in (before, again)))
+
     def test_a_cell_in_anothers_place(self):
         seeds = [*NO_TRAINING, "--seeds", "1", "--out", "out"]
         self.call(*seeds)
@@ -398,7 +423,7 @@ class NoReport(Faults):
         done = subprocess.run([words[0], "merge", "merged", "out"], capture_output=True, text=True, env=self.environment,
                               cwd=self.dir, timeout=60)
         self.assertEqual(done.returncode, 2, done.stderr)
-        self.assertIn("1 cells finished, 0 failed, 0 in none of the runs\n", done.stderr)
+        self.assertIn("1 cells finished, 0 failed, 0 left out, 0 in none of the runs\n", done.stderr)
 
 
 class SharedCache(Faults):

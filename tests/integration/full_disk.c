@@ -1,6 +1,7 @@
 // LD_PRELOAD: a disk that is full. Counts write() and fsync() on files below $FULL_DISK_UNDER, over all processes that
 // share the file $FULL_DISK_COUNT, and fails number $FULL_DISK_AT (with $FULL_DISK_STAYS all after it as well). With
 // $FULL_DISK_KILLS it counts rename() as well, and the process is killed in the place of the call.
+// $FULL_DISK_FREE any disk is said to have so many bytes left.
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -11,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 static atomic_int* counter(void) {
@@ -47,6 +49,14 @@ ssize_t write(int fd, const void* bytes, size_t size) {
   if (!fails(fd)) return real(fd, bytes, size);
   errno = ENOSPC;
   return -1;
+}
+
+int statvfs(const char* path, struct statvfs* about) {
+  static int (*real)(const char*, struct statvfs*);
+  if (!real) *(void**)&real = dlsym(RTLD_NEXT, "statvfs");
+  const int failed = real(path, about);
+  if (!failed && getenv("FULL_DISK_FREE")) about->f_bavail = strtoul(getenv("FULL_DISK_FREE"), NULL, 10) / about->f_frsize;
+  return failed;
 }
 
 int fsync(int fd) {

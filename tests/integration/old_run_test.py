@@ -27,8 +27,9 @@ class OldRuns(Case):
 
     def test_is_merged_and_reported(self):
         said = self.call("merge", "old", "shard1", "shard2")
-        self.assertIn("6 cells finished, 0 failed, 0 in none", said.stderr)
+        self.assertIn("6 cells finished, 0 failed, 0 left out, 0 in none", said.stderr)
         self.assertEqual(json.loads((self.dir / "old/run.json").read_text())["version"], "0.1.0")
+        self.assertRegex(self.call("report", "old").stderr, r"(?m)^old: made by lgabench 0\.1\.0, read by \d+\.\d+\.\d+$")
         won = {}
         for key, (cell, _) in self.cells("old").items():
             lines = (self.dir / "old/cells" / key / "episodes.jsonl").read_text().splitlines()
@@ -55,7 +56,9 @@ class OldRuns(Case):
         self.call(*SAME, "--methods", "lga,lga+network=plain,lga_l+network=plain+image=none", "--set", "*.epochs=20",
                   "--set", "*.batches=shuffled",
                   "--out", "new")
-        compared = json.loads(self.call("compare", "old", "new", "--json").stdout)
+        done = self.call("compare", "old", "new", "--json")
+        self.assertRegex(done.stderr, r"^old: made by lgabench 0\.1\.0, read by \d+\.\d+\.\d+\n$")
+        compared = json.loads(done.stdout)
         self.assertEqual({(row["method_a"], row["method"]) for row in compared["rows"] if row["method_kind"] == "method"},
                          {("lga+batch_norm=true+epochs=20", "lga"), ("lga+epochs=20", "lga+network=plain"),
                           ("lga_l+epochs=20", "lga_l")})

@@ -131,8 +131,7 @@ class Perturbations(case.BesideOneRun):
             self.assertEqual(said.count("\n"), 1, said)
             return said
 
-        self.assertIn('no axis "light_color" (did you mean "light_colour"?), expected one of: distractors, ',
-                      refusal("light_color", [1]))
+        self.assertIn('no axis "light_color" (did you mean "light_colour"?)', refusal("light_color", [1]))
         self.assertIn("expected a level from 1 to 4 (10 %; 20 %; 30 %; 45 %)", refusal("light_colour", [5]))
         self.assertIn("mine.json", refusal("all", [0]))
 

@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import re
+import resource
 import shutil
 import struct
 import subprocess
@@ -101,6 +102,14 @@ class BadInput(Case):
             self.refused("run", "q1", "--limit", "1", "--out", "mine", *flags, says=r"mine: not empty and not a run")
         self.assertEqual((self.dir / "file").read_text(), "kept")
         self.assertEqual([p.name for p in (self.dir / "mine").iterdir()], ["thesis.txt"])
+
+    def test_a_record_without_end(self):
+        """A run.json takes no more memory than a run of any size needs."""
+        (self.dir / "run").mkdir()
+        (self.dir / "run/run.json").write_text('{"unknown": [' + "[]," * (20 << 20) + "[]]}")
+        for verb in ("status", "report"):
+            done = self.call(verb, "run", expect=2, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (1 << 29,) * 2))
+            self.assertRegex(done.stderr, r"^lgabench: run/run.json: cannot be read: \d+ bytes or more, expected at most 8388608\n$")
 
     def test_another_configuration_is_not_overwritten(self):
         one = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--set", "lga.epochs=5",
@@ -283,7 +292,7 @@ class Shards(Case):
             self.assertEqual(len(kinds), len(set(kinds)))
         self.assertEqual(parts[0] | parts[1], set(self.cells("whole")))
         said = self.call("merge", "both", "part1", "part2", expect=3)
-        self.assertIn(f"{self.CELLS - self.FAILED} cells finished, {self.FAILED} failed, 0 in none", said.stderr)
+        self.assertIn(f"{self.CELLS - self.FAILED} cells finished, {self.FAILED} failed, 0 left out, 0 in none", said.stderr)
         self.assert_same_results("whole", "both")
         self.assert_matches_schemas("both")
         whole, both = (json.loads((self.dir / run / "run.json").read_text()) for run in ("whole", "both"))
@@ -300,7 +309,7 @@ class Shards(Case):
         torn.write_bytes(b"")
         said = self.call("merge", "one", "part1", expect=3)
         self.assertRegex(said.stderr, rf"{torn.parent.name}.*episodes.jsonl does not have the bytes.*left out")
-        self.assertIn(f"{self.CELLS // 2 + 1} in none of the runs", said.stderr)
+        self.assertIn(f"1 left out, {self.CELLS // 2} in none of the runs", said.stderr)
         self.call("merge", "one", "part1", "part2", expect=3)  # once the other is there
         merged = json.loads((self.dir / "one/run.json").read_text())["merged"]
         self.assertEqual([part["command"].split()[-1] for part in merged], ["1/2", "2/2"])

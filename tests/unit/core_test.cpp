@@ -437,8 +437,7 @@ TEST(Scenario, RefusesBadInput) {
   EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 15, at most 180, got -120");
   json["angle_deg"] = 15;  // within the tolerance of no turn at all
   EXPECT_SAYS(refusal(json), "mine.json: /angle_deg: expected above 15, at most 180, got 15");
-  EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }),
-              "no scenario \"hart\" (did you mean \"heart\"?), expected one of: ");
+  EXPECT_SAYS(message_of<Error>([] { load_scenario("hart"); }), "no scenario \"hart\" (did you mean \"heart\"?)");
 }
 
 using tabletop::two_poses;

@@ -148,6 +148,7 @@ std::size_t check(const PluginInfo& plugin, const Catalogue& catalogue, const Ch
 }
 
 int check_plugin(const CheckPluginArguments& a) {
+  if (const std::string missing = missing_plugin(a.file); !missing.empty()) throw InputError(missing);
   CheckReport report;
   PluginInfo plugin;
   std::size_t printed = 0;

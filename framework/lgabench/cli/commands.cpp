@@ -21,7 +21,7 @@ constexpr const char* surroundings =
     "  1    worse in `compare`, different in `verify`, reversed in `report --claims`, refused by\n"
     "       `leaderboard`, a problem in `check-plugin` or `check-scenario`\n"
     "  2    an error in the command line, a file or a directory; nothing was overwritten\n"
-    "  3    a cell failed\n"
+    "  3    a cell failed; `merge`, `status`: the run is not whole\n"
     "  4    a plugin is missing or was refused\n"
     "  5    `verify`: bytes differ and the record names another build, processor or data; outcomes\n"
     "       differ no more than chance allows\n"

@@ -14,6 +14,7 @@ namespace {
 report::RunResults read_whole(const fs::path& directory) {
   expect_run(directory);
   report::RunResults run = report::read_run(directory);
+  name_other_version(run);
   if (!run.unreadable.empty()) throw InputError(run.unreadable.front());
   return run;
 }

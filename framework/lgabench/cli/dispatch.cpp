@@ -32,8 +32,9 @@ std::string unknown_option(const CLI::App& verb, const std::vector<std::string>&
 // What a check of CLI11's says of a value, as all other errors say it. Of a word without an option its name says
 // nothing.
 std::string of_a_value(const CLI::App& verb, const std::string& what) {
-  static const std::regex range("Value (\\S+) not in range (\\S+) to (\\S+)$");
-  const std::string text = std::regex_replace(what, range, "expected a number from $2 to $3, got $1");
+  static const std::regex range("Value (\\S+) not in range (\\S+) to (\\S+)$"), none("\\d+ required (\\S+) missing$");
+  const std::string text = std::regex_replace(
+      std::regex_replace(what, range, "expected a number from $2 to $3, got $1"), none, "expected $1 after it");
   const std::size_t colon = text.find(": ");
   const CLI::Option* option = colon == text.npos ? nullptr : verb.get_option_no_throw(text.substr(0, colon));
   return option && option->get_positional() ? verb.get_name() + text.substr(colon) : text;

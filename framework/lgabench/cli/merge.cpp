@@ -16,7 +16,7 @@ void add_merge(CLI::App& app, int& exit) {
   struct Options {
     fs::path out;
     std::vector<fs::path> runs;
-    bool json = false;
+    bool json = false, partial = false;
   };
   auto options = std::make_shared<Options>();
   CLI::App* verb =
@@ -27,22 +27,26 @@ void add_merge(CLI::App& app, int& exit) {
           "Shards of one run, or runs that differ only in methods, scenarios, layouts, engines, demonstrations, seeds "
           "or --selection-errors; they stay as they are")
       ->required();
+  verb->add_flag("--partial", options->partial, "Exit 0 although parts of the run are not there yet");
   verb->add_flag("--json", options->json, "Print summary.json instead of the table");
   arrange(*verb, "", {{"OUT", "OUT"}, {"RUN", "RUN"}});
   verb->footer(
       "Example: lgabench merge runs/q1 runs/q1-1of2 runs/q1-2of2\n"
-      "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method");
+      "         lgabench merge runs/with_mine runs/q1 runs/q1_my_method\n"
+      "Exit 3: a cell failed, or it was left out because its files are damaged or another build's, or it is in none of "
+      "the runs.");
   verb->callback([options, &exit] {
     const MergeOutcome outcome = merge_runs(options->out, options->runs, shell_line(command_line()));
-    to_stderr("{} cells finished, {} failed, {} in none of the runs\n", outcome.finished, outcome.failed,
-              outcome.missing);
-    if (outcome.failed + outcome.missing > 0)
+    const std::size_t bad = outcome.failed + outcome.left_out;
+    to_stderr("{} cells finished, {} failed, {} left out, {} in none of the runs\n", outcome.finished, outcome.failed,
+              outcome.left_out, outcome.missing);
+    if (bad + outcome.missing > 0)
       to_stderr(
           "Shards: the command of one of them, with --out {} and without --shard, computes the rest. Other runs: "
           "resume each, and merge again.\n",
           options->out.string());
     if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);  // last: it may throw
-    exit = outcome.failed ? cells_failed : ok;
+    exit = bad > 0 || (outcome.missing > 0 && !options->partial) ? cells_failed : ok;
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/core/version.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/writers.hpp>
 
@@ -32,6 +33,12 @@ void expect_run(const fs::path& directory) {
   std::sort(near.begin(), near.end());
   throw InputError(fmt::format("{}: not the directory of a run (no run.json){}{}", directory.string(),
                                near.empty() ? "" : "; runs: ", fmt::join(near, ", ")));
+}
+
+void name_other_version(const report::RunResults& run) {
+  if (run.record.version != LGABENCH_VERSION)
+    to_stderr("{}: made by lgabench {}, read by {}\n", run.directory.string(), one_line(run.record.version),
+              LGABENCH_VERSION);
 }
 
 void print_tables(const report::Report& report) {

@@ -16,6 +16,9 @@ Words command_line();
 /// @throws InputError for what is no run's directory; it names runs that are near.
 void expect_run(const fs::path& directory);
 
+/// Says on stderr which version made a run, if another one than this.
+void name_other_version(const report::RunResults& run);
+
 /// The tables of a report on stdout; on a terminal its marks have a colour.
 void print_tables(const report::Report& report);
 

@@ -17,6 +17,7 @@ namespace {
 
 // Names the cells that could not be read; their run is then an error, though its report is there.
 int exit_of(const report::RunResults& results, int otherwise) {
+  name_other_version(results);
   for (const std::string& why : results.unreadable) to_stderr("left out: {}\n", why);
   return results.unreadable.empty() ? otherwise : usage;
 }

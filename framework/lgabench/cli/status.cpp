@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <mutex>
 #include <set>
 
 #include <lgabench/cli/help.hpp>
 #include <lgabench/cli/outcome.hpp>
 #include <lgabench/cli/verbs.hpp>
+#include <lgabench/core/parallel.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/layout.hpp>
 
@@ -20,7 +22,8 @@ struct Part {
   std::string name;
   int shard = 1, shards = 1;
   std::size_t cells = 0, done = 0, failed = 0, playing = 0;
-  bool running = false;  // somebody writes into it
+  std::vector<std::string> left_out{};  // why, of each failed cell that a report leaves out
+  bool running = false;                 // somebody writes into it
 
   std::size_t missing() const { return cells - std::min(cells, done + failed + playing); }
   bool finished() const { return done >= cells; }
@@ -38,10 +41,24 @@ Part read_part(const fs::path& run) {
   Part part{run.string(), 1, 1, record.cells.size()};
   if (record.shard) part = {run.string(), record.shard->index, record.shard->count, record.shard->cells};
   part.running = is_locked(run);
-  for (const std::string& name : record.cells) {
-    const fs::path cell = run / "cells" / name;
-    if (has_status(cell)) ++(read_cell_status(cell).failed ? part.failed : part.done);
-  }
+  expect_plain_run(run);
+  std::mutex mutex;
+  in_parallel(record.cells.size(), [&](std::size_t i) {  // as a report reads them, which leaves out what is damaged
+    const fs::path cell = run / "cells" / record.cells[i];
+    std::error_code not_there;
+    if (!fs::exists(cell, not_there)) return;
+    bool failed = true;
+    std::string why;
+    try {
+      failed = report::read_cell(cell).failed;
+    } catch (const InputError& e) {
+      why = one_line(e.what());
+    }
+    const std::lock_guard lock(mutex);
+    ++(failed ? part.failed : part.done);
+    if (!why.empty()) part.left_out.push_back(std::move(why));
+  });
+  std::sort(part.left_out.begin(), part.left_out.end());
   std::error_code none_there;
   for (const auto& entry : fs::directory_iterator(run / "cells", none_there))
     part.playing += part.running && entry.path().filename().string()[0] == '.';
@@ -115,6 +132,8 @@ int print_status(const std::vector<fs::path>& directories, bool json) {
     if (!absent.empty()) to_stdout("not begun: {}\n", ranges(absent));
     if (!open.empty()) to_stdout("to finish: --array={}\n", ranges(open));
   }
+  for (const Part& part : parts)
+    for (const std::string& why : part.left_out) to_stderr("left out: {}\n", why);
   return open.empty() ? ok : cells_failed;
 }
 

@@ -87,11 +87,27 @@ inline CLI::Validator one_of(std::string what, std::vector<std::string> known) {
 /// What --plugin-path of a verb takes that finds its plugins with plugins_at() (host/python_method.hpp).
 inline constexpr const char* any_plugin = "a directory, a .so file, or FILE.py:CLASS";
 
+/// "x.so: no such file or directory" of a word that names a plugin's file or a directory of plugins, none of which is
+/// there; else "".
+inline std::string missing_plugin(const std::string& word) {
+  const std::size_t python = word.find(".py:");
+  const std::string file = python == word.npos ? word : word.substr(0, python + 3);
+  std::error_code not_there;
+  return fs::exists(file, not_there) ? "" : file + ": no such file or directory";
+}
+
 /// --plugin-path, as every verb has it.
 inline void add_plugin_path(CLI::App& verb, std::vector<fs::path>& paths,
                             const std::string& takes = "a directory or a .so file") {
   verb.add_option("--plugin-path", paths, fmt::format("Also look for plugins here: {}; can be repeated", takes))
       ->type_name("PATH")
+      ->check(CLI::Validator(
+          [](const std::string& word) {
+            const std::string missing = missing_plugin(word);
+            const bool several = !missing.empty() && missing.find(':') < missing.rfind(": ");
+            return missing + (several ? "; for several, repeat --plugin-path" : "");
+          },
+          "", ""))
       ->allow_extra_args(false);
 }
 

@@ -102,7 +102,7 @@ Json json_or_null(std::string_view text) {
 }
 
 Json read_json(const std::filesystem::path& file, Links links) {
-  constexpr std::uintmax_t most = std::uintmax_t{1} << 28;
+  const std::uintmax_t most = std::uintmax_t{1} << (links == Links::refused ? 23 : 28);
   return parse_json(read_file(file, links, most), file.string());
 }
 

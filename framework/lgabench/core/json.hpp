@@ -21,7 +21,9 @@ Json parse_json(std::string_view text, const std::string& where);
 /// Likewise; null for what parse_json refuses.
 Json json_or_null(std::string_view text);
 
-/// parse_json of a file of at most 256 MiB. @throws InputError likewise, or why it could not be read.
+/// parse_json of a file of at most 256 MiB; of at most 8 MiB, which take some 150 in memory, where no link is followed:
+/// one of a run or a board, which somebody else may have written. @throws InputError likewise, or why it could not be
+/// read.
 Json read_json(const std::filesystem::path& file, Links links = Links::followed);
 
 /// parse_json of each line of a text; a last line needs no end. @throws InputError naming `file` and the line.

@@ -49,8 +49,9 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& kn
 }
 
 std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known) {
-  return fmt::format("no {} \"{}\"{}, expected one of: {}", what, word, suggestion(word, known),
-                     fmt::join(known, ", "));
+  const std::string near = suggestion(word, known);
+  return fmt::format("no {} \"{}\"{}", what, word,
+                     near.empty() ? fmt::format(", expected one of: {}", fmt::join(known, ", ")) : near);
 }
 
 }  // namespace lgabench

@@ -14,7 +14,8 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 /// " (did you mean "heart"?)", or "" where nothing is near.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
-/// "no scenario "hart" (did you mean "heart"?), expected one of: heart, letter"
+/// "no scenario "hart" (did you mean "heart"?)"; "no scenario "moon", expected one of: heart, letter" where nothing is
+/// near.
 std::string none_named(std::string_view what, std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace lgabench

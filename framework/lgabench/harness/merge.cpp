@@ -153,8 +153,9 @@ void expect_same_results(const fs::path& one, const fs::path& other) {
           fmt::format("{} and {}: other results of one cell: {} differs", one.string(), other.string(), file));
 }
 
-// The cell to take: a finished one, else a failed one, else none.
-std::optional<Candidate> best(const std::vector<Part>& parts, const std::string& key, MergeOutcome& outcome) {
+// The cell to take: a finished one, else a failed one, else none; `left_out`: the keys of those that are not as they
+// were written.
+std::optional<Candidate> best(const std::vector<Part>& parts, const std::string& key, std::set<std::string>& left_out) {
   std::optional<Candidate> finished, failed;
   for (const Part& part : parts) {
     Candidate here = candidate(part, key);
@@ -167,9 +168,9 @@ std::optional<Candidate> best(const std::vector<Part>& parts, const std::string&
       if (!failed) failed = std::move(here);
     } else if (!here.state.why.empty()) {
       to_stderr("{}: {}; left out\n", here.directory.string(), here.state.why);
+      left_out.insert(key);
     }
   }
-  ++(finished ? outcome.finished : failed ? outcome.failed : outcome.missing);
   return finished ? finished : failed;
 }
 
@@ -280,11 +281,11 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   RunRecord all = parts.front().record();
   for (const Part& part : parts) unite(all, parts.front(), part);
   const bool of_several_runs = all.cells != parts.front().record().cells;
-  MergeOutcome outcome;
+  std::set<std::string> left_out;
   std::map<std::string, fs::path> chosen, measured;
   std::map<std::string, std::pair<Json, fs::path>> pythons;
   for (const std::string& key : all.cells) {
-    const std::optional<Candidate> from = best(parts, key, outcome);
+    const std::optional<Candidate> from = best(parts, key, left_out);
     if (!from) continue;
     expect_one_python(*from, pythons);
     if (of_several_runs) expect_one_of_each(*from, all.request, measured);
@@ -317,6 +318,12 @@ MergeOutcome merge_runs(const fs::path& out, const std::vector<fs::path>& runs, 
   sync_file_system(directory.path());  // before the first of them gets its name: a name stands for what is on the disk
   for (const auto& cell : chosen) directory.keep(cell.first);
   directory.sync();
+  MergeOutcome outcome;
+  for (const std::string& key : record.cells)
+    if (const fs::path cell = directory.cell(key); has_status(cell))
+      ++(read_cell_status(cell).failed ? outcome.failed : outcome.finished);
+    else
+      ++(left_out.count(key) ? outcome.left_out : outcome.missing);
   return outcome;
 }
 

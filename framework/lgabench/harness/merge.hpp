@@ -7,9 +7,11 @@
 
 namespace lgabench {
 
+/// The cells that run.json asks for, as OUT holds them.
 struct MergeOutcome {
   std::size_t finished = 0, failed = 0;
-  std::size_t missing = 0;  // asked for by run.json, in none of them
+  std::size_t left_out = 0;  // damaged or of another build wherever they are
+  std::size_t missing = 0;   // in none of the runs
 };
 
 /// Puts the cells of `runs` into `out`, a new directory or that of an earlier merge: of each cell a finished one,

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -35,6 +36,26 @@ bool has_content(const fs::path& directory) {
   for (const auto& entry : fs::directory_iterator(directory, none_there))
     if (!is_temporary(entry.path())) return true;
   return false;
+}
+
+// Whether cells lie there, by their names; of them one of `wanted`, unless that is empty.
+bool holds_cells(const fs::path& directory, const std::vector<std::string>& wanted = {}) {
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(directory / "cells", none_there))
+    if (const std::string name = entry.path().filename().string();
+        wanted.empty() ? is_cell_key(name) : std::count(wanted.begin(), wanted.end(), name) > 0)
+      return true;
+  return false;
+}
+
+// What lies there is a run, or one that lost its run.json and is resumed.
+void expect_taken_up(const fs::path& path, const RunRecord& run, Existing existing) {
+  if (is_run(path) || (existing == Existing::resume && holds_cells(path, run.cells))) return;
+  throw InputError(fmt::format(
+      holds_cells(path) ? "{}: cells without their run.json; the command that computed them, with --resume, writes it "
+                          "again"
+                        : "{}: not empty and not a run (no run.json); nothing was written",
+      path.string()));
 }
 
 }  // namespace
@@ -71,7 +92,9 @@ void add_axis(Json& build, const PluginInfo& axis) {
   build["python"] = canonical(versions);
 }
 
-bool is_unconfined(const fs::path& run) { return is_run(run) && read_run_record(run).confinement == unconfined_run; }
+bool is_unconfined(const fs::path& run) {
+  return is_run(run) ? read_run_record(run).confinement == unconfined_run : holds_cells(run);
+}
 
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request) {
   constexpr std::size_t hash = 8;
@@ -105,11 +128,10 @@ RunDirectory::RunDirectory(const fs::path& path, const RunRecord& run, Existing 
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0)
       throw InputError(fmt::format("{}: another run is writing into it", path.string()));
     RunRecord there = run;
-    if (was_there && !is_run(path))
-      throw InputError(fmt::format("{}: not empty and not a run (no run.json); nothing was written", path.string()));
+    if (was_there) expect_taken_up(path, run, existing);
     if (was_there && existing == Existing::fresh) {
       for (const char* name : run_entries) remove_or_throw(path / name);
-    } else if (was_there) {
+    } else if (is_run(path)) {
       there = read_run_record(path);
       if (!same_cells(there.version, run.version))
         throw InputError(fmt::format(

@@ -27,14 +27,14 @@ void add_axis(Json& build, const PluginInfo& axis);
 /// before `suffix` alone: another build's. "" if there is none.
 fs::path earlier_run(const fs::path& wanted, const std::string& suffix, const Json& request);
 
-/// Whether the run in that directory is an unconfined one; false where there is none. @throws InputError for a run.json
-/// that is none.
+/// Whether the run in that directory is an unconfined one, as are cells whose run.json is lost; false where there is
+/// none. @throws InputError for a run.json that is none.
 bool is_unconfined(const fs::path& run);
 
 /// What to do with a directory that is not empty.
 enum class Existing {
   same,    // go on with a run of the same cells and the same build; refuse any other
-  resume,  // likewise, but cells of another build are computed again
+  resume,  // likewise, but cells of another build are computed again, and a run.json that is lost is written again
   fresh    // drop the run that is there; refuse a directory that holds none
 };
 

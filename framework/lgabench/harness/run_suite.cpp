@@ -3,8 +3,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -263,6 +265,20 @@ void record_failure(const RunDirectory& directory, const Cell& cell, const std::
   }
 }
 
+// What the disks lack, said before cells are computed for them.
+void warn_of_disks(const RunPlan& plan, double run_bytes) {
+  std::error_code error;
+  const fs::space_info space = fs::space(plan.out, error);
+  if (!error && static_cast<double>(space.available) < run_bytes)
+    to_stderr("{}: the cells need about {} of disk, and {} are free\n", plan.out.string(), size_text(run_bytes),
+              size_text(static_cast<double>(space.available)));
+  fs::create_directories(plan.cache, error);
+  if (!error && ::access(plan.cache.c_str(), W_OK) != 0) error = std::error_code(errno, std::generic_category());
+  if (error)
+    to_stderr("{}: cannot be written: {}; each cell makes its demonstrations again\n", plan.cache.string(),
+              error.message());
+}
+
 }  // namespace
 
 std::string run_hash(const std::vector<Cell>& cells, const Catalogue& catalogue) {
@@ -351,6 +367,7 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     const bool is_long = expected.wall_s > long_s;
     put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs, plan.purpose)) +
                     (is_long && plan.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
+    if (plan.purpose.empty()) warn_of_disks(plan, expected.run_bytes);
   }
 
   if (asks && !ask_for(missing, plan, catalogue)) {

@@ -171,9 +171,11 @@ Design apply(const JsonReader& overrides, Design design) {
 Suite load_suite(const std::string& id) {
   const bool is_file = fs::path(id).extension() == ".json";
   std::error_code none_to_list;
-  const auto known = json_names(data_directory() / "suites", none_to_list);
-  if (!is_file && std::find(known.begin(), known.end(), id) == known.end())
-    throw InputError(none_named("suite", id, known) + ", or a .json file");
+  auto known = json_names(data_directory() / "suites", none_to_list);
+  if (!is_file && std::find(known.begin(), known.end(), id) == known.end()) {
+    known.emplace_back("or a .json file");
+    throw InputError(none_named("suite", id, known));
+  }
   const fs::path file = is_file ? fs::path(id) : data_directory() / "suites" / (id + ".json");
   const Json json = read_json(file);
   if (is_file) add_scenario_path(fs::absolute(file).parent_path());
