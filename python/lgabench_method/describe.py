@@ -56,7 +56,7 @@ def _versions(tree):
 def _files(folder, module):
     """What a module of that name in the folder is made of: one file, or all of a package's."""
     file = folder / f"{module}.py"
-    return [file] if file.is_file() else sorted((folder / module).rglob("*.py"))
+    return [file] if file.is_file() else sorted(path for path in (folder / module).rglob("*.py") if path.is_file())
 
 
 def _siblings(folder, tree, seen):

@@ -3,9 +3,11 @@ one they are skipped, in CI they fail."""
 import json
 import os
 import pathlib
+import signal
 import socket
 import subprocess
 import sys
+import threading
 import unittest
 
 from case import BUILD, Case, command_line, with_options
@@ -368,6 +370,49 @@ class PythonMethods(Case):
         (packages / "start.pth").write_text("import of_the_venv\n")
         self.call(*with_options(RUN, "--python", "venv/bin/python"), "--methods", "mine.py:Mine", "--dry-run")
         self.assertEqual((self.dir / "told").read_text(), "--interpreter ")
+
+    def described(self, name, *more):
+        """What naming it says, and the most memory in GiB that one of the processes had."""
+        with subprocess.Popen(command_line(*with_options(RUN, "--methods", name, *more), "--dry-run"), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=self.environment,
+                              cwd=self.dir, start_new_session=True) as process:
+            stop = threading.Timer(60, os.killpg, (process.pid, signal.SIGKILL))
+            stop.start()
+            said = process.stderr.read()
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            stop.cancel()
+        self.assertEqual(process.returncode, 4, said)
+        return said, used.ru_maxrss / (1 << 20)
+
+    def test_describing_takes_limited_time_and_memory(self):
+        (self.dir / "big.py").write_text("x=[" + "0," * ((4 << 20) - 100) + "]\nclass M: pass\n")
+        said, most = self.described("big.py:M")
+        self.assertIn("big.py: expected a file that is read in 10 s of processor time and 2 GiB of memory", said)
+        self.assertEqual(said.count("\n"), 1, said)
+        self.assertLess(most, 2.2)
+        # An interpreter that is never done with the file.
+        subprocess.run([PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", self.dir / "venv"], check=True)
+        packages = next((self.dir / "venv/lib").glob("python3*")) / "site-packages"
+        (packages / "slow.py").write_text("import sys\nwhile sys.orig_argv[-1] != '--interpreter':\n    pass\n")
+        (packages / "start.pth").write_text("import slow\n")
+        self.assertIn("expected a file that is read in 10 s", self.described("mine.py:Mine", "--python", "venv/bin/python")[0])
+
+    def test_what_is_no_file_or_too_large_is_not_opened(self):
+        os.mkfifo(self.dir / "fifo.py")
+        (self.dir / "link.py").symlink_to("/dev/zero")
+        (self.dir / "folder.py").mkdir()
+        with (self.dir / "large.py").open("w") as file:
+            file.truncate((8 << 20) + 1)
+        for name in "fifo.py", "link.py", "folder.py", "large.py":
+            for written in name, name + ":M":
+                said, _ = self.described(written)
+                self.assertRegex(said, f"{name}: expected (a regular file|at most 8 MiB, got 8388609 bytes)\n$")
+        self.assertIn("nothing.py: cannot be read: No such file", self.described("nothing.py:M")[0])
+        (self.dir / "pack").mkdir()  # which the method imports
+        os.mkfifo(self.dir / "pack/fifo.py")
+        (self.dir / "mine.py").write_text(METHOD.replace("import helper", "import pack"))
+        self.call(*RUN, "--methods", "mine.py:Mine", "--dry-run", timeout=60)
 
     def test_a_virtual_environment_named_from_here(self):
         subprocess.run([PYTHON, "-m", "venv", "--system-site-packages", "--without-pip", self.dir / "venv"], check=True)

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,11 +34,27 @@ constexpr const char* start =
 
 // What an interpreter is found by, and its packages: no key or token of whoever names a stranger's method.
 std::vector<std::string> describing_environment() {
-  std::vector<std::string> all{"LC_ALL=C.UTF-8", "PYTHONDONTWRITEBYTECODE=1"};
+  std::vector<std::string> all{"LC_ALL=C.UTF-8", "PYTHONDONTWRITEBYTECODE=1", "OPENBLAS_NUM_THREADS=1"};
   for (const char* name :
        {"PATH", "HOME", "LD_LIBRARY_PATH", "PYTHONUSERBASE", "PYTHONNOUSERSITE", "PYENV_ROOT", "PYENV_VERSION"})
     if (const char* value = std::getenv(name)) all.push_back(fmt::format("{}={}", name, value));
   return all;
+}
+
+// What reading a method's file may take: a parser needs 200 times its size. Time is the processor's, so that a slow
+// disk costs none.
+constexpr rlim_t most_mib = 8, most_seconds = 10, most_gib = 2;
+
+// In the process that reads the file. False where the system refused.
+bool confine(const Confinement& confinement) {
+  const auto limit = [](auto resource, rlim_t value) {
+    rlimit both{};
+    ::getrlimit(resource, &both);
+    both.rlim_cur = std::min(value, both.rlim_max);
+    return ::setrlimit(resource, &both) == 0;
+  };
+  return limit(RLIMIT_CORE, 0) && limit(RLIMIT_CPU, most_seconds) && limit(RLIMIT_DATA, most_gib << 30) &&
+         confinement.apply();
 }
 
 // What the interpreter prints, without a shell, started in an empty directory; confined where the method's file is
@@ -58,7 +75,7 @@ Output output_of(const std::string& interpreter, const std::string& word, const 
                      describing_environment(),
                      {{to_out.fd, 1}, {to_error.fd, 2}},
                      empty,
-                     [confinement] { return !confinement || confinement->apply(); }});
+                     [confinement] { return !confinement || confine(*confinement); }});
   const int status = wait_for(pid);
   return {read_file(out), read_file(error), status};
 }
@@ -90,8 +107,22 @@ std::string answer_of(const std::string& interpreter, const std::string& word, c
         "{0}: has no NumPy, which methods in Python need: {0} -m pip install numpy, or name an interpreter that has it "
         "with --python (/usr/bin/python3 with Debian's python3-numpy)",
         interpreter));
-  if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last_line(error)));
+  const std::string last = last_line(error);
+  if (confinement && (WIFSIGNALED(status) || last.rfind("MemoryError", 0) == 0))
+    throw PluginError(fmt::format("{}: expected a file that is read in {} s of processor time and {} GiB of memory",
+                                  word.substr(0, word.rfind(':')), most_seconds, most_gib));
+  if (status != 0) throw PluginError(fmt::format("{}: {}", interpreter, last));
   return out;
+}
+
+// Before a file is opened, which a FIFO would make wait for ever. One that is not there its reader tells of.
+void check_is_readable(const fs::path& file) {
+  std::error_code not_there;
+  const fs::file_status status = fs::status(file, not_there);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw PluginError(fmt::format("{}: expected a regular file", file.string()));
+  if (const std::uintmax_t bytes = fs::file_size(file, not_there); !not_there && bytes > most_mib << 20)
+    throw PluginError(fmt::format("{}: expected at most {} MiB, got {} bytes", file.string(), most_mib, bytes));
 }
 
 // The descriptor that the file holds, by its absolute name, with where its interpreter reads. That is asked first,
@@ -139,7 +170,9 @@ bool is_python_method(const std::string& word) {
 
 PluginInfo describe_python(const std::string& written, const std::string& interpreter) {
   PluginInfo plugin;
-  if (written.find(".py:") == written.npos) {
+  const bool has_class = written.find(".py:") != written.npos;
+  check_is_readable(has_class ? written.substr(0, written.rfind(':')) : written);
+  if (!has_class) {
     std::error_code not_there;
     if (!fs::exists(written, not_there)) throw PluginError(written + ": no such file");
     throw PluginError(
