@@ -5,6 +5,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <linux/fs.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/inotify.h>
 #include <sys/ioctl.h>
@@ -23,6 +24,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -112,6 +114,16 @@ std::string leave_a_tree(const std::filesystem::path& files) {
   return "left";
 }
 
+// 1.5 GiB of tables for pages that hold nothing.
+std::string fill_page_tables() {
+  constexpr std::size_t bytes = std::size_t{3} << 38, one_table = 1 << 21;
+  void* memory = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (memory == MAP_FAILED) return outcome(-1);
+  for (std::size_t at = 0; at < bytes; at += one_table) static_cast<void>(static_cast<volatile char*>(memory)[at]);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
+  return "reached";
+}
+
 std::string connect_to(int port) {
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -142,6 +154,43 @@ long thread_of_its_own(const std::string&) {
   int number = -1;
   std::thread([&number] { number = 0; }).join();
   return number;
+}
+
+// As some libraries ask, to learn where its stack lies.
+long thread_attributes(const std::string&) {
+  int number = -1;
+  std::thread([&number] {
+    pthread_attr_t attributes;
+    number = ::pthread_getattr_np(::pthread_self(), &attributes) == 0 ? 0 : -1;
+  }).join();
+  return number;
+}
+
+// Each of what is asked of others below.
+long asks_of_itself(const std::string&) {
+  cpu_set_t all;
+  sched_param schedule{};
+  timespec time{};
+  char attributes[64];
+  for (const pid_t itself : {0, ::getpid()})
+    if (::getpgid(itself) < 0 || ::getsid(itself) < 0 || ::sched_getaffinity(itself, sizeof all, &all) != 0 ||
+        ::sched_getparam(itself, &schedule) != 0 || ::sched_getscheduler(itself) < 0 ||
+        ::syscall(SYS_sched_getattr, itself, attributes, sizeof attributes, 0) != 0 ||
+        ::sched_rr_get_interval(itself, &time) != 0 || ::syscall(SYS_ioprio_get, 1, itself) < 0 ||
+        ::getpriority(PRIO_PROCESS, static_cast<id_t>(itself)) != 0)
+      return -1;
+  clockid_t of_this_thread = 0;
+  if (::pthread_getcpuclockid(::pthread_self(), &of_this_thread) != 0) return errno = EINVAL, -1;
+  for (const clockid_t clock : {CLOCK_REALTIME, CLOCK_MONOTONIC, CLOCK_PROCESS_CPUTIME_ID, CLOCK_THREAD_CPUTIME_ID,
+                                CLOCK_MONOTONIC_RAW, CLOCK_MONOTONIC_COARSE, CLOCK_BOOTTIME, of_this_thread})
+    if (::syscall(SYS_clock_gettime, clock, &time) != 0) return -1;
+  return 0;
+}
+
+// As OpenBLAS asks where its buffers shall lie: the upper half of an int is whatever was in the register.
+long place_memory(unsigned long flags) {
+  void* memory = ::mmap(nullptr, 1 << 16, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return ::syscall(SYS_mbind, memory, 1 << 16, 1 /* MPOL_PREFERRED */, nullptr, 0, flags);
 }
 
 long program_of_its_own(const std::string&) { return std::system("exit 0") == -1 ? -1 : 0; }
@@ -203,7 +252,7 @@ const std::map<std::string, Try> system_calls = {
     {"sched_setaffinity",
      [](const std::string&) -> long {
        cpu_set_t all;
-       return ::sched_getaffinity(::getppid(), sizeof all, &all) | ::sched_setaffinity(::getppid(), sizeof all, &all);
+       return ::sched_getaffinity(0, sizeof all, &all) | ::sched_setaffinity(::getppid(), sizeof all, &all);
      }},
     {"sched_setscheduler",
      [](const std::string&) -> long {
@@ -211,6 +260,55 @@ const std::map<std::string, Try> system_calls = {
        return ::sched_setscheduler(::getppid(), SCHED_IDLE, &none);
      }},
     {"ioprio_set", [](const std::string&) { return ::syscall(SYS_ioprio_set, 1, ::getppid(), 3 << 13); }},
+    {"getpgid", [](const std::string&) -> long { return ::getpgid(::getppid()); }},
+    {"getsid", [](const std::string&) -> long { return ::getsid(::getppid()); }},
+    {"setpgid", [](const std::string&) -> long { return ::setpgid(::getppid(), 0); }},  // says whether it is a thread's
+    {"getpriority", [](const std::string&) { return ::syscall(SYS_getpriority, PRIO_PROCESS, ::getppid()); }},
+    {"users_priority", [](const std::string&) { return ::syscall(SYS_getpriority, PRIO_USER, 0); }},
+    {"ioprio_get", [](const std::string&) { return ::syscall(SYS_ioprio_get, 1, ::getppid()); }},
+    {"groups_ioprio", [](const std::string&) { return ::syscall(SYS_ioprio_get, 2, 0); }},
+    {"sched_getaffinity",
+     [](const std::string&) -> long {
+       cpu_set_t all;
+       return ::sched_getaffinity(::getppid(), sizeof all, &all);
+     }},
+    {"sched_getparam",
+     [](const std::string&) -> long {
+       sched_param schedule{};
+       return ::sched_getparam(::getppid(), &schedule);
+     }},
+    {"sched_getscheduler", [](const std::string&) -> long { return ::sched_getscheduler(::getppid()); }},
+    {"sched_getattr",
+     [](const std::string&) {
+       char attributes[64];
+       return ::syscall(SYS_sched_getattr, ::getppid(), attributes, sizeof attributes, 0);
+     }},
+    {"sched_rr_get_interval",
+     [](const std::string&) -> long {
+       timespec time{};
+       return ::sched_rr_get_interval(::getppid(), &time);
+     }},
+    {"get_robust_list",
+     [](const std::string&) {
+       void* list = nullptr;
+       std::size_t size = 0;
+       return ::syscall(SYS_get_robust_list, ::getppid(), &list, &size);
+     }},
+    {"capget",
+     [](const std::string&) {
+       struct {
+         unsigned version;
+         int pid;
+       } header{0x20080522, ::getppid()};
+       unsigned sets[6] = {};
+       return ::syscall(SYS_capget, &header, sets);
+     }},
+    {"clock_gettime",
+     [](const std::string&) {
+       timespec time{};
+       return ::syscall(SYS_clock_gettime, static_cast<clockid_t>(~static_cast<unsigned>(::getppid()) << 3 | 2), &time);
+     }},
+    {"mbind", [](const std::string&) { return place_memory(4); }},  // MPOL_MF_MOVE_ALL
     {"datagrams", datagrams_to},
     {"named_socket", named_socket},
     {"pipe_size",
@@ -236,6 +334,9 @@ const std::map<std::string, Try> system_calls = {
     {"clone3", [](const std::string&) { return ::syscall(SYS_clone3, nullptr, 0); }},
     {"unknown", [](const std::string&) { return ::syscall(1000); }},
     {"thread", thread_of_its_own},
+    {"thread_attributes", thread_attributes},
+    {"asks_of_itself", asks_of_itself},
+    {"own_memory", [](const std::string&) { return place_memory(0x7fc600000000); }},
     {"program", program_of_its_own},
 };
 
@@ -278,6 +379,7 @@ std::string probe(const std::string& how, const std::string& path, const Command
   if (how == "many_files") return make_files(12000);
   if (how == "pipes") return fill_pipes();
   if (how == "tree") return leave_a_tree(services.files);
+  if (how == "page_tables") return fill_page_tables();
   if (how == "shared_memory") return share_memory(std::size_t{2} << 30);
   if (const auto one = system_calls.find(how); one != system_calls.end()) return outcome(one->second(path));
   if (how == "human") return services.human.specify(command).target.product().object_types.at(0);

@@ -20,7 +20,9 @@ RUN = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--
        FIXTURES / "faulty"]
 # What it tries -> the reason that its cell fails for; None where the cell goes well, as an honest one.
 KINDS = {"": None, "rounding": None, "others": None, "link": None, "directory_link": None, "daemon": None, "fork": None,
-         "flood": None, "descriptors": None, "shared_memory": "out of memory", "kill": r"signal 9 \(Killed\) in phase learn",
+         "flood": None, "descriptors": None, "shared_memory": "out of memory",
+         "processes": "it had more than 1000 processes and threads", "threads": "it had more than 1000 processes and threads",
+         "kill": r"signal 9 \(Killed\) in phase learn",
          "people": "expected a method declared as", "spoof": "sent a malformed frame", "input_error": "the disk is full",
          "exit_4": "exited with 4 in phase learn", "epoch": "training log: /epoch: expected a whole number from 1"}
 
@@ -30,7 +32,8 @@ class Harm(Case):
         super().setUp()
         self.writers = ["fixture_hostile"]
         if HAS_NUMPY:
-            shutil.copy(HOSTILE, self.dir)
+            for file in HOSTILE, FIXTURES / "faulty/many":
+                shutil.copy(file, self.dir)
             self.writers.append("hostile.py:Hostile")
 
     def row(self, writer, how):
@@ -239,6 +242,26 @@ class Keepers(Harm):
         said = self.call("attribute", "run", "--plugin-path", "mine_no", expect=1).stderr
         self.assertIn("left out", said)
         self.assertEqual(self.causes("run-attributed"), {None})
+
+
+class Neighbours(Case):
+    """Two cells that are computed at the same time tell each other a number."""
+
+    def heard(self, how):
+        """Training seed -> what its method heard."""
+        plugin = FIXTURES / "faulty/fixture_neighbour.so"
+        self.call("run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0:2", "--episodes", "1", "--no-reference",
+                  "--jobs", "2", "--plugin-path", FIXTURES / "faulty", "--methods", f"fixture_neighbour+how={how}+file={plugin}",
+                  "--out", how, expect=3)
+        return {cell["training_seed"]: re.search(r"heard \d+|$", status["reason"])[0] for cell, status in self.cells(how).values()}
+
+    def test_nothing_is_heard_by_process_groups(self):
+        self.assertEqual(self.heard("group"), {0: "heard 0", 1: "heard 0"})
+
+    def test_what_remains_possible(self):
+        """Where a kernel gives these no longer, docs/trust.md says too much."""
+        for how in "futex", "threads":
+            self.assertEqual(self.heard(how), {0: "heard 41", 1: "heard 40"}, how)
 
 
 class Cheats(Harm):

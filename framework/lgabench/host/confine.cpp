@@ -45,6 +45,15 @@ bool is_below(const fs::path& path, const fs::path& directory) {
   return end == directory.end();
 }
 
+// For what is there, and not for a link unless it is followed. False where the kernel refuses.
+bool add_rule(int rules, const fs::path& path, std::uint64_t access, bool follow = true) {
+  const Descriptor opened(::open(path.c_str(), O_PATH | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW)));
+  struct stat status {};
+  if (opened.fd < 0 || ::fstat(opened.fd, &status) != 0 || S_ISLNK(status.st_mode)) return true;
+  const landlock_path_beneath_attr rule{S_ISDIR(status.st_mode) ? access : access & of_files, opened.fd};
+  return ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) == 0;
+}
+
 class Rules {
  public:
   Rules(int version, bool network) : handled_(handled_by(version)) {
@@ -56,11 +65,7 @@ class Rules {
   }
 
   void add(const fs::path& path, std::uint64_t access, bool follow = true) const {
-    const Descriptor opened(::open(path.c_str(), O_PATH | O_CLOEXEC | (follow ? 0 : O_NOFOLLOW)));
-    struct stat status {};
-    if (opened.fd < 0 || ::fstat(opened.fd, &status) != 0 || S_ISLNK(status.st_mode)) return;
-    const landlock_path_beneath_attr rule{(S_ISDIR(status.st_mode) ? access : access & of_files) & handled_, opened.fd};
-    if (::syscall(SYS_landlock_add_rule, file.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0)
+    if (!add_rule(file.fd, path, access & handled_, follow))
       throw EngineError(fmt::format("Landlock: {}: {}", path.string(), std::strerror(errno)));
   }
 
@@ -144,13 +149,15 @@ Confinement::Confinement(const Reach& reach) : network_(reach.network) {
   rules_ = std::move(rules.file);
 }
 
+// The process's own view of itself, without that of the network and of who else maps its pages.
+constexpr const char* of_itself[] = {"auxv",   "cgroup",    "cmdline", "comm", "environ", "fd",    "fdinfo",
+                                     "limits", "mountinfo", "mounts",  "maps", "stat",    "statm", "status"};
+
 bool Confinement::apply(int socket) const {
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
   if (rules_.fd >= 0) {
-    // The process's own view of itself: its number is known only here.
-    const int itself = ::open("/proc/self", O_PATH | O_DIRECTORY | O_CLOEXEC);
-    const landlock_path_beneath_attr rule{reading, itself};
-    if (itself >= 0) ::syscall(SYS_landlock_add_rule, rules_.fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+    add_rule(rules_.fd, "/proc/self", read_dir);  // whose number is known only here
+    for (const char* name : of_itself) add_rule(rules_.fd, fs::path("/proc/self") / name, reading, false);
     if (::syscall(SYS_landlock_restrict_self, rules_.fd, 0) != 0) return false;
   }
   return !has_seccomp() || allow_system_calls(network_, socket);

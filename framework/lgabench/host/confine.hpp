@@ -22,8 +22,8 @@ class Confinement {
   /// Paths that are not there are passed over. @throws EngineError where the kernel refuses a rule.
   explicit Confinement(const Reach& reach);
   /// In the child, before exec. From then on it and all that it starts see what `reach` says, signal and trace nobody
-  /// else, and without `network` connect to nobody; RefusedCalls is told on the
-  /// socket, if there is one. False where the kernel refused.
+  /// else, and without `network` connect to nobody; NotedCalls is told on the socket, if there is one. False where the
+  /// kernel refused.
   bool apply(int socket = -1) const;
 
  private:

@@ -75,33 +75,42 @@ std::vector<pid_t>& hosts() {
   return all;
 }
 
-// Of the host, and what others left behind: not the other hosts, nor what is below them.
-std::vector<pid_t> descendants(pid_t host) {
+// Of the host, and what others left behind: not the other hosts, nor what is below them. A few more than `most` end it.
+// Each is sent the signal, unless that is 0, before its own are looked for.
+std::vector<pid_t> descendants(pid_t host, int signal, std::size_t most = SIZE_MAX) {
   const auto is_others = [host](pid_t pid) {
     return pid != host && std::find(hosts().begin(), hosts().end(), pid) != hosts().end();
   };
   std::vector<pid_t> all = children_of(::getpid());
   all.erase(std::remove_if(all.begin(), all.end(), is_others), all.end());
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::size_t i = 0; i < all.size() && all.size() <= most; ++i) {
+    if (signal != 0) ::kill(all[i], signal);
     for (const pid_t pid : children_of(all[i])) all.push_back(pid);
+  }
   return all;
 }
 
 // What processes have of the system.
 struct Use {
   long long memory = 0;         // bytes
+  std::size_t tasks = 0;        // processes and their threads
   std::uintmax_t nameless = 0;  // bytes on the disk of open files that were deleted
   std::set<std::pair<dev_t, ino_t>> counted{};
 };
 
-// Bytes of its own and of shared memory; pages of mapped files are the system's to drop.
-long long memory_of(pid_t pid) {
+// Its own memory and shared one, with the tables of its pages, and what the system keeps of each thread; pages of
+// mapped files are the system's to drop.
+void add_status(pid_t pid, Use& use) {
+  constexpr long long task_kib = 100;
   std::ifstream file(fmt::format("/proc/{}/status", pid));
-  long long kib = 0;
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("RssAnon:", 0) == 0 || line.rfind("RssShmem:", 0) == 0)
-      kib += std::atoll(line.c_str() + line.find(':') + 1);
-  return kib << 10;
+  for (std::string line; std::getline(file, line);) {
+    const std::string name = line.substr(0, line.find(':'));
+    const long long number = std::atoll(line.c_str() + std::min(line.size(), name.size() + 1));
+    if (name == "RssAnon" || name == "RssShmem" || name == "VmPTE") use.memory += number << 10;
+    if (name != "Threads") continue;
+    use.tasks += static_cast<std::size_t>(number);
+    use.memory += number * task_kib << 10;
+  }
 }
 
 // Each pipe and socket as if it were full.
@@ -151,7 +160,7 @@ HostProcess::HostProcess(const HostCommand& command)
   pid_ = start_process(start);
   hosts().push_back(pid_);
   theirs.close();
-  if (command.confinement && has_seccomp()) refused_ = RefusedCalls(socket_.fd);
+  if (command.confinement && has_seccomp()) calls_ = NotedCalls(socket_.fd);
 }
 
 HostProcess::~HostProcess() {
@@ -165,39 +174,44 @@ void HostProcess::wait(int fd, short events) {
 }
 
 void HostProcess::attend(int fd, short events, int milliseconds) {
-  std::array<pollfd, 3> watched{{{fd, events, 0}, {output_.fd, POLLIN, 0}, {refused_.descriptor(), POLLIN, 0}}};
+  std::array<pollfd, 3> watched{{{fd, events, 0}, {output_.fd, POLLIN, 0}, {calls_.descriptor(), POLLIN, 0}}};
   ::poll(watched.data(), watched.size(), milliseconds);
   pass_on_output();
-  refused_.take(watched[2].revents);
+  calls_.take(watched[2].revents);
 }
 
-// Ten times a second, and less often where looking takes long.
+// Ten times a second; less often where looking takes long, more often where much is started.
 void HostProcess::watch_use() {
   using Clock = std::chrono::steady_clock;
   constexpr std::uintmax_t most_bytes = std::uintmax_t{4} << 30, most_files = 10000;
+  constexpr std::size_t most_tasks = 1000;
   const Clock::time_point start = Clock::now();
-  if (reaped_ || start < look_again_) return;
+  if (reaped_ || (start < look_again_ && calls_.started() < started_ + most_tasks)) return;
+  started_ = calls_.started();
   Use use;
-  for (const pid_t pid : descendants(pid_)) {
-    use.memory += memory_of(pid);
-    add_descriptors(pid, use);
-  }
+  const std::vector<pid_t> all = descendants(pid_, 0, most_tasks);
+  if (all.size() <= most_tasks)
+    for (const pid_t pid : all) add_status(pid, use);
+  const auto gone_for = [this](const std::string& reason) {
+    stop();
+    throw MethodGone(reason, 0);
+  };
+  if (std::max(all.size(), use.tasks) > most_tasks)
+    gone_for(fmt::format("it had more than {} processes and threads", most_tasks));
+  for (const pid_t pid : all) add_descriptors(pid, use);
   const TreeSize files = tree_size(scratch_.fd, most_files);
   look_again_ = start + std::max<Clock::duration>(std::chrono::milliseconds(100), 20 * (Clock::now() - start));
   if (memory_bytes_ > 0 && use.memory > memory_bytes_) {
     stop();
     throw std::bad_alloc();
   }
+  if (files.files > most_files)
+    gone_for(fmt::format("it made more than {} files, or directories 100 deep, in its scratch directory", most_files));
   const std::uintmax_t allowed =
       memory_bytes_ > 0 ? std::min(most_bytes, static_cast<std::uintmax_t>(memory_bytes_)) : most_bytes;
-  if (files.files <= most_files && files.bytes + use.nameless <= allowed) return;
-  stop();
-  throw MethodGone(
-      files.files > most_files
-          ? fmt::format("it made more than {} files, or directories 100 deep, in its scratch directory", most_files)
-          : fmt::format("its files in its scratch directory took more than {:.1f} GiB",
-                        static_cast<double>(allowed) / (1 << 30)),
-      0);
+  if (files.bytes + use.nameless > allowed)
+    gone_for(fmt::format("its files in its scratch directory took more than {:.1f} GiB",
+                         static_cast<double>(allowed) / (1 << 30)));
 }
 
 std::vector<std::string> HostProcess::started() const {
@@ -226,7 +240,7 @@ void HostProcess::pass_on_output() {
   }
 }
 
-// The host's session, then those that left it, until there is none.
+// The host's session, then those that left it, until there is none. Who starts another waits for an answer meanwhile.
 void HostProcess::stop() {
   if (reaped_) return;
   if (!in_foreground_) {
@@ -236,11 +250,9 @@ void HostProcess::stop() {
   ::waitpid(pid_, nullptr, 0);
   reaped_ = true;
   hosts().erase(std::remove(hosts().begin(), hosts().end(), pid_), hosts().end());
-  for (std::vector<pid_t> left = descendants(pid_); !left.empty(); left = descendants(pid_))
-    for (const pid_t pid : left) {
-      ::kill(pid, SIGKILL);
-      ::waitpid(pid, nullptr, 0);
-    }
+  const auto killed = [this] { return descendants(pid_, SIGKILL); };
+  for (std::vector<pid_t> left = killed(); !left.empty(); left = killed())
+    for (const pid_t pid : left) ::waitpid(pid, nullptr, 0);
 }
 
 void HostProcess::explain() {

@@ -21,7 +21,7 @@ struct HostCommand {
   std::filesystem::path scratch;             // its directory, HOME and TMPDIR; there already
   std::vector<std::string> also_set;         // variables beside those of the allow-list, as NAME=value
   const Confinement* confinement = nullptr;  // lent; none: it may reach what we may
-  long long memory_bytes = 0;  // of it and what it started, shared memory, pipes and sockets included; 0: no limit
+  long long memory_bytes = 0;  // of all its processes; shared memory, pipes and sockets included; 0: no limit
   bool in_foreground = false;  // on our terminal, until whoever debugs it ends it
 };
 
@@ -42,10 +42,11 @@ class HostProcess {
   /// Our end; to be taken once.
   Descriptor take_socket() { return std::move(socket_); }
   /// Returns when the socket `fd` has one of the poll() events, or after a moment; passes on what the host prints.
-  /// It is gone where it has more than it may: of memory @throws std::bad_alloc, of files in its directory MethodGone.
+  /// It is gone where it has more than it may: of memory @throws std::bad_alloc, of files in its directory, processes
+  /// and threads MethodGone.
   void wait(int fd, short events);
   /// Names of the system calls that it was refused so far.
-  const std::vector<std::string>& refused_calls() const { return refused_.names(); }
+  const std::vector<std::string>& refused_calls() const { return calls_.refused(); }
   /// Processes that it started, directly or not, and that are still there: "NUMBER NAME" each.
   std::vector<std::string> started() const;
   /// The connection is at its end. @throws MethodGone that says how the process ended, always.
@@ -63,7 +64,8 @@ class HostProcess {
   pid_t pid_ = -1;
   bool reaped_ = false;
   Descriptor socket_, output_, scratch_;
-  RefusedCalls refused_;
+  NotedCalls calls_;
+  std::size_t started_ = 0;  // of them at the last look
   std::size_t printed_ = 0;
 };
 

@@ -46,16 +46,7 @@ void shift_heap() {
 
 ProcessState ProcessState::now() {
   ProcessState state;
-  state.threads = entries("/proc/self/task", [](const fs::path& task, std::error_code& gone) {
-    gone.clear();
-    try {
-      std::string name = read_file(task / "comm");
-      return name.substr(0, name.find('\n'));
-    } catch (const InputError&) {
-      gone = std::make_error_code(std::errc::no_such_process);
-      return std::string();
-    }
-  });
+  state.threads = entries("/proc/self/task", [](const fs::path& task, std::error_code&) { return task.filename(); });
   state.descriptors = entries("/proc/self/fd", [](const fs::path& link, std::error_code& gone) {
     return fs::read_symlink(link, gone).string();
   });

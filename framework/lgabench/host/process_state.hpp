@@ -5,7 +5,7 @@
 
 namespace lgabench {
 
-/// Threads by name, open descriptors by what they lead to, bytes on the heap.
+/// Threads by number, open descriptors by what they lead to, bytes on the heap.
 struct ProcessState {
   std::vector<std::string> threads, descriptors;  // sorted
   long long heap_bytes = 0;

@@ -10,6 +10,7 @@
 #include <seccomp.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -40,23 +41,19 @@ constexpr int always[] = {
     // Memory of its own.
     SCMP_SYS(brk), SCMP_SYS(mmap), SCMP_SYS(munmap), SCMP_SYS(mprotect), SCMP_SYS(mremap), SCMP_SYS(msync),
     SCMP_SYS(mlock), SCMP_SYS(munlock), SCMP_SYS(membarrier), SCMP_SYS(set_mempolicy),
-    // Itself and what it starts; of others' schedules only reading.
-    SCMP_SYS(execve), SCMP_SYS(exit), SCMP_SYS(exit_group), SCMP_SYS(fork), SCMP_SYS(vfork), SCMP_SYS(wait4),
-    SCMP_SYS(waitid), SCMP_SYS(getpid), SCMP_SYS(getppid), SCMP_SYS(gettid), SCMP_SYS(getpgid), SCMP_SYS(getpgrp),
-    SCMP_SYS(setpgid), SCMP_SYS(getsid), SCMP_SYS(setsid), SCMP_SYS(getuid), SCMP_SYS(geteuid), SCMP_SYS(getgid),
-    SCMP_SYS(getegid), SCMP_SYS(getresuid), SCMP_SYS(getresgid), SCMP_SYS(getgroups), SCMP_SYS(capget),
+    // Itself, and waiting for what it starts.
+    SCMP_SYS(execve), SCMP_SYS(exit), SCMP_SYS(exit_group), SCMP_SYS(wait4), SCMP_SYS(waitid), SCMP_SYS(getpid),
+    SCMP_SYS(getppid), SCMP_SYS(gettid), SCMP_SYS(getpgrp), SCMP_SYS(setsid), SCMP_SYS(getuid), SCMP_SYS(geteuid),
+    SCMP_SYS(getgid), SCMP_SYS(getegid), SCMP_SYS(getresuid), SCMP_SYS(getresgid), SCMP_SYS(getgroups),
     SCMP_SYS(getrusage), SCMP_SYS(times), SCMP_SYS(uname), SCMP_SYS(sysinfo), SCMP_SYS(getrlimit), SCMP_SYS(setrlimit),
-    SCMP_SYS(arch_prctl), SCMP_SYS(set_tid_address), SCMP_SYS(set_robust_list), SCMP_SYS(get_robust_list),
-    SCMP_SYS(rseq), SCMP_SYS(futex), SCMP_SYS(futex_waitv), SCMP_SYS(sched_yield), SCMP_SYS(sched_getaffinity),
-    SCMP_SYS(sched_getparam), SCMP_SYS(sched_getscheduler), SCMP_SYS(sched_getattr), SCMP_SYS(sched_get_priority_max),
-    SCMP_SYS(sched_get_priority_min), SCMP_SYS(sched_rr_get_interval), SCMP_SYS(getpriority), SCMP_SYS(ioprio_get),
+    SCMP_SYS(arch_prctl), SCMP_SYS(set_tid_address), SCMP_SYS(set_robust_list), SCMP_SYS(rseq), SCMP_SYS(futex),
+    SCMP_SYS(futex_waitv), SCMP_SYS(sched_yield), SCMP_SYS(sched_get_priority_max), SCMP_SYS(sched_get_priority_min),
     SCMP_SYS(getcpu), SCMP_SYS(getrandom), SCMP_SYS(restart_syscall),
     // Signals, clocks, events.
     SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigreturn), SCMP_SYS(rt_sigpending),
     SCMP_SYS(rt_sigsuspend), SCMP_SYS(rt_sigtimedwait), SCMP_SYS(sigaltstack), SCMP_SYS(signalfd), SCMP_SYS(signalfd4),
-    SCMP_SYS(pause), SCMP_SYS(clock_gettime), SCMP_SYS(clock_getres), SCMP_SYS(clock_nanosleep), SCMP_SYS(nanosleep),
-    SCMP_SYS(gettimeofday), SCMP_SYS(time), SCMP_SYS(alarm), SCMP_SYS(getitimer), SCMP_SYS(setitimer),
-    SCMP_SYS(timer_create), SCMP_SYS(timer_delete), SCMP_SYS(timer_getoverrun), SCMP_SYS(timer_gettime),
+    SCMP_SYS(pause), SCMP_SYS(nanosleep), SCMP_SYS(gettimeofday), SCMP_SYS(time), SCMP_SYS(alarm), SCMP_SYS(getitimer),
+    SCMP_SYS(setitimer), SCMP_SYS(timer_delete), SCMP_SYS(timer_getoverrun), SCMP_SYS(timer_gettime),
     SCMP_SYS(timer_settime), SCMP_SYS(timerfd_create), SCMP_SYS(timerfd_gettime), SCMP_SYS(timerfd_settime),
     SCMP_SYS(poll), SCMP_SYS(ppoll), SCMP_SYS(select), SCMP_SYS(pselect6), SCMP_SYS(epoll_create),
     SCMP_SYS(epoll_create1), SCMP_SYS(epoll_ctl), SCMP_SYS(epoll_wait), SCMP_SYS(epoll_pwait), SCMP_SYS(epoll_pwait2),
@@ -67,11 +64,13 @@ constexpr int always[] = {
 constexpr int with_network[] = {SCMP_SYS(connect), SCMP_SYS(bind),       SCMP_SYS(listen),   SCMP_SYS(accept),
                                 SCMP_SYS(accept4), SCMP_SYS(setsockopt), SCMP_SYS(sendmmsg), SCMP_SYS(recvmmsg)};
 
-// The argument's bits of the mask are one of the values, the others of its lower 32 anything, the upper 32 all 0.
+// The argument's bits of the mask are one of the values, the others anything. Callers leave anything in the upper half
+// of an int, which the kernel does not read; of a pointer it is 0 too.
 struct Condition {
   unsigned argument;
   std::vector<std::uint32_t> values;
   std::uint32_t mask = ~0u;
+  bool pointer = false;
 };
 
 // BPF, assembled by hand: libseccomp cannot notify of whatever is not on a list. Every jump is a short one forwards.
@@ -84,18 +83,22 @@ class Filter {
     load(offsetof(seccomp_data, nr));
   }
 
-  void allow(int call, const std::vector<Condition>& all = {}) {
+  void allow(int call, const std::vector<Condition>& all = {}) { allow(call, all, refusal_); }
+  /// Where a condition does not hold, the verdict is `otherwise`.
+  void allow(int call, const std::vector<Condition>& all, std::uint32_t otherwise) {
     if (call < 0) return;
     const std::size_t head = code_.size();
     emit(BPF_JMP | BPF_JEQ | BPF_K, static_cast<std::uint32_t>(call), 0, 0);
-    for (const auto& [argument, values, mask] : all) {
-      load(offsetof(seccomp_data, args) + 8 * argument + 4);
-      emit(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0);
-      give(refusal_);
+    for (const auto& [argument, values, mask, pointer] : all) {
+      if (pointer) {
+        load(offsetof(seccomp_data, args) + 8 * argument + 4);
+        emit(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0);
+        give(otherwise);
+      }
       load(offsetof(seccomp_data, args) + 8 * argument);
       emit(BPF_ALU | BPF_AND | BPF_K, mask, 0, 0);
       for (std::size_t i = 0; i < values.size(); ++i) emit(BPF_JMP | BPF_JEQ | BPF_K, values[i], values.size() - i, 0);
-      give(refusal_);
+      give(otherwise);
     }
     give(SECCOMP_RET_ALLOW);
     code_[head].jf = static_cast<std::uint8_t>(code_.size() - head - 1);
@@ -125,19 +128,43 @@ class Filter {
   std::vector<sock_filter> code_;
 };
 
+constexpr std::uint32_t new_namespace_or_parent = 0x7e028000;  // CLONE_NEW*, CLONE_PARENT
+
+// A process or a thread of the usual kind.
+bool starts_task(const seccomp_data& call) {
+  return call.nr == SCMP_SYS(fork) || call.nr == SCMP_SYS(vfork) ||
+         (call.nr == SCMP_SYS(clone) && (call.args[0] & new_namespace_or_parent) == 0);
+}
+
 Filter filter_of(bool network, std::uint32_t refusal) {
-  constexpr std::uint32_t socket_type = 0xf, new_namespace_or_parent = 0x7e028000;  // CLONE_NEW*, CLONE_PARENT
-  const auto self = static_cast<std::uint32_t>(::getpid());                         // stays its own over exec
+  constexpr std::uint32_t socket_type = 0xf;
+  const auto self = static_cast<std::uint32_t>(::getpid());  // stays its own over exec
   Filter filter(refusal);
   for (const int call : always) filter.allow(call);
-  filter.allow(SCMP_SYS(clone), {{0, {0}, new_namespace_or_parent}});
+  if (refusal != SECCOMP_RET_USER_NOTIF) {  // else each start is asked for, and counted
+    for (const int call : {SCMP_SYS(fork), SCMP_SYS(vfork)}) filter.allow(call);
+    filter.allow(SCMP_SYS(clone), {{0, {0}, new_namespace_or_parent}});
+  }
   filter.allow(SCMP_SYS(socketpair), {{0, {AF_UNIX}}, {1, {SOCK_STREAM, SOCK_SEQPACKET}, socket_type}});
   filter.allow(SCMP_SYS(fcntl),
                {{1, {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL}}});  // no owner, lease, lock or hint
   filter.allow(SCMP_SYS(ioctl), {{1, {FIOCLEX, FIONCLEX, FIONBIO, FIONREAD, TCGETS, TIOCGWINSZ}}});
   for (const int call : {SCMP_SYS(kill), SCMP_SYS(tgkill), SCMP_SYS(rt_sigqueueinfo), SCMP_SYS(rt_tgsigqueueinfo)})
     filter.allow(call, {{0, {self}}});
-  filter.allow(SCMP_SYS(prlimit64), {{0, {0}}});  // 0: itself
+  // Of itself alone, and not by the number of one of its threads.
+  for (const int call : {SCMP_SYS(getpgid), SCMP_SYS(setpgid), SCMP_SYS(getsid), SCMP_SYS(prlimit64),
+                         SCMP_SYS(get_robust_list), SCMP_SYS(sched_getparam), SCMP_SYS(sched_getscheduler),
+                         SCMP_SYS(sched_getattr), SCMP_SYS(sched_rr_get_interval)})
+    filter.allow(call, {{0, {0, self}}});
+  filter.allow(SCMP_SYS(getpriority), {{0, {PRIO_PROCESS}}, {1, {0, self}}});
+  filter.allow(SCMP_SYS(ioprio_get), {{0, {1 /* IOPRIO_WHO_PROCESS */}}, {1, {0, self}}});
+  // pthread_getattr_np() asks for its thread's by number, and does without where the kernel has none.
+  filter.allow(SCMP_SYS(sched_getaffinity), {{0, {0, self}}}, SECCOMP_RET_ERRNO | ENOSYS);
+  // A clock's number below 0 is another process's, unless it has the bit of threads, which are its own.
+  constexpr std::uint32_t below_0 = 1u << 31, of_thread = 1u << 2;
+  for (const int call :
+       {SCMP_SYS(clock_gettime), SCMP_SYS(clock_getres), SCMP_SYS(clock_nanosleep), SCMP_SYS(timer_create)})
+    filter.allow(call, {{0, {0, of_thread, below_0 | of_thread}, below_0 | of_thread}});
   filter.allow(SCMP_SYS(get_mempolicy), {{4, {0}}});
   filter.allow(SCMP_SYS(mbind), {{5, {0}}});
   filter.allow(SCMP_SYS(madvise),
@@ -154,7 +181,7 @@ Filter filter_of(bool network, std::uint32_t refusal) {
     filter.allow(SCMP_SYS(sendto));
     filter.allow(SCMP_SYS(socket), {{0, {AF_INET, AF_INET6}}, {1, {SOCK_STREAM, SOCK_DGRAM}, socket_type}});
   } else {
-    filter.allow(SCMP_SYS(sendto), {{4, {0}}});  // to no address
+    filter.allow(SCMP_SYS(sendto), {{4, {0}, ~0u, true}});  // to no address
   }
   // A C library falls back to clone and to writing. Blocks that are only reserved would fill a disk at once.
   filter.answer(SCMP_SYS(clone3), ENOSYS);
@@ -196,7 +223,7 @@ bool allow_system_calls(bool network, int socket) {
   return ::sendmsg(socket, &message, MSG_NOSIGNAL) == 1;
 }
 
-RefusedCalls::RefusedCalls(int socket) {
+NotedCalls::NotedCalls(int socket) {
   char byte = 0;
   iovec part{&byte, 1};
   msghdr message{};
@@ -217,7 +244,7 @@ RefusedCalls::RefusedCalls(int socket) {
   }
 }
 
-void RefusedCalls::take(short events) {
+void NotedCalls::take(short events) {
   constexpr std::size_t most = 64;
   if ((events & POLLIN) == 0) {  // nobody is left whose calls could be refused
     if (events != 0) notifier_.close();
@@ -227,10 +254,13 @@ void RefusedCalls::take(short events) {
   seccomp_notif_resp* answer = nullptr;
   if (::seccomp_notify_alloc(&call, &answer) != 0) return;
   if (::seccomp_notify_receive(notifier_.fd, call) == 0) {
+    const bool starts = starts_task(call->data);
+    started_ += starts;
     answer->id = call->id;
-    answer->error = -EPERM;
+    answer->error = starts ? 0 : -EPERM;
+    answer->flags = starts ? SECCOMP_USER_NOTIF_FLAG_CONTINUE : 0;  // all that was looked at is in registers
     ::seccomp_notify_respond(notifier_.fd, answer);
-    if (seen_.size() < most && seen_.insert(call->data.nr).second) {
+    if (!starts && seen_.size() < most && seen_.insert(call->data.nr).second) {
       char* const name = ::seccomp_syscall_resolve_num_arch(SCMP_ARCH_NATIVE, call->data.nr);
       names_.emplace_back(name ? name : "call " + std::to_string(call->data.nr));
       std::free(name);

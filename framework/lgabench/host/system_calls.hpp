@@ -13,26 +13,31 @@ bool has_seccomp();
 
 /// In the process itself, before exec. From then on it and all that it starts make the calls of the list alone. What is
 /// newer than the list answers ENOSYS, so that a C library falls back; anything else EPERM. `network`: IP sockets too.
-/// Sends a byte on `socket`, unless that is -1, with a descriptor for RefusedCalls where the kernel has one. False
+/// Sends a byte on `socket`, unless that is -1, with a descriptor for NotedCalls where the kernel has one. False
 /// where it refused.
 bool allow_system_calls(bool network, int socket);
 
-/// Names of the calls that are refused, as whoever started the process learns them.
-class RefusedCalls {
+/// Calls that wait for whoever started the process: those that are refused, and those that start a process or a
+/// thread, which it lets go on.
+class NotedCalls {
  public:
-  RefusedCalls() = default;
+  NotedCalls() = default;
   /// Waits for the byte of allow_system_calls(), or the other end's closing; says in the log where nothing can be
   /// named.
-  explicit RefusedCalls(int socket);
+  explicit NotedCalls(int socket);
 
   /// To be watched for POLLIN; -1: none.
   int descriptor() const { return notifier_.fd; }
-  /// Refuses the call that waits, after poll() said `events`. A name is printed once, 64 at most.
+  /// Answers the call that waits, after poll() said `events`; until then it waits. A refused call's name is printed
+  /// once, 64 at most.
   void take(short events);
-  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::string>& refused() const { return names_; }
+  /// Processes and threads so far; 0 where the kernel has no descriptor.
+  std::size_t started() const { return started_; }
 
  private:
   Descriptor notifier_;
+  std::size_t started_ = 0;
   std::vector<std::string> names_;
   std::set<int> seen_;
 };

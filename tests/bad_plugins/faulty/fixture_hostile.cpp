@@ -1,5 +1,7 @@
 // Tries, in the way that its option names, to do harm beyond its own cell. Where it survives that, it is StayPolicy.
 // hostile.py is the same in Python; hostile_test.py runs both.
+#include <dlfcn.h>
+#include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -51,6 +53,29 @@ void fill_shared_memory() {
   ::sleep(2);
 }
 
+// 4,000 of a program that lies beside the plugin.
+void start_processes() {
+  Dl_info own{};
+  ::dladdr(reinterpret_cast<void*>(&start_processes), &own);
+  const std::string program = fs::path(own.dli_fname).replace_filename("many");
+  if (::fork() == 0) {
+    ::execl(program.c_str(), program.c_str(), "4000", nullptr);
+    ::_exit(1);
+  }
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
+}
+
+void start_threads() {
+  pthread_attr_t small;
+  ::pthread_attr_init(&small);
+  ::pthread_attr_setstacksize(&small, 1 << 16);
+  pthread_t thread{};
+  for (int i = 0; i < 4000; ++i)
+    ::pthread_create(
+        &thread, &small, [](void*) -> void* { return ::pause(), nullptr; }, nullptr);
+  ::sleep(20);  // far longer than a look takes, also on a busy machine
+}
+
 void do_harm(const std::string& how, const Services& services) {
   const auto path = [&](const char* option) { return fs::path(services.options.at(option).get<std::string>()); };
   if (how == "rounding") std::fesetround(FE_TOWARDZERO);
@@ -62,6 +87,8 @@ void do_harm(const std::string& how, const Services& services) {
   }
   if (how == "epoch") services.log.epoch(0, 1, 0);
   if (how == "shared_memory") fill_shared_memory();
+  if (how == "processes") start_processes();
+  if (how == "threads") start_threads();
   if (how == "daemon") leave_a_daemon();
   if (how == "fork" && ::fork() < 0) throw std::runtime_error("no process");  // both go on
   if (how == "kill" || (how == "game" && services.seed != 1)) ::kill(::getpid(), SIGKILL);

@@ -7,6 +7,7 @@ import resource
 import shutil
 import signal
 import subprocess
+import threading
 import time
 
 from lgabench_method import Needs, Selection
@@ -46,6 +47,19 @@ def fill_shared_memory():
     for _ in range(1 << 6):
         memory.write(b"x" * (1 << 24))
     time.sleep(2)
+
+
+def start_processes():
+    """4,000 of a program that lies beside this file."""
+    subprocess.Popen([pathlib.Path(__file__).with_name("many"), "4000"])
+    time.sleep(20)  # far longer than a look takes, also on a busy machine
+
+
+def start_threads():
+    threading.stack_size(1 << 16)
+    for _ in range(4000):
+        threading.Thread(target=signal.pause, daemon=True).start()
+    time.sleep(20)
 
 
 def kill_itself():
@@ -103,6 +117,10 @@ class Hostile:
             services.log.epoch(0, 1, 0)
         elif how == "shared_memory":
             fill_shared_memory()
+        elif how == "processes":
+            start_processes()
+        elif how == "threads":
+            start_threads()
         elif how == "daemon":
             leave_a_daemon()
         elif how == "fork":
