@@ -22,9 +22,10 @@ class OpenAiClient : public ChatClient {
   ~OpenAiClient() override;
   OpenAiClient(const OpenAiClient&) = delete;
   OpenAiClient& operator=(const OpenAiClient&) = delete;
-  /// @throws MethodError once the attempts are used up, where nobody listens, for any other status, for a TLS certificate that this machine
-  /// does not trust (the key is then not sent), and for a body that is too long. NoAnswer for a body that is no
-  /// completion, a reply that is late, empty or a refusal, and one whose finish_reason says that it is not whole.
+  /// @throws MethodError once the attempts are used up, where nobody listens, for any other status, for a TLS
+  /// certificate that this machine does not trust (the key is then not sent), and for a body that is too long. NoAnswer
+  /// for a body that is no completion, a reply that is late, empty or a refusal, and one whose finish_reason says that
+  /// it is not whole.
   ChatReply complete(const Json& request) override;
 
  private:
