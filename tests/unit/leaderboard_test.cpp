@@ -140,6 +140,8 @@ TEST(LeaderboardEntry, WhatWasChangedIsFound) {
               "/lm_queries: expected a number from 0 to 1e+15");
   EXPECT_SAYS(after([&](auto& path) { write_file(path / "cells.jsonl", std::string((16 << 20) + 1, ' ')); }),
               "cells.jsonl: cannot be read: 16777217 bytes or more, expected at most 16777216");
+  EXPECT_SAYS(after([&](auto& path) { fs::remove(path / "cells.jsonl"); }),
+              "cells.jsonl: cannot be read: No such file");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["success"] = .99; }); }), "success");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["about"].erase("license"); }); }), "license");
   EXPECT_SAYS(after([&](auto& path) { json(path, [](Json& e) { e["evidence"][0]["started"] = "yesterday"; }); }),

@@ -141,7 +141,7 @@ Tier Entry::tier() const {
 int Entry::fresh() const {
   std::vector<const Json*> lines;
   for (const Json& line : verifications)
-    if (line.at("kind") == "fresh" && counts(line)) lines.push_back(&line);
+    if (line.at("kind") == "fresh" && line.contains("successes") && counts(line)) lines.push_back(&line);
   if (lines.empty()) return 0;
   const std::vector<FreshEstimate> estimates = fresh_estimates(*this, lines);
   return std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); }) ? -1 : 1;
