@@ -12,10 +12,12 @@ constexpr int lanes = LGABENCH_LANES;
 // Numbers of one product that are kept in registers: rows x vectors.
 constexpr int most_rows = LGABENCH_TILE_ROWS, most_vectors = 2;
 
-typedef float Vector __attribute__((vector_size(lanes * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef float Vector __attribute__((vector_size(lanes * sizeof(float))));
+// In memory, anywhere. No variable has this type: a template's argument loses the attributes, the alignment with them.
+typedef float Anywhere __attribute__((vector_size(lanes * sizeof(float)), aligned(sizeof(float)), may_alias));
 
-inline Vector load(const float* from) { return *reinterpret_cast<const Vector*>(from); }
-inline void store(float* to, Vector value) { *reinterpret_cast<Vector*>(to) = value; }
+inline Vector load(const float* from) { return *reinterpret_cast<const Anywhere*>(from); }
+inline void store(float* to, Vector value) { *reinterpret_cast<Anywhere*>(to) = value; }
 
 // sum[r][v] += a[r * row_stride + k * step_stride] * b[k * b_stride + v * lanes ..], over k.
 template <int Rows, int Vectors>
