@@ -1,7 +1,8 @@
-// A cassette's file, read, asked, and asked by a second process. "(key)" stands for the key of the question.
+// A cassette's file, read, read by a second process, and asked. "(key)" stands for the key of the question.
 #include <fmt/format.h>
 
 #include <lgabench/abstraction/chat_model.hpp>
+#include <lgabench/abstraction/final_answer.hpp>
 
 #include "fuzz.hpp"
 
@@ -14,7 +15,7 @@ const FeatureSpace space{"tabletop", {"heart", "star"}, {"red"}};
 const std::vector<Question> questions{{{}, {}, "heart"}};
 
 // What a server is asked is what a cassette's key says.
-std::string key_of_the_question() {
+std::string made_key() {
   struct Yes : ChatClient {
     ChatReply complete(const Json&) override { return {"Final answer: yes", 1, 1}; }
   } yes;
@@ -24,23 +25,27 @@ std::string key_of_the_question() {
   return read_json(file).at("key");
 }
 
+const std::string& key_of_the_question() {
+  static const std::string key = made_key();
+  return key;
+}
+
 std::string with_key(std::string_view text) {
-  static const std::string key = key_of_the_question();
-  const std::vector<std::string_view> parts = fuzz::split(text, "(key)");
-  return fmt::format("{}", fmt::join(parts, key));
+  return fmt::format("{}", fmt::join(fuzz::split(text, "(key)"), key_of_the_question()));
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const fs::path file = fuzz::write(fuzz::directory() / "fuzzed.jsonl", with_key(fuzz::text_of(data, size)));
+  static const fs::path file = fuzz::directory() / "fuzzed.jsonl";
+  fuzz::write(file, with_key(fuzz::text_of(data, size)));
   try {
     Cassette cassette(file);
-    cassette.models();
     const Cassette::Turn turn(cassette, {});
-    ChatLanguageModel model(cassette, nullptr, {"a model"});
-    model.answer(command, space, questions);
-    canonical({{"tokens", model.cost().lm_tokens}, {"seconds", model.cost().lm_seconds}});
+    canonical(Json(cassette.models()));
+    canonical(Json(cassette.mean_seconds()));
+    if (const std::optional<ChatReply> reply = cassette.find(key_of_the_question())) final_answer(reply->text);
+    cassette.only_model();
   } catch (const InputError&) {
   } catch (const MethodError&) {
   }
