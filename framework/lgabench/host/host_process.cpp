@@ -216,7 +216,7 @@ void HostProcess::watch_use() {
 
 std::vector<std::string> HostProcess::started() const {
   std::vector<std::string> all;
-  for (const pid_t pid : descendants(pid_)) {
+  for (const pid_t pid : descendants(pid_, 0)) {
     std::string name;
     std::getline(std::ifstream(fmt::format("/proc/{}/comm", pid)), name);
     if (pid != pid_ && !name.empty()) all.push_back(fmt::format("{} {}", pid, name));
