@@ -77,13 +77,13 @@ class CheckPlugin(Case):
         self.assertEqual(found["learn"], "none: it selects alone, as --methods selected_by:m asks it to")
 
     def test_tells_what_it_found_before_it_ends_and_where_it_stays(self):
-        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=spin", "--timeout", "40"),
+        process = subprocess.Popen(command_line("check-plugin", FAULTY, "--set", "where=act", "--set", "how=spin", "--timeout", "23"),
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=self.environment, cwd=self.dir)
         first = process.stderr.readline()  # while the plugin spins
         self.assertIsNone(process.poll())
         out, _ = process.communicate()
-        self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 40 s \(--timeout\)$")
-        self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 40 s in phase act\n")
+        self.assertRegex(first, r"^still in act after 2\d s; it is stopped after 23 s \(--timeout\)$")
+        self.assertRegex(out, r"(?s)^fixture_faulty 0.1, a method\n  ok +descriptor .*  ok +Selection .*  problem +process +stopped after 23 s in phase act\n")
         self.assertEqual(out.count("\n  ok       Selection "), 1, "each line once")
 
     def test_a_selection_of_which_nothing_can_be_shown_ends_a_cell_and_is_no_fault(self):

@@ -424,7 +424,9 @@ class Demonstrations(Case):
         self.assertEqual(len(lines), 3)
         for i, line in enumerate(lines):
             self.assertRegex(line, rf'^demo_{i}: (1 step|[23] steps); "Bring me the heart."; .*heart')
-        # It says where its scenes come from, and nothing of them that a method is not told.
+        # It says where its scenes come from, what the command means, and nothing of them that a method is not told.
+        data, selections = re.subn(rb'"provenance":"truth","target":', b"", data)
+        self.assertEqual(selections, 3)
         for word in (b"role", b"target", b"distractor", b"goal", b"scene", b"index"):
             self.assertIsNone(re.search(rb"\b" + word, data), word)
 
