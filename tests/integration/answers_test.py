@@ -46,35 +46,38 @@ class Handler(http.server.BaseHTTPRequestHandler):
             self.server.under_way += 1
             self.server.most_at_once = max(self.server.most_at_once, self.server.under_way)
         try:
-            self.answer()
+            reply = self.answer()
         finally:
+            # Whoever reads the reply asks the next question at once, so that this one must have ended before.
             with self.server.counting:
                 self.server.under_way -= 1
+        if isinstance(reply, str):
+            self.send_error(400, reply)
+            return
+        self.send_response(200)
+        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Length", str(len(reply)))
+        self.end_headers()
+        with contextlib.suppress(BrokenPipeError):  # whoever asked was killed
+            self.wfile.write(reply)
 
     def answer(self):
+        """The body of a reply, or why the request is refused."""
         request = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
         question = request["messages"][1]["content"]
         self.server.asked.append(question)
         self.server.bodies.append(request)
         if self.server.refuses_temperature and "temperature" in request:
-            self.send_error(400, "Unsupported value: temperature")
-            return
+            return "Unsupported value: temperature"
         if self.server.out_of_order:
-            self.send_error(400, "out of order")
-            return
+            return "out of order"
         time.sleep(self.server.seconds)
         candidate = re.search(r'have the object (?:type|color) "([^"]*)"\?', question)[1]
         text = "Final answer: " + ("yes" if candidate in self.server.yes else "no")
         odd = dict(self.server.odd.get(candidate, {}))
         time.sleep(odd.pop("seconds", 0))
-        body = json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop", **odd}],
+        return json.dumps({"choices": [{"message": {"content": text}, "finish_reason": "stop", **odd}],
                            "usage": {"total_tokens": 9}}).encode()
-        self.send_response(200)
-        self.send_header("Content-Type", "application/json")
-        self.send_header("Content-Length", str(len(body)))
-        self.end_headers()
-        with contextlib.suppress(BrokenPipeError):  # whoever asked was killed
-            self.wfile.write(body)
 
     def log_message(self, *_):
         pass
