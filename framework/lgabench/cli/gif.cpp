@@ -17,20 +17,24 @@ void expect(int result, int error) {
 
 using Palette = std::unique_ptr<ColorMapObject, decltype(&GifFreeMapObject)>;
 
+constexpr int unchanged = 255;  // the palette's last index: the pixel of the frame before shows through
+
 // All frames at once, so that no colour flickers. Fills `indices`, a byte a pixel.
-Palette quantized(const std::vector<Picture>& frames, std::vector<GifByteType>& indices) {
+Palette quantized(const std::vector<Frame>& frames, std::vector<GifByteType>& indices) {
   std::vector<GifByteType> red, green, blue;
-  for (const Picture& frame : frames)
-    for (std::size_t i = 0; i < frame.rgb().size(); i += 3) {
-      red.push_back(frame.rgb()[i]);
-      green.push_back(frame.rgb()[i + 1]);
-      blue.push_back(frame.rgb()[i + 2]);
+  for (const Frame& frame : frames) {
+    const auto& rgb = frame.picture.rgb();
+    for (std::size_t i = 0; i < rgb.size(); i += 3) {
+      red.push_back(rgb[i]);
+      green.push_back(rgb[i + 1]);
+      blue.push_back(rgb[i + 2]);
     }
-  int colours = 256;
-  Palette palette(GifMakeMapObject(colours, nullptr), &GifFreeMapObject);
+  }
+  int colours = unchanged;
+  Palette palette(GifMakeMapObject(unchanged + 1, nullptr), &GifFreeMapObject);
   if (!palette) throw Error("giflib: out of memory");
   indices.resize(red.size());
-  const auto width = static_cast<unsigned>(frames.front().width());
+  const auto width = static_cast<unsigned>(frames.front().picture.width());
   expect(GifQuantizeBuffer(width, static_cast<unsigned>(red.size()) / width, &colours, red.data(), green.data(),
                            blue.data(), indices.data(), palette->Colors),
          E_GIF_ERR_NOT_ENOUGH_MEM);
@@ -53,8 +57,9 @@ void repeat_for_ever(GifFileType* file) {
 
 void put_frame(GifFileType* file, GifByteType* indices, int width, int height, double seconds) {
   GraphicsControlBlock control{};
+  control.DisposalMode = DISPOSE_DO_NOT;
   control.DelayTime = static_cast<int>(std::lround(100 * seconds));
-  control.TransparentColor = NO_TRANSPARENT_COLOR;
+  control.TransparentColor = unchanged;
   GifByteType bytes[4];
   const std::size_t size = EGifGCBToExtension(&control, bytes);
   expect(EGifPutExtension(file, GRAPHICS_EXT_FUNC_CODE, static_cast<int>(size), bytes), file->Error);
@@ -64,10 +69,14 @@ void put_frame(GifFileType* file, GifByteType* indices, int width, int height, d
 
 }  // namespace
 
-std::string gif(const std::vector<Picture>& frames, double frame_s) {
+std::string gif(const std::vector<Frame>& frames) {
   std::vector<GifByteType> indices;
   const Palette palette = quantized(frames, indices);
-  const int width = frames.front().width(), height = frames.front().height();
+  const int width = frames.front().picture.width(), height = frames.front().picture.height();
+  const auto size = static_cast<std::size_t>(width * height);
+  for (std::size_t i = indices.size() - 1; i >= size; --i)
+    if (indices[i] == indices[i - size])
+      indices[i] = unchanged;  // from the end, so that the one before is not yet marked
   std::string bytes;
   int error = 0;
   GifFileType* const file = EGifOpen(&bytes, append, &error);
@@ -76,10 +85,8 @@ std::string gif(const std::vector<Picture>& frames, double frame_s) {
     EGifSetGifVersion(file, true);
     expect(EGifPutScreenDesc(file, width, height, 8, 0, palette.get()), file->Error);
     repeat_for_ever(file);
-    constexpr double last_s = 2;
     for (std::size_t i = 0; i < frames.size(); ++i)
-      put_frame(file, indices.data() + i * static_cast<std::size_t>(width * height), width, height,
-                i + 1 < frames.size() ? frame_s : last_s);
+      put_frame(file, indices.data() + i * size, width, height, frames[i].seconds);
   } catch (...) {
     EGifCloseFile(file, &error);
     throw;

@@ -7,8 +7,13 @@
 
 namespace lgabench::cli {
 
-/// The bytes of a GIF that shows `frames` for `frame_s` each, the last one for two seconds, and begins again. All
-/// frames share one palette of 256 colours. @pre At least one frame, all of one size. @throws Error if giflib fails.
-std::string gif(const std::vector<Picture>& frames, double frame_s);
+struct Frame {
+  Picture picture;
+  double seconds;
+};
+
+/// The bytes of a GIF that shows the frames one after another and begins again. All share one palette of 255 colours,
+/// and each holds the pixels that changed. @pre At least one frame, all of one size. @throws Error if giflib fails.
+std::string gif(const std::vector<Frame>& frames);
 
 }  // namespace lgabench::cli

@@ -1,10 +1,11 @@
-// lgabench replay RUN EPISODE: a recorded episode played again, to be looked at.
+// lgabench replay RUN EPISODE...: recorded episodes played again, to be looked at, several beside each other.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include <lgabench/abstraction/goal_mask.hpp>
 #include <lgabench/abstraction/scenes.hpp>
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/gif.hpp>
@@ -24,11 +25,12 @@ namespace lgabench::cli {
 namespace {
 
 constexpr double frame_s = .05;  // of simulated time
-constexpr int zoom = 3;
+constexpr double input_s = 1.5, last_s = 2;
+constexpr double slowed_s = .15;  // a frame's, where two are watched at once
 
 struct ReplayArguments {
   fs::path run, out;
-  std::string episode;
+  std::vector<std::string> episodes;
   std::vector<fs::path> plugin_path;
 };
 
@@ -36,6 +38,7 @@ struct Recorded {
   Cell cell;
   Scenario scenario;
   Episode episode;
+  std::optional<Selection> selection;  // none where the policy sees everything
 };
 
 // The only cell whose key begins so.
@@ -51,30 +54,43 @@ fs::path cell_of(const fs::path& run, const std::string& key) {
   return found;
 }
 
+// What the cell's method selected for the command.
+std::optional<Selection> selection_of(const fs::path& directory, const Scenario& scenario, int command) {
+  const std::string file = (directory / cell_file::selections).string();
+  const Json recorded = parse_json(read_file(file, Links::refused), file);
+  const std::vector<JsonReader> commands = JsonReader(recorded, file).at("commands").elements();
+  if (command < 0 || static_cast<std::size_t>(command) >= commands.size())
+    throw InputError(fmt::format("{}: expected a command {}", file, command));
+  const JsonReader selection = commands[static_cast<std::size_t>(command)].at("selection");
+  if (selection.at("provenance").string() == "none") return std::nullopt;
+  const Json distribution = distribution_of(selection.json());
+  return read_distribution(JsonReader(distribution, file), scenario.space, scenario.second);
+}
+
 // KEY/ARM/INDEX, or KEY/INDEX of the first arm.
-Recorded recorded(const ReplayArguments& a) {
-  const std::size_t first = a.episode.find('/'), last = a.episode.rfind('/');
+Recorded recorded(const fs::path& run, const std::string& named) {
+  const std::size_t first = named.find('/'), last = named.rfind('/');
   int index = 0;
-  if (first == std::string::npos || !CLI::detail::lexical_cast(a.episode.substr(last + 1), index))
-    throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", a.episode));
-  const fs::path directory = cell_of(a.run, a.episode.substr(0, first));
+  if (first == std::string::npos || !CLI::detail::lexical_cast(named.substr(last + 1), index))
+    throw InputError(fmt::format("replay: expected KEY/ARM/INDEX or KEY/INDEX, got \"{}\"", named));
+  const fs::path directory = cell_of(run, named.substr(0, first));
   const Cell cell = recorded_cell(directory);
   const Scenario scenario =
       read_scenario(*cell.scenario, (directory / cell_file::configuration).string() + ": /scenario");
-  const std::string arm = first == last ? scenario.tests.front().id : a.episode.substr(first + 1, last - first - 1);
+  const std::string arm = first == last ? scenario.tests.front().id : named.substr(first + 1, last - first - 1);
   scenario.arm(arm);  // says which there are
   const std::string file = (directory / cell_file::episodes).string();
   for (const Json& line : parse_json_lines(read_file(file, Links::refused), file)) {
     const Episode episode = read_episode(JsonReader(line, file));
     if (episode.arm != arm || episode.index != index) continue;
     if (episode.action.empty())
-      throw InputError(fmt::format("replay: {} ended without an action: {}", a.episode, episode.failure));
-    return {cell, scenario, episode};
+      throw InputError(fmt::format("replay: {} ended without an action: {}", named, episode.failure));
+    return {cell, scenario, episode, selection_of(directory, scenario, episode.command)};
   }
   throw InputError(fmt::format("replay: {} has no episode {} in arm {}", directory.string(), index, arm));
 }
 
-void draw(const EnvironmentType& environment, const Tool& tool, Picture& picture) {
+void draw(const EnvironmentType& environment, const Tool& tool, int zoom, Picture& picture) {
   constexpr Rgb colour{255, 0, 160};
   const Vec3 at = tool.pose.position_m;
   const auto dots = [&](Vec3 from, Vec3 to) {
@@ -113,36 +129,100 @@ Picture filmstrip(const std::vector<Picture>& frames) {
   return strip;
 }
 
-void replay(const ReplayArguments& a) {
-  const std::string ending = a.out.extension().string();
-  if (ending != ".gif" && ending != ".png") throw InputError("replay: expected --out FILE.gif or FILE.png");
-  const auto [cell, scenario, episode] = recorded(a);
+// Where a pixel is outside of what the policy sees.
+Rgb faded(Rgb colour) {
+  for (auto& part : colour) part = static_cast<std::uint8_t>(255 - (255 - part) / 6);
+  return colour;
+}
+
+struct Played {
+  Picture input;  // what the policy sees of the scene
+  std::vector<Picture> frames;
+  StepResult end;
+};
+
+Played play(const Catalogue& catalogue, const Recorded& recorded, int zoom) {
+  const auto& [cell, scenario, episode, selection] = recorded;
   const Scene scene =
       test_scene(scenario, cell.layout, episode.arm, cell.scene_seed, episode.index, cell.scenes_of_seed());
   if (hex(scene.hash()) != episode.scene)
     throw InputError("replay: this version samples another scene than the run played");
 
   const EnvironmentType& type = find_environment(scenario.environment);
+  const auto enlarged = [&](const Observation& seen, const std::vector<std::uint8_t>& mask) {
+    Picture picture(zoom * seen.size.columns, zoom * seen.size.rows);
+    picture.paste(0, 0, seen.size.columns, seen.size.rows, zoom, [&](int column, int row) {
+      const auto at = static_cast<std::size_t>(row * seen.size.columns + column);
+      return mask.empty() || mask[at] ? pixel_colour(seen, at) : faded(pixel_colour(seen, at));
+    });
+    return picture;
+  };
   std::vector<Picture> frames;
   const auto add = [&](const Observation& seen, const std::optional<Tool>& tool) {
-    frames.emplace_back(zoom * seen.size.columns, zoom * seen.size.rows);
-    frames.back().paste(0, 0, seen.size.columns, seen.size.rows, zoom, [&](int column, int row) {
-      return pixel_colour(seen, static_cast<std::size_t>(row * seen.size.columns + column));
-    });
-    if (tool) draw(type, *tool, frames.back());
+    frames.push_back(enlarged(seen, {}));
+    if (tool) draw(type, *tool, zoom, frames.back());
   };
   std::unique_ptr<Environment> environment;
   const auto look = [&](const std::optional<Tool>& tool) { add(environment->observe(), tool); };
-  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
   environment = make_environment(
       scenario, std::make_unique<WatchedWorld>(load_engine(catalogue.find("engine", cell.engine)), frame_s, look));
-  add(environment->reset(scene), std::nullopt);
-  const StepResult end = environment->step(episode.action);
+  const Observation first = environment->reset(scene);
+  add(first, std::nullopt);
+  const Picture input = enlarged(first, selection ? goal_mask(first, *selection) : std::vector<std::uint8_t>());
+  StepResult end = environment->step(episode.action);
   add(end.observation, std::nullopt);
+  return {input, frames, std::move(end)};
+}
 
-  write_file(a.out, ending == ".gif" ? gif(frames, frame_s) : filmstrip(frames).png());
-  to_stdout("{}: {} frames; {} {}\n", a.out.string(), frames.size(), end.is_success ? "success" : end.failure,
-            end.failure == episode.failure ? "as recorded" : "here, recorded as " + episode.failure);
+// From left to right. @pre All of one height.
+Picture beside(const std::vector<const Picture*>& pictures) {
+  constexpr int gutter = 16;
+  int width = -gutter;
+  for (const Picture* picture : pictures) width += picture->width() + gutter;
+  Picture row(width, pictures.front()->height());
+  int left = 0;
+  for (const Picture* picture : pictures) {
+    row.paste(left, 0, picture->width(), picture->height(), 1, [&](int x, int y) { return picture->at(x, y); });
+    left += picture->width() + gutter;
+  }
+  return row;
+}
+
+void replay(const ReplayArguments& a) {
+  const std::string ending = a.out.extension().string();
+  const bool several = a.episodes.size() > 1;
+  if (ending != ".gif" && (ending != ".png" || several))
+    throw InputError(several ? "replay: expected --out FILE.gif" : "replay: expected --out FILE.gif or FILE.png");
+  const Catalogue catalogue = scan_plugins(plugin_directories(a.plugin_path));
+  std::vector<Played> all;
+  std::string said;
+  std::size_t longest = 0;
+  for (const std::string& named : a.episodes) {
+    const Recorded episode = recorded(a.run, named);
+    all.push_back(play(catalogue, episode, several ? 2 : 3));
+    if (all.back().input.height() != all.front().input.height())
+      throw InputError("replay: expected episodes of one environment");
+    const auto& [input, frames, end] = all.back();
+    longest = std::max(longest, frames.size());
+    said += fmt::format(
+        "{}{}; {} {}", said.empty() ? "" : " | ", several ? episode.cell.method.name : "",
+        end.is_success ? "success" : end.failure,
+        end.failure == episode.episode.failure ? "as recorded" : "here, recorded as " + episode.episode.failure);
+  }
+
+  std::vector<Frame> frames;
+  if (several) {  // one frame is not enough to see what each policy goes by
+    std::vector<const Picture*> inputs;
+    for (const Played& played : all) inputs.push_back(&played.input);
+    frames.push_back({beside(inputs), input_s});
+  }
+  for (std::size_t i = 0; i < longest; ++i) {
+    std::vector<const Picture*> now;
+    for (const Played& played : all) now.push_back(&played.frames[std::min(i, played.frames.size() - 1)]);
+    frames.push_back({beside(now), i + 1 == longest ? last_s : several ? slowed_s : frame_s});
+  }
+  write_file(a.out, ending == ".gif" ? gif(frames) : filmstrip(all.front().frames).png());
+  to_stdout("{}: {} frames{}{}\n", a.out.string(), frames.size(), several ? "; " : "", said);
 }
 
 }  // namespace
@@ -151,16 +231,18 @@ void add_replay(CLI::App& app, int&) {
   auto a = std::make_shared<ReplayArguments>();
   CLI::App* verb = app.add_subcommand("replay", worker_summary("replay"));
   verb->add_option("run", a->run, "The run's directory")->required();
-  verb->add_option("episode", a->episode,
+  verb->add_option("episodes", a->episodes,
                    "The cell's key or its first digits, the arm, and the scene's number; without an arm, the "
-                   "scenario's first arm")
+                   "scenario's first arm. Several are drawn beside each other, after what each policy sees")
       ->required();
   verb->add_option("--out", a->out, "FILE.gif for an animation, FILE.png for a film strip")->required();
   add_plugin_path(*verb, a->plugin_path);
-  arrange(*verb, "", {{"run", "RUN"}, {"episode", "KEY/ARM/INDEX"}, {"--out", "FILE"}, {"--plugin-path", "PATH"}});
+  arrange(*verb, "", {{"run", "RUN"}, {"episodes", "KEY/ARM/INDEX..."}, {"--out", "FILE"}, {"--plugin-path", "PATH"}});
   verb->footer(
       "Carries out the recorded action on the recorded engine, without the method. Pink marks where the suction cup "
-      "holds, or the spatula.\nExample: lgabench replay runs/q1 752bdc8e/test/3 --out episode.gif");
+      "holds, or the spatula. Several episodes are slowed down.\nExample: lgabench replay runs/q1 752bdc8e/test/3 "
+      "--out "
+      "episode.gif");
   verb->callback([a] { replay(*a); });
 }
 
