@@ -179,7 +179,7 @@ class PluginAxes(case.Case):
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")
     def test_a_new_one_in_python(self):
         self.call("new-plugin", "rain", "--kind", "perturbation", "--language", "python", "--directory", "rain")
-        for file in ("rain/rain.py:Rain", EXAMPLES / "lens_drop.py:LensDrop"):
+        for file in ("rain/rain.py:Rain", EXAMPLES / "lens_drop.py:LensDrop")[:2 if case.FULL else 1]:
             report = json.loads(self.call("check-plugin", file, "--python", PYTHON, "--json").stdout)
             self.assertEqual({finding["state"] for finding in report["findings"]}, {"ok"}, report)
         self.call("run", "rain/rain_suite.json", "--plugin-path", "rain/rain.py:Rain", "--python", PYTHON, "--methods", "lga",

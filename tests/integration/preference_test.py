@@ -106,10 +106,11 @@ class Preferences(Case):
             self.assertIn("mine.json", error)
 
     def test_the_score_tells_how_often_hypotheses_hold_the_truth(self):
-        rows = [json.loads(line) for line in self.call("select", "--suite", "words", "--score", "--json").stdout.splitlines()]
+        score = ("select", "--suite", "words", "--score", "--scenes", "10")
+        rows = [json.loads(line) for line in self.call(*score, "--json").stdout.splitlines()]
         self.assertEqual([row for row in rows if row["asked"] == "hypotheses"],
                          [{"group": group, "asked": "hypotheses", "commands": 6, "covered": 4} for group in ("preference", "all")])
-        said = self.call("select", "--suite", "words", "--score").stdout
+        said = self.call(*score).stdout
         self.assertIn("hold the truth for 4 of 6 commands, not for words_preference_letter_of_meg, words_preference_plate", said)
 
     @unittest.skipUnless(HAS_NUMPY, f"{PYTHON} has no NumPy")

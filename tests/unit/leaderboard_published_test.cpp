@@ -9,6 +9,7 @@
 #include <lgabench/leaderboard/entry.hpp>
 #include <lgabench/plugin/loader.hpp>
 
+#include "../conformance/amount.hpp"
 #include "testing.hpp"
 
 namespace lgabench::leaderboard {
@@ -19,10 +20,11 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
   const Catalogue catalogue = scan_plugins(plugin_directories());
   std::map<std::pair<std::string, std::string>, Installed> presets;
   int entries = 0;
+  const int every = amount(5, 1);  // by default each fifth, which is of every suite and preset
   for (const fs::path& directory : entry_directories(board)) {
+    if (entries++ % every != 0) continue;
     const Entry entry = read_entry(board, directory);
     EXPECT_EQ(entry.place(), directory);
-    ++entries;
     const Competitor& row = entry.identity.row;
     if (!row.is_reference()) {
       EXPECT_EQ(resolve_options(catalogue.find("method", row.id), row.options), row.options) << directory;
@@ -44,6 +46,7 @@ TEST(LeaderboardPublished, EveryEntryAndCellHasTheNameThatItHad) {
     }
   }
   EXPECT_GE(entries, 100);
+  EXPECT_GE(presets.size(), 12u);
 }
 
 }  // namespace

@@ -110,22 +110,8 @@ TEST(Stations, AreFoundByTheSecondSetOfAMask) {
   EXPECT_EQ(led_right(heat_map, mask, told), 30);
   CentroidRule centroid(rows_of(mask, 1).shape);
   EXPECT_EQ(led_right(centroid, mask, told), 30);
-}
 
-TEST(Stations, AreFoundByShapeAndByColour) {
-  const std::vector<SampleShape::Picture> mask{{seen_size, 1}}, rgb{{HeatMap::rgb_size, 3}};
-  HeatMap by_shape(rows_of(mask, 1).shape, 1), by_colour(rows_of(rgb, 1).shape, 1);
-  EXPECT_GE(led_right(by_shape, mask, shaped), 24);
-  EXPECT_GE(led_right(by_colour, rgb, coloured), 20);
-}
-
-// Where the second set is not seen, or nothing is, the action still leads to a station.
-TEST(Stations, AreLedToWhateverIsSeen) {
-  const std::vector<SampleShape::Picture> mask{{seen_size, 1}};
-  HeatMap heat_map(rows_of(mask, 1).shape, 1);
-  CentroidRule centroid(rows_of(mask, 1).shape);
-  led_right(heat_map, mask, told);
-  led_right(centroid, mask, told);
+  // Where the second set is not seen, or nothing is, the action still leads to a station.
   Samples scenes = rows_of(mask, 2);
   paint(scenes.picture(0, 0), seen_size, 1, 0, {.7, .5}, 8, 8, 1);
   for (Learner* policy : {static_cast<Learner*>(&heat_map), static_cast<Learner*>(&centroid)}) {
@@ -137,6 +123,13 @@ TEST(Stations, AreLedToWhateverIsSeen) {
     EXPECT_NEAR(actions[0], .5, .05);
     EXPECT_NEAR(actions[1], .7, .05);
   }
+}
+
+TEST(Stations, AreFoundByShapeAndByColour) {
+  const std::vector<SampleShape::Picture> mask{{seen_size, 1}}, rgb{{HeatMap::rgb_size, 3}};
+  HeatMap by_shape(rows_of(mask, 1).shape, 1), by_colour(rows_of(rgb, 1).shape, 1);
+  EXPECT_GE(led_right(by_shape, mask, shaped), 24);
+  EXPECT_GE(led_right(by_colour, rgb, coloured), 20);
 }
 
 TEST(Stations, AreNearestByPictureOrByNumbers) {
