@@ -354,8 +354,9 @@ class Forgeries(Case):
         self.assertIn("q2-leaderboard: vouched_entries.json has no hash of its entry.json", self.leaderboard("check", expect=1).stderr)
 
     def test_a_revision_that_is_not_there(self):
-        said = self.leaderboard("check", "--against", "origin/mian", expect=2).stderr
-        self.assertIn(f"--against origin/mian: expected a revision of git that {self.dir} has, and its history", said)
+        for revision in "origin/mian", "main:board", "main\nmain":  # none, a directory, and two to whoever reads lines
+            said = self.leaderboard("check", "--against", revision, expect=2).stderr
+            self.assertIn(f"--against {revision}: expected a revision of git that {self.dir} has, and its history", said)
 
     def test_a_preset_or_an_engine_that_nobody_has(self):
         def few(entry):

@@ -23,18 +23,23 @@ std::vector<std::string> names_of(const std::vector<std::string>& threads) {
 
 }  // namespace
 
-void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now) {
-  ProcessState left = now();
-  for (int wait = 0; wait < 50 && !left.threads.empty(); ++wait) {
+std::vector<std::string> left_behind(const std::function<std::vector<std::string>()>& now) {
+  std::vector<std::string> left = now();
+  for (int wait = 0; wait < 50 && !left.empty(); ++wait) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     left = now();
   }
-  report.judge("threads",
-               left.threads.empty() ? "" : fmt::format("left running: {}", fmt::join(names_of(left.threads), ", ")),
+  return left;
+}
+
+void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now) {
+  ProcessState state;
+  const std::vector<std::string> threads = left_behind([&] { return (state = now()).threads; });
+  report.judge("threads", threads.empty() ? "" : fmt::format("left running: {}", fmt::join(names_of(threads), ", ")),
                "none left behind",
                "join every thread before the call that started it returns, or in the destructor; a library's own pool "
                "is kept small by its settings (one thread)");
-  const auto& files = left.descriptors;
+  const auto& files = state.descriptors;
   report.judge("descriptors", files.empty() ? "" : fmt::format("left open: {}", fmt::join(files, ", ")),
                "none left open", "close every file and socket, or hold it in an object that does");
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <lgabench/host/host_session.hpp>
 #include <lgabench/job/check_report.hpp>
@@ -29,8 +30,10 @@ CheckReport check_engine(const PluginInfo& engine, const std::string& environmen
 /// @throws PluginError, MethodGone likewise.
 CheckReport check_perturbation(HostJob job, const CheckPhase& phase);
 
-/// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came. Threads are
-/// given half a second to end.
+/// What of `now`, threads or processes, is still there: they are given half a second to end.
+std::vector<std::string> left_behind(const std::function<std::vector<std::string>()>& now);
+
+/// Adds what is left behind: `now` says what a process holds beyond what it held before the plugin came.
 void judge_leftovers(CheckReport& report, const std::function<ProcessState()>& now);
 
 }  // namespace lgabench

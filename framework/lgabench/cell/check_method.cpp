@@ -8,7 +8,6 @@
 #include <memory>
 #include <optional>
 #include <regex>
-#include <thread>
 #include <utility>
 
 #include <lgabench/abstraction/human.hpp>
@@ -248,13 +247,9 @@ class MethodCheck {
                   "leave the processor's control register as it is: subnormal numbers make training 20 times slower");
   }
 
-  // What it started, and nobody waited for; likewise given half a second.
+  // What it started, and nobody waited for.
   void judge_processes() {
-    std::vector<std::string> left = method_.processes();
-    for (int wait = 0; wait < 50 && !left.empty(); ++wait) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-      left = method_.processes();
-    }
+    const std::vector<std::string> left = left_behind([this] { return method_.processes(); });
     report_.judge("processes", left.empty() ? "" : fmt::format("left behind: {}", fmt::join(left, ", ")),
                   "none left behind", "wait for every process before the call that started it returns");
   }

@@ -195,9 +195,10 @@ Entry read_entry(const fs::path& board, const fs::path& directory, const Vouched
     reader.at("identity").at("preset").fail("the hash of /preset");
   if (entry.identity.scene_seed != entry.setting.scene_seed)
     reader.at("identity").at("scene_seed").fail("that of /preset");
-  if (reader.at("id").string() != entry.id()) reader.at("id").fail(entry.id() + ", the hash of /identity");
-  if (directory != entry.place())
-    throw InputError(fmt::format("{}: expected at {}, by its identity", path.string(), entry.place().string()));
+  if (const std::string id = entry.id(); reader.at("id").string() != id)
+    reader.at("id").fail(id + ", the hash of /identity");
+  if (const fs::path place = entry.place(); directory != place)
+    throw InputError(fmt::format("{}: expected at {}, by its identity", path.string(), place.string()));
   expect_about(reader.at("about"));
   entry.about = reader.at("about").json();
   entry.failures = read_failures(reader.at("failures"));

@@ -23,22 +23,21 @@ void expect_date(const JsonReader& reader) {
   if (end == nullptr || *end != '\0' || text.size() != 10) reader.fail("a date, as 2026-01-31");
 }
 
-// Cells and episodes of a replay are those that its nonce chooses.
-void expect_chosen(const JsonReader& line, const Entry& entry) {
-  const std::vector<std::string> said = line.at("cells").strings();
-  std::vector<std::string> chosen;
+void expect_chosen(const JsonReader& line, const Entry& entry, const std::vector<std::size_t>& chosen) {
+  std::vector<std::string> keys;
   int episodes = 0;
-  for (const std::size_t i : chosen_cells(entry, line.at("nonce").string(), said.size())) {
-    chosen.push_back(entry.cells[i].key);
+  for (const std::size_t i : chosen) {
+    keys.push_back(entry.cells[i].key);
     episodes += entry.cells[i].episodes();
   }
-  if (said != chosen) line.at("cells").fail("the cells that the nonce chooses");
+  if (line.at("cells").strings() != keys) line.at("cells").fail("the cells that the nonce chooses");
   line.at("episodes").integer(episodes, episodes);
 }
 
 void expect_replay(const JsonReader& line, const Entry& entry) {
-  expect_chosen(line, entry);
-  const auto cells = static_cast<long long>(line.at("cells").json().size());
+  const std::size_t count = line.at("cells").strings().size();
+  expect_chosen(line, entry, chosen_cells(entry, line.at("nonce").string(), count));
+  const auto cells = static_cast<long long>(count);
   const long long identical = line.at("bit_identical").integer(0, cells);
   const long long flips =
       line.at("flips").integer(0, identical == cells ? 0 : line.at("episodes").json().get<long long>());
@@ -57,20 +56,15 @@ void expect_fresh(const JsonReader& line, const Entry& entry) {
       line.at(number).fail("a difference of two rates");
   const bool passed = line.at("passed").boolean();
   if (!line.has("successes")) return;
-  std::vector<std::string> chosen;
-  for (const std::size_t i : fresh_cells(entry, line.at("nonce").string())) chosen.push_back(entry.cells[i].key);
-  if (line.at("cells").strings() != chosen) line.at("cells").fail("the cells that the nonce chooses");
+  const std::vector<std::size_t> chosen = fresh_cells(entry, line.at("nonce").string());
+  expect_chosen(line, entry, chosen);
   const std::vector<JsonReader> cells = line.at("successes").elements();
   if (cells.size() != chosen.size()) line.at("successes").fail("an object for each cell");
-  int episodes = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const PlayedCell& cell = entry.cells[fresh_cells(entry, line.at("nonce").string())[i]];
-    const std::vector<std::string>& arms = entry.setting.scenario(cell.place.scenario).arms;
+    const std::vector<std::string>& arms = entry.setting.scenario(entry.cells[chosen[i]].place.scenario).arms;
     cells[i].only(arms);
     for (const std::string& arm : arms) cells[i].at(arm).integer(0, entry.setting.episodes);
-    episodes += cell.episodes();
   }
-  line.at("episodes").integer(episodes, episodes);
   const std::vector<FreshEstimate> estimates = fresh_estimates(entry, {&line.json()});
   const bool differs = std::any_of(estimates.begin(), estimates.end(), [](const auto& one) { return one.differs(); });
   if (passed == differs) line.at("passed").fail(differs ? "false, by its successes" : "true, by its successes");
