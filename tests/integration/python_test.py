@@ -269,6 +269,17 @@ class PythonMethods(Case):
         self.assertFalse((self.dir / "both").exists())
         self.call("merge", "one", "of0")
 
+    def test_loading_is_a_phase_of_its_own(self):
+        (self.dir / "mine.py").write_text("import time\ntime.sleep(2)\n" + METHOD.replace(
+            "class Mine:\n", "class Mine:\n    def __init__(self):\n        time.sleep(2)\n\n"))
+        (cell, _), = self.how("")[0].values()
+        timing = json.loads((cell / "timing.json").read_text())
+        self.assertGreater(timing["load_s"], 4)
+        self.assertLess(timing["select_s"], 2)
+        self.assert_matches_schemas("out")
+        shown = next(line for line in (self.dir / "out/report.md").read_text().splitlines() if "| select | sample |" in line)
+        self.assertIn("| load | select |", shown)
+
     def test_who_says_where_a_selection_comes_from(self):
         found, _ = self.how("", "rule", "edit")
         provenance = {}

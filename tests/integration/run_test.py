@@ -276,7 +276,7 @@ class Shards(Case):
 
     def test_merged_they_are_the_undisturbed_run(self):
         said = self.call(*self.RUN, "--out", "whole", "--jobs", "2", expect=3).stderr
-        shares = re.search(r"^select (\d+) %, sample (\d+) %, demonstrate (\d+) %, learn (\d+) %, evaluate (\d+) %; "
+        shares = re.search(r"^load (\d+) %, select (\d+) %, sample (\d+) %, demonstrate (\d+) %, learn (\d+) %, evaluate (\d+) %; "
                            r"2 workers busy (\d+) % of [\d.]+ s$", said, re.MULTILINE)
         *phases, busy = map(int, shares.groups())
         self.assertTrue(97 <= sum(phases) <= 103 and 0 < busy <= 101, shares[0])  # how busy is the machine's affair

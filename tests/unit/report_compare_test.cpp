@@ -112,7 +112,7 @@ TEST(Compare, TestsTimesInPairs) {
       EXPECT_NEAR(time.change.difference, 1.055, 1e-12);
       EXPECT_GT(time.change.interval.low, 1);
       EXPECT_NEAR(time.change.p, 2 / 4096., 1e-12);  // all of 12 ranks on one side
-      EXPECT_NEAR(time.p_holm, 6 * 2 / 4096., 1e-12);
+      EXPECT_NEAR(time.p_holm, 7 * 2 / 4096., 1e-12);
     } else {
       EXPECT_EQ(time.p_holm, 1) << time.phase;
     }

@@ -199,7 +199,7 @@ class FabricatedRun : public TemporaryDirectory {
       for (const auto& [name, first] : s.curves) line[name] = first / e;
       training += canonical(line) + '\n';
     }
-    const Json timing{{"select_s", 0.25},     {"sample_s", 0.5},   {"demonstrate_s", 1.0},
+    const Json timing{{"load_s", 0.125},      {"select_s", 0.125}, {"sample_s", 0.5}, {"demonstrate_s", 1.0},
                       {"learn_s", s.learn_s}, {"evaluate_s", 2.0}, {"total_s", 7.75}};
     const fs::path cell = new_cell(s);
     std::vector<std::pair<std::string, std::string>> written{{"cell.json", canonical(cell_json(s)) + '\n'},

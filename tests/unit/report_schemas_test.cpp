@@ -177,6 +177,7 @@ TEST(Schemas, RefuseBrokenFiles) {
       {"episodes", "/attribution", "luck"},
       {"episodes", "/input_seen", "yes"},
       {"timing", "/learn_s", -1.0},
+      {"timing", "/load_s", "long"},
       {"status", "/state", "done"},
       {"status", "/fault", "nobody"},
       {"status", "/files", {{"cell.json", "abc"}}},

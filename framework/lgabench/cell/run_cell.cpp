@@ -321,10 +321,12 @@ void run_cell(const CellJob& job, ChatClient* server, const PhaseReport& report)
   Phases phases(report);
   const auto count = [&phases](int n) { phases.count(n); };
 
-  // 1 select: which features does each command make matter?
-  phases.begin("select");
+  phases.begin("load");
   host_axes(scenario, job);
   const std::unique_ptr<Method> method = make_method(job);
+
+  // 1 select: which features does each command make matter?
+  phases.begin("select");
   const Answers answers = answers_for(job, scenario, server, [&phases](bool begins) { phases.in_line(begins); });
   TrainingLines training(count);
   Services services{*answers.lm, *answers.human,       cell.method.options, cell.training_seed,

@@ -8,7 +8,7 @@
 
 namespace lgabench {
 
-const std::vector<std::string> cell_phases{"select", "sample", "demonstrate", "learn", "evaluate"};
+const std::vector<std::string> cell_phases{"load", "select", "sample", "demonstrate", "learn", "evaluate"};
 
 void expect_training_line(const JsonReader& line) {
   constexpr double most = 1e100;

@@ -199,6 +199,7 @@ CellResult read_cell(const fs::path& directory) {
   if (!cell.perturbations.empty()) read_perturbed(directory / cell_file::perturbed, cell);
   const fs::path timing_file = directory / cell_file::timing;
   cell.timing = read_json(timing_file, Links::refused);
+  if (cell.timing.is_object()) cell.timing.emplace("load_s", 0.0);  // a part of select_s in runs of 0.3.0 and earlier
   for (const std::string& phase : phases()) JsonReader(cell.timing, timing_file.string()).at(phase).number();
   // Last, so that a torn file is reported with its line rather than as a wrong checksum.
   if (const fs::path changed = changed_file(directory, status); !changed.empty())
