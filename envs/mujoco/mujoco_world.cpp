@@ -64,7 +64,6 @@ void MujocoWorld::load(const std::vector<BodyModel>& models, int bodies) {
   data_.reset(mj_makeData(model_));
   pristine_.reset(mj_makeData(model_));
   if (!data_ || !pristine_) throw EngineError("MuJoCo: no memory for the simulation state");
-  mj_forward(model_, pristine_.get());
   owner_.assign(static_cast<std::size_t>(model_->ngeom), no_body);
 }
 
