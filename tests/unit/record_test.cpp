@@ -7,10 +7,13 @@
 #include <cstdlib>
 #include <string>
 #include <thread>
+#include <tuple>
 
+#include <lgabench/core/hash.hpp>
 #include <lgabench/core/scratch.hpp>
 #include <lgabench/core/version.hpp>
 #include <lgabench/record/answer_source.hpp>
+#include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/record/outcome.hpp>
 #include <lgabench/record/run_record.hpp>
@@ -59,6 +62,27 @@ TEST(Outcome, OtherLettersSayNothing) {
     EXPECT_FALSE(read_entry_letter(letter, words)) << letter;
   EXPECT_FALSE(read_outcome('a', 'x', words));
   EXPECT_FALSE(read_outcome('.', 'p', words)) << "a success is attributed to nothing";
+}
+
+TEST(CellStatus, IsReadAsItWasWritten) {
+  const Scratch cell("status");
+  CellStatus ok, failed;
+  ok.method_error = "plugin mine: threw";
+  ok.files = {{"cell.json", sha256("")}};
+  failed.failed = true;
+  failed.reason = "signal 9 (Killed) in phase learn";
+  failed.fault = "host";
+  failed.signal = 9;
+  failed.log_tail = {"epoch 1", "epoch 2"};
+  for (CellStatus* status : {&ok, &failed}) {
+    status->build = {{"method", sha256("method")}};
+    write_cell_status(cell.path, *status);
+    const CellStatus read = read_cell_status(cell.path);
+    EXPECT_EQ(std::tie(read.failed, read.reason, read.fault, read.signal, read.log_tail, read.method_error, read.build,
+                       read.files),
+              std::tie(status->failed, status->reason, status->fault, status->signal, status->log_tail,
+                       status->method_error, status->build, status->files));
+  }
 }
 
 TEST(AnswerSource, EachWordIsOneValue) {
