@@ -4,6 +4,8 @@ LGABENCH_BUILD names the build tree. One CTest entry a class; by hand: python3 s
 """
 import json
 import os
+import re
+import shlex
 import unittest
 
 from case import Case
@@ -35,6 +37,14 @@ class OwnScenario(Case):
         (self.dir / "round.json").unlink()  # a run holds the scenarios that it played
         self.call("report", "out")
         self.call("verify", "out", "--sample", "2")
+
+    def test_the_command_that_is_printed_learns_what_the_truth_tells(self):
+        said = self.new(*NAME).stdout
+        self.assertEqual(self.call("check-scenario", "round.json", "--scenes", "2").returncode, 0)
+        words, = re.findall(r"^  lgabench (run .*)$", said, re.M)
+        self.call(*shlex.split(words), "--no-reference", "--out", "out")
+        rows = json.loads((self.dir / "out/summary.json").read_text())["rows"]
+        self.assertGreaterEqual(min(row["success"] for row in rows if row["method"] == "human"), .9)
 
     def test_near_misses_and_crowds_are_checked_for_what_they_test(self):
         self.new(*NAME, "--near-miss", "--distractors", "2:2")

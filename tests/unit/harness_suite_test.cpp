@@ -62,8 +62,8 @@ TEST(Suite, q1) {
   EXPECT_EQ(suite.design.demonstrations, (std::vector<int>{10, 20, 30, 40, 50}));
   const Design smoke = preset_design(suite, "smoke");
   EXPECT_TRUE(smoke.smoke);
-  EXPECT_EQ(smoke.scenarios, (std::vector<std::string>{"heart", "red_heart"}));
-  EXPECT_EQ(smoke.demonstrations, std::vector<int>{20});
+  EXPECT_EQ(smoke.scenarios, (std::vector<std::string>{"heart", "something_to_drink_water_out_of"}));
+  EXPECT_EQ(smoke.demonstrations, std::vector<int>{5});
   const Design board = preset_design(suite, "leaderboard");
   EXPECT_FALSE(board.smoke);
   EXPECT_EQ(board.layouts, std::vector<std::string>{"continuous"});
@@ -73,6 +73,18 @@ TEST(Suite, q1) {
   EXPECT_EQ(board.options, suite.design.options);
   EXPECT_EQ(to_json(preset_design(suite, "paper")), to_json(suite.design)) << "the paper's setting is the suite's own";
   EXPECT_EQ(board.demonstrations.size(), 5u) << "what a preset does not name it takes from the suite";
+}
+
+TEST(Suite, SmokeTrainsAPolicyThatKeepsPlaces) {
+  const Catalogue shipped = scan_plugins({shipped_plugin_directory()});
+  std::error_code none_to_list;
+  for (const std::string& id : json_names(data_directory() / "suites", none_to_list)) {
+    const Suite suite = load_suite(id);
+    for (const Cell& cell : expand(suite, preset_design(suite, "smoke"), {}, shipped))
+      if (const Json policy = cell.method.options.value("policy", Json()); !cell.method.is_reference()) {
+        EXPECT_TRUE(policy.is_null() || policy == "heat_map" || policy == "centroid") << id << " " << cell.method.name;
+      }
+  }
 }
 
 TEST(Suite, GridAsJsonReadsBack) {

@@ -138,8 +138,10 @@ void new_scenario(NewScenarioArguments a) {
   const std::string path = fs::weakly_canonical(a.directory).string();
   to_stdout("{}\n\nTo sample it, let the oracle play it, and draw it:\n  lgabench check-scenario {}\n", file.string(),
             file.string());
-  to_stdout("To run it:\n  lgabench run q1 --scenarios {} --scenario-path {} --answers none --methods human,gcbc_seg\n",
-            a.name, path);
+  to_stdout(
+      "To run it:\n  lgabench run q1 --preset smoke --scenarios {} --scenario-path {} --answers none --methods "
+      "human,gcbc_seg\n",
+      a.name, path);
   Words commands = a.commands;
   commands.insert(commands.end(), a.unseen.begin(), a.unseen.end());
   if (const std::string missing = missing_encoder(commands); !missing.empty()) to_stdout("\nFirst: {}\n", missing);
