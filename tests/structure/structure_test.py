@@ -32,7 +32,7 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual(found, [], f"{folder} must not include {pattern}")
 
     def test_folders_were_found(self):
-        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "study", "drawn",
+        for folder in ("core", "plugin", "abstraction", "learning", "host", "record", "job", "cell", "harness", "report", "http", "study", "drawn",
                        "leaderboard", "cli"):
             self.assertTrue(list(includes(f"framework/lgabench/{folder}")), folder)
 
@@ -95,7 +95,14 @@ class IncludeGraph(unittest.TestCase):
         self.assertEqual({file: all_of_it for file, all_of_it in found.items() if all_of_it}, {})
 
     def test_the_study_knows_core_abstraction_records_and_reports(self):
-        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|report/|study/)|torch|opencv")
+        self.forbid("framework/lgabench/study", r"lgabench/(?!core/|abstraction/|record/|report/|http/|study/)|torch|opencv")
+
+    def test_a_server_knows_core_alone(self):
+        self.forbid("framework/lgabench/http", r"lgabench/(?!core/|http/)|torch|opencv")
+
+    def test_httplib_is_where_its_limits_are(self):
+        found = {path.parts[2] for path, included in includes("framework") if included == "httplib.h"}
+        self.assertEqual(found - {"study"}, {"http"})
 
     def test_drawn_commands_know_core_and_abstraction(self):
         self.forbid("framework/lgabench/drawn", r"lgabench/(?!core/|abstraction/|drawn/)|torch|opencv")

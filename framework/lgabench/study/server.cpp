@@ -1,9 +1,6 @@
 #include <lgabench/study/server.hpp>
 
 #include <fmt/format.h>
-#include <httplib.h>
-#include <pthread.h>
-#include <sys/mman.h>
 
 #include <chrono>
 #include <deque>
@@ -13,19 +10,17 @@
 
 #include <lgabench/core/hash.hpp>
 #include <lgabench/core/terminal.hpp>
-#include <lgabench/study/connection_limits.hpp>
+#include <lgabench/http/guarded.hpp>
 #include <lgabench/study/withdrawal.hpp>
 
 namespace lgabench::study {
 namespace {
 
+using http::reply;
 using httplib::Request;
 using httplib::Response;
 
-constexpr std::size_t largest_body = 256 << 10, largest_request = 2 * largest_body, most_events = 50, threads = 128;
-constexpr std::size_t stack = 16 << 20, kept_stack = 64 << 10;
-constexpr double longest_request_s = 10;
-constexpr const char* json_type = "application/json";
+constexpr std::size_t most_events = 50;
 
 // Nothing from elsewhere, nothing kept, no address of a session told to anybody.
 const httplib::Headers guards{
@@ -38,42 +33,6 @@ const httplib::Headers guards{
     {"Cross-Origin-Opener-Policy", "same-origin"},
     {"Cross-Origin-Resource-Policy", "same-origin"},
 };
-
-// httplib reads a Range by a regular expression that goes deeper with each character of a header: more than the
-// system's stack may hold, and what one request took each thread would keep.
-httplib::ThreadPool* pool_with_own_stacks() {
-  pthread_attr_t attributes;
-  ::pthread_getattr_default_np(&attributes);
-  ::pthread_attr_setstacksize(&attributes, stack);
-  ::pthread_setattr_default_np(&attributes);
-  ::pthread_attr_destroy(&attributes);
-  return new httplib::ThreadPool(threads);
-}
-
-void give_stack_back() {
-  pthread_attr_t attributes;
-  void* lowest = nullptr;
-  std::size_t size = 0;
-  if (::pthread_getattr_np(::pthread_self(), &attributes) != 0) return;
-  ::pthread_attr_getstack(&attributes, &lowest, &size);
-  ::pthread_attr_destroy(&attributes);
-  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-  const auto used = static_cast<std::size_t>(reinterpret_cast<char*>(&attributes) - static_cast<char*>(lowest));
-  if (used > kept_stack) ::madvise(lowest, (used - kept_stack) / page * page, MADV_DONTNEED);
-}
-
-// Answers are whole and as they are: httplib would build one of thousands of ranges in memory, and compress each anew.
-void answer_whole(const Request& request) {
-  auto& own = const_cast<Request&>(request);  // httplib's, which it reads after this
-  own.ranges.clear();
-  own.headers.erase("Accept-Encoding");
-  give_stack_back();
-}
-
-void reply(Response& response, int status, const Json& json) {
-  response.status = status;
-  response.set_content(canonical(json), json_type);
-}
 
 // Runs what answers a request; what it throws becomes a status. What the disk says is the researcher's, not the page's.
 void guarded(Response& response, const std::function<std::optional<Json>()>& answer) {
@@ -110,74 +69,30 @@ struct Server::Impl {
   Study& study;
   Site site;
   Listening where;
-  std::vector<std::string> hosts;  // what a Host header may say
-  httplib::Server http;
-  int port = 0;
+  http::GuardedServer server;
   std::mutex beginning;
   std::deque<std::chrono::steady_clock::time_point> begun;  // of the last minute
 
-  Impl(Study& of, Site made_of, Listening at) : study(of), site(std::move(made_of)), where(std::move(at)) {
-    http.new_task_queue = pool_with_own_stacks;
-    http.set_payload_max_length(largest_body);
-    http.set_read_timeout(10);
-    http.set_keep_alive_max_count(1);  // so that a connection's deadline is a request's
-    http.set_tcp_nodelay(true);
-    http.set_default_headers(guards);
-    http.set_pre_routing_handler(
-        [this](const Request& request, Response& response) { return admit(request, response); });
-    http.set_error_handler([](const Request& request, Response& response) {
-      answer_whole(request);  // one that is malformed comes here first
-      if (response.body.empty()) response.set_content(fmt::format("{}\n", response.status), "text/plain");
-    });
+  Impl(Study& of, Site made_of, Listening at)
+      : study(of),
+        site(std::move(made_of)),
+        where(std::move(at)),
+        server({where.address, where.port, where.host}, guards, http::Takes::json) {
     pages();
     sessions();
-    if (where.port == 0)
-      port = http.bind_to_any_port(where.address);
-    else
-      port = http.bind_to_port(where.address, where.port) ? where.port : -1;
-    if (port <= 0)
-      throw InputError(
-          fmt::format("{}:{}: cannot listen there: does another program use that port?", where.address, where.port));
-    for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
-      hosts.push_back(fmt::format("{}:{}", own, port));
-      if (port == 80) hosts.emplace_back(own);  // a browser leaves HTTP's own port out
-    }
-    if (!where.host.empty()) hosts.push_back(where.host);
-  }
-
-  // Another Host is a name that somebody else points here; another Origin is somebody else's page.
-  httplib::Server::HandlerResponse admit(const Request& request, Response& response) const {
-    answer_whole(request);
-    const auto refuse = [&response](int status, const char* why) {
-      reply(response, status, {{"error", why}});
-      return httplib::Server::HandlerResponse::Handled;
-    };
-    const std::string host = request.get_header_value("Host");
-    if (std::find(hosts.begin(), hosts.end(), host) == hosts.end()) return refuse(421, "another Host is served here");
-    if (request.method == "GET" || request.method == "HEAD") return httplib::Server::HandlerResponse::Unhandled;
-    if (request.method != "POST") return refuse(405, "GET or POST");
-    if (const std::string origin = request.get_header_value("Origin");
-        !origin.empty() && origin != "http://" + host && origin != "https://" + host)
-      return refuse(403, "another Origin");
-    if (request.get_header_value("Content-Type") != json_type) return refuse(415, "expected JSON");
-    // httplib bounds a body by its Content-Length alone, before it is decompressed.
-    if (request.has_header("Content-Encoding")) return refuse(415, "expected a body that is not compressed");
-    if (request.has_header("Transfer-Encoding") || !request.has_header("Content-Length"))
-      return refuse(411, "expected a Content-Length");
-    return httplib::Server::HandlerResponse::Unhandled;
   }
 
   void pages() {
     const auto serve = [this](const char* path, const std::string& text, const char* type) {
-      http.Get(path, [&text, type](const Request&, Response& response) { response.set_content(text, type); });
+      server.pages.Get(path, [&text, type](const Request&, Response& response) { response.set_content(text, type); });
     };
     for (const char* path : {"/", "/withdraw", "/p/[0-9a-f]{32}"}) serve(path, site.page, "text/html; charset=utf-8");
     serve("/study.css", site.style, "text/css; charset=utf-8");
     serve("/study.js", site.script, "text/javascript; charset=utf-8");
     serve("/object_types.png", site.object_types.png, "image/png");
     serve("/textures.png", site.textures.png, "image/png");
-    http.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
-    http.Get("/study.json", [this](const Request&, Response& response) {
+    server.pages.Get("/favicon.ico", [](const Request&, Response& response) { response.status = 204; });
+    server.pages.Get("/study.json", [this](const Request&, Response& response) {
       const Protocol& p = study.protocol();
       reply(response, 200,
             {{"title", p.title},
@@ -208,16 +123,16 @@ struct Server::Impl {
   }
 
   void sessions() {
-    http.Post("/begin", [this](const Request& request, Response& response) {
+    server.pages.Post("/begin", [this](const Request& request, Response& response) {
       guarded(response, [&]() -> std::optional<Json> { return Json{{"id", begin(body_of(request))}}; });
     });
-    http.Post("/withdraw", [this](const Request& request, Response& response) {
+    server.pages.Post("/withdraw", [this](const Request& request, Response& response) {
       guarded(response, [&]() -> std::optional<Json> {
         if (!study.withdraw(text_of(body_of(request), "code"))) return std::nullopt;
         return Json::object();
       });
     });
-    http.Post("/p/([0-9a-f]{32})/events", [this](const Request& request, Response& response) {
+    server.pages.Post("/p/([0-9a-f]{32})/events", [this](const Request& request, Response& response) {
       guarded(response, [&]() -> std::optional<Json> {
         const Json body = body_of(request);
         if (!body.is_object() || !body.contains("events") || !body.at("events").is_array() ||
@@ -238,12 +153,8 @@ struct Server::Impl {
 Server::Server(Study& study, Site site, Listening where)
     : impl_(std::make_unique<Impl>(study, std::move(site), std::move(where))) {}
 Server::~Server() = default;
-int Server::port() const { return impl_->port; }
-void Server::run() {
-  // A thread: with the caller's mask of signals.
-  const ConnectionLimits limits(impl_->port, longest_request_s, largest_request);
-  impl_->http.listen_after_bind();
-}
-void Server::stop() { impl_->http.stop(); }
+int Server::port() const { return impl_->server.port(); }
+void Server::run() { impl_->server.run(); }
+void Server::stop() { impl_->server.stop(); }
 
 }  // namespace lgabench::study

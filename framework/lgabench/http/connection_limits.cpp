@@ -1,4 +1,4 @@
-#include <lgabench/study/connection_limits.hpp>
+#include <lgabench/http/connection_limits.hpp>
 
 #include <arpa/inet.h>
 #include <linux/tcp.h>  // netinet/tcp.h's tcp_info lacks the bytes that were received
@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-namespace lgabench::study {
+namespace lgabench::http {
 namespace {
 
 namespace fs = std::filesystem;
@@ -71,4 +71,4 @@ void ConnectionLimits::watch() {
   }
 }
 
-}  // namespace lgabench::study
+}  // namespace lgabench::http

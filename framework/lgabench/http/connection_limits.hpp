@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-namespace lgabench::study {
+namespace lgabench::http {
 
 /// Ends connections that this process accepted on `port` once they lasted longer than `seconds` or sent more than
 /// `bytes`, looking ten times a second. httplib has neither limit: a timeout of reading begins anew with each byte, and
@@ -27,4 +27,4 @@ class ConnectionLimits {
   std::thread thread_;
 };
 
-}  // namespace lgabench::study
+}  // namespace lgabench::http
