@@ -80,7 +80,8 @@ class Package(Consumer):
         self.assert_no_path_of_the_sources(self.prefix)
 
     def test_holds_a_manual_and_completions(self):
-        for file in "man/man1/lgabench.1", "bash-completion/completions/lgabench", "zsh/site-functions/_lgabench":
+        for file in "man/man1/lgabench.1", "bash-completion/completions/lgabench", "zsh/site-functions/_lgabench", \
+                "fish/vendor_completions.d/lgabench.fish":
             text = (self.prefix / "share" / file).read_text().replace("\\-", "-")
             for word in "check-plugin", "--demos":
                 self.assertIn(word, text, file)

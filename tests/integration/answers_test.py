@@ -124,7 +124,7 @@ class Cassettes(Asking):
 
         self.server.shutdown()
         del self.environment["OPENAI_BASE_URL"], self.environment["OPENAI_API_KEY"]
-        table = self.call(*run).stdout
+        table = self.call(*run, "--tables").stdout
         self.assertIn("made-up-1", table)
         self.assert_matches_schemas("out")
         tape = (self.dir / "tape.jsonl").read_bytes()
@@ -255,7 +255,7 @@ class Live(Asking):
         self.assertLessEqual(self.server.most_at_once, 9)
 
     def test_cells_ask_and_pay_once(self):
-        table = self.play().stdout
+        table = self.play("--tables").stdout
         self.assertEqual(len(self.server.asked), 224, "two cells of each scenario, at once")
         self.assertEqual(len(set(self.server.asked)), 224)
         self.assertIn("Language model: made-up-1, asked during the run; its replies are in answers/.", table)
@@ -569,7 +569,7 @@ class Recorded(Case):
 class Paraphrases(Case):
     def test_a_method_is_asked_about_the_words_of_the_episode(self):
         table = self.call("run", "paraphrases", "--preset", "smoke", "--scenarios", "paraphrase_red_heart,paraphrase_rotate_block",
-                          "--methods", "lga", "--episodes", "4", "--set", "lga.epochs=2", "--out", "run").stdout
+                          "--methods", "lga", "--episodes", "4", "--set", "lga.epochs=2", "--tables", "--out", "run").stdout
         self.assert_matches_schemas("run")
         selected = {cell["scenario"]["id"]: (cell["scenario"]["commands"], json.loads((path.parent / "selection.json").read_text()))
                     for path in (self.dir / "run/cells").glob("*/cell.json")
@@ -705,9 +705,9 @@ class Humans(Case):
             "consent": {"given": True, "statement": "invented", "ethics": "none needed"}}, **changes)))
 
     def test_a_cell_for_each_of_them(self):
-        stand_ins = self.call(*self.RUN, "--out", "without")
+        stand_ins = self.call(*self.RUN, "--tables", "--out", "without")
         self.assertIn("Human: true φ̂: no human data.", stand_ins.stdout)
-        table = self.call(*self.RUN, "--out", "out", "--humans", "people").stdout
+        table = self.call(*self.RUN, "--tables", "--out", "out", "--humans", "people").stdout
         self.assertIn("Human: 3 participants.", table)
         self.assertIn("LGA-HILL: 3 participants, who edited a language model's φ̂.", table)
         self.assertNotIn("no human data", table)

@@ -71,7 +71,7 @@ class PluginAxes(case.Case):
         return states["heart"]["reason"]
 
     def test_it_is_an_axis_like_any_other(self):
-        said = self.run_axis(1).stdout
+        said = self.run_axis(1, "--tables").stdout
         self.assertIn("Axes of plugins, under which no leaderboard ranks a row: fixture_axis 0.1.", said)
         self.assert_matches_schemas("run")
         seen = self.hashes("run")

@@ -10,7 +10,7 @@ import unittest
 
 from case import BUILD, Case, FIXTURES, PROGRAM, command_line, some_of
 
-VERBS = ["list", "info", "select", "render", "demos", "run", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
+VERBS = ["list", "info", "select", "render", "demos", "run", "open", "report", "compare", "verify", "attribute", "merge", "cluster", "status",
          "leaderboard", "new-plugin", "check-plugin", "commands", "study", "encoder", "cache"]
 PLUGIN = ["--plugin-path", FIXTURES / "good"]
 # Cells without training, for milliseconds.
@@ -33,7 +33,7 @@ class Help(Case):
         for verb in VERBS:
             with self.subTest(verb):
                 said = self.call(verb, "--help").stdout
-                self.assertRegex(said, rf"\nUsage: lgabench {verb} \[OPTIONS\]")
+                self.assertRegex(said, rf"\nUsage: lgabench {verb} \[OPTIONS\].*\n\n(?s:.*)Example(?s:.*)\n  (-|[A-Z])")
                 self.assertEqual([line for line in said.splitlines() if len(line) > 100], [])
                 self.assertEqual(re.findall(r"\b(?:TEXT|U?INT|FLOAT|REQUIRED|Excludes)\b", said), [])
                 self.assertIn("Example", said)
@@ -41,6 +41,18 @@ class Help(Case):
         titles = re.findall(r"^(\w.*)\n  -", said, re.M)
         self.assertEqual(titles[:4], ["What is computed", "How cells are computed", "How much is computed", "Output"])
         self.assertLess(len(titles), 6)
+        self.assertLess(len(said.splitlines()), 60)
+        self.assertRegex(said.splitlines()[4], "^Examples")
+
+    def test_what_is_rarely_needed_is_shown_when_asked_for(self):
+        for verb, usual in (("run", "--methods"), ("cluster", "--elements")):
+            said, more = (self.call(verb, which).stdout for which in ("--help", "--help-all"))
+            options, every = (set(re.findall(r"^  (--[a-z-]+)", text, re.M)) for text in (said, more))
+            self.assertIn(usual, options)
+            self.assertLess(options, every)
+            self.assertIn(f"\n{len(every - options)} more options: lgabench {verb} --help-all\n", said)
+        self.assertNotIn("--methods", said, "cluster does not say again what run says")
+        self.assertIn("--methods", more)
 
     def test_version(self):
         self.assertRegex(self.call("--version").stdout,
@@ -126,6 +138,49 @@ class Mistakes(Case):
         self.call(*RUN, "--out", "runs/mine")
         self.assertIn("; runs: runs/mine", self.call("report", "runs", expect=2).stderr)
         self.assertIn("; runs: runs/mine", self.call("verify", "q1", expect=2).stderr)
+
+
+class Lists(Case):
+    def test_short_ones_have_a_line_each(self):
+        said = self.call("list", "--short").stdout
+        ids = [name for kind in ("methods", "rows", "suites", "scenarios") for name in self.call("list", kind).stdout.split()]
+        lines = [line for line in said.splitlines() if line.startswith("  ")]
+        self.assertEqual([line for line in lines if len(line) > 100], [])
+        self.assertLessEqual(set(ids), {line.split()[0] for line in lines})
+        self.assertIn("  heart ", said)
+        suites = self.call("list", "suites", "--short").stdout.splitlines()
+        self.assertEqual([line.split()[0] for line in suites[1:]], self.call("list", "suites").stdout.split())
+        self.assertIn("--short: expected no --of", self.call("list", "layouts", "--short", expect=2).stderr)
+
+
+class Ends(Case):
+    """What a run prints last."""
+
+    def test_a_sentence_a_table_and_a_path(self):
+        done = self.call(*RUN[:-1], "--out", "run")
+        headline, caption, table, *notes, last = done.stdout.split("\n\n")
+        head, *rows = table.split("\n")
+        self.assertRegex(headline, "^Mean over 1 scenario, 20 demonstrations: fixture_constant succeeds in 0...")
+        self.assertEqual(last, "report: run/report.html\n")
+        self.assertLessEqual(len(notes), 1)
+        self.assertEqual((caption, head.split()), ("Success, mean over 1 scenario [95 % interval]", ["demonstrations", "10", "20"]))
+        self.assertEqual([row.split("  ")[1] for row in rows[:1]], ["fixture_constant"])
+        self.assertTrue(any(row.startswith("  random visible object ") for row in rows))
+        self.assertIn("cells computed", done.stderr)
+
+        quiet = self.call(*RUN[:-1], "--quiet", "--fresh", "--out", "run")
+        self.assertEqual(quiet.stdout, f"{caption}\n\n{table}\n")
+        self.assertNotRegex(quiet.stderr, "computed|left|cells")
+        tables = self.call(*RUN[:-1], "--tables", "--out", "run").stdout
+        self.assertIn("  oracle ", tables)
+        self.assertEqual(tables.split("\n\nreport: ")[0] + "\n", self.call("report", "run").stdout)
+        self.assertIn("--json excludes --tables", self.call(*RUN, "--tables", "--json", "--out", "x", expect=2).stderr)
+
+    def test_cells_that_failed(self):
+        done = self.call(*RUN[:3], "heart,letter", "--methods", "fixture_constant,fixture_faulty+where=learn+how=throw", *PLUGIN,
+                         "--plugin-path", FIXTURES / "faulty", "--demos", "2", "--seeds", "0", "--episodes", "2", "--out", "run", expect=3)
+        self.assertRegex(done.stderr, r"\nfailed: fixture_faulty.* heart .*\(run/cells/\w+/log.txt\)\n")
+        self.assertRegex(done.stdout, r"(?s)fixture_constant .*\n\nreport: run/report.html\n$")
 
 
 class DryRuns(Case):
@@ -300,7 +355,8 @@ class Completion(Case):
         (self.dir / "runs").mkdir()
         self.assertEqual(self.completed("report", "ru"), ["runs"])
         for verb in VERBS:
-            listed = set(re.findall(r"(?:^|\s)(--[a-z-]+)", self.call(verb, "--help").stdout.split("Usage")[1]))
+            asked = "--help-all" if verb in ("run", "cluster") else "--help"
+            listed = set(re.findall(r"(?:^|\s)(--[a-z-]+)", self.call(verb, asked).stdout.split("Usage")[1]))
             self.assertLessEqual(set(self.completed(verb, "--")) - {"--help"}, listed)
 
     def test_words_are_those_that_the_suite_takes(self):
@@ -329,6 +385,13 @@ class Completion(Case):
         if shutil.which("shellcheck"):
             done = subprocess.run(["shellcheck", "-s", "bash", PAGES / "lgabench.bash"], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stdout), (0, ""))
+        fish = (PAGES / "lgabench.fish").read_text()
+        for line in ("complete -c lgabench -n __fish_use_subcommand -xa open -d ", "complete -c lgabench -n 'test (_lgabench_word 2) = run' -l demos -d "):
+            self.assertIn(f"\n{line}", fish)
+        self.assertEqual([line for line in fish.splitlines() if re.sub(r"\\.", "", line).count("'") % 2 and not line.startswith((" ", "#", "_", "}"))], [])
+        if shutil.which("fish"):
+            done = subprocess.run(["fish", "--no-execute", PAGES / "lgabench.fish"], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
         if shutil.which("zsh"):
             done = subprocess.run(["zsh", "-n", PAGES / "_lgabench"], capture_output=True, text=True)
             self.assertEqual((done.returncode, done.stderr), (0, ""))

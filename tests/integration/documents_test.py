@@ -9,9 +9,10 @@ import pathlib
 import re
 import shlex
 import shutil
+import textwrap
 import unittest
 
-from case import Case, FIXTURES, with_options
+from case import BUILD, Case, FIXTURES, command_line, with_options
 from python_test import PYTHON, has
 
 SOURCE = pathlib.Path(__file__).parents[2]
@@ -43,6 +44,8 @@ def expected_seconds(plan):
 class DocumentedCommands(Case):
     def setUp(self):
         super().setUp()
+        for variable in "BROWSER", "DISPLAY", "WAYLAND_DISPLAY":
+            self.environment.pop(variable, None)
         self.call("run", "q1", "--limit", "4", "--out", "run", "--set", "*.epochs=2")
         shutil.copy(SOURCE / "examples/python/lga_torch.py", self.dir)
         self.call("new-plugin", "my_method", "--kind", "python", "--directory", "python")
@@ -107,6 +110,61 @@ class DocumentedCommands(Case):
         self.assertGreater(ran, 12)
         self.assertGreater(planned, 20)
         self.assertIn("run", {words[0] for words in carried_out})
+
+
+# What begins a line that a reader types, or of the code that the tutorial adds.
+TYPED = re.compile(r"(git|\./|~/|mkdir|v/bin|cmake|lgabench|build/|selection\.)\S*")
+
+
+def printed_blocks(page):
+    """Indented blocks that no reader types, with the places where they begin."""
+    for block in re.finditer(r"(?:^ {4,}\S.*\n(?:\n(?= {4,}\S))?)+", page, re.M):
+        if not TYPED.match(block[0].strip()):
+            yield block.start(), block[0]
+
+
+@unittest.skipUnless(command_line("run")[1:] == ["run"], "the pages show what MuJoCo plays")
+class PrintedBlocks(Case):
+    """What README and the tutorial say that a command prints, whole but for the hash in a path. LGABENCH_WRITE_GOLDEN=1 writes it
+    into the pages."""
+
+    def without_hash(self, text):
+        return re.sub(r"-[0-9a-f]{8}/report", "-HASH/report", text)
+
+    def assert_printed(self, page, *command):
+        page = SOURCE / page
+        text = page.read_text()
+        (at, shown), = printed_blocks(text)
+        printed = self.call(*command).stdout
+        for name, *rates in re.findall(r"^  (\S.*?)  +([01]\.\d\d)\S*", printed, re.M):
+            self.assertTrue(name not in ("Human", "LGA") or float(rates[0]) >= .9, printed)
+        self.assertNotRegex(printed, "[§†‡]")
+        indent = re.match(" +", shown)[0]
+        if os.environ.get("LGABENCH_WRITE_GOLDEN"):
+            page.write_text(text[:at] + textwrap.indent(printed, indent) + text[at + len(shown):])
+        self.assertEqual(self.without_hash(textwrap.dedent(shown)), self.without_hash(printed))
+
+    def test_the_first_run(self):
+        usual, = re.findall(r"arguments=\((\w.*)\)", (SOURCE / "quickstart").read_text())
+        self.assert_printed("README.md", "run", *usual.split())
+
+    def rates(self):
+        run, = (self.dir / "runs").iterdir()
+        rows = json.loads((run / "summary.json").read_text())["rows"]
+        shutil.rmtree(run)
+        return {row["scenario"]: row["success"] for row in rows if row["method"] == "my_method"}
+
+    def test_the_tutorials_row_and_what_spoils_it(self):
+        words = ["run", "q1", "--preset", "smoke", "--methods", "lga,my_method", "--plugin-path"]
+        page = (SOURCE / "docs/tutorial.md").read_text()
+        self.assertIn(" ".join(words), page)
+        self.assert_printed("docs/tutorial.md", *words, BUILD / "tests/plugins/written")
+        before = self.rates()
+        self.call("run", *words[1:4], "--methods", "my_method", "--plugin-path", BUILD / "tests/plugins/changed")
+        after = self.rates()
+        self.assertEqual(len(before), 3)
+        self.assertEqual([one for one in before if after[one] >= before[one]], [])
+        self.assertIn(f"falls to {after['(mean)']:.2f}", page)
 
 
 if __name__ == "__main__":

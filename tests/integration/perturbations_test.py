@@ -104,7 +104,7 @@ class Perturbations(case.BesideOneRun):
         small = ["run", "q1", "--scenarios", "heart", "--methods", "lga,gcbc_dart", "--demos", "4", "--seeds", "0",
                  "--episodes", "1", "--set", "*.epochs=3"]
         self.call(*small, "--out", "plain")
-        said = self.call(*small, "--train-on", "segmentation:any", "--out", "through").stdout
+        said = self.call(*small, "--train-on", "segmentation:any", "--tables", "--out", "through").stdout
         self.assertIn("methods saw their demonstrations through segmentation, at a level drawn for each", said)
         self.assert_matches_schemas("through")
         plain = {(cell["method"]["name"], cell["demonstrations"]): key for key, (cell, _) in self.cells("plain").items()}

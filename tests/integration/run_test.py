@@ -162,7 +162,7 @@ class OptionsOfOthers(Case):
 class Variants(Case):
     def test_are_rows_of_their_own(self):
         arguments = ["run", "q1", "--scenarios", "heart", "--demos", "10", "--seeds", "0", "--episodes", "4", "--out", "out",
-                     "--methods", "lga+epochs=5,lga+loss=squared,factorial", "--set", "lga.epochs=6",
+                     "--tables", "--methods", "lga+epochs=5,lga+loss=squared,factorial", "--set", "lga.epochs=6",
                      "--set", "factorial.epochs=5"]
         table = self.call(*arguments).stdout
         self.assert_matches_schemas("out")
@@ -193,7 +193,7 @@ class Presets(Case):
                      episodes=3, options={"*": {"epochs": 7}},
                      presets={"own": {"test_scenes": "per_seed", "options": {"*": {"epochs": 5}, "lga": {"batch_size": 5}}}})
         (self.dir / "q1.json").write_text(json.dumps(suite))
-        table = self.call("run", "q1.json", "--preset", "own", "--out", "own", "--set", "*.learning_rate=0.002").stdout
+        table = self.call("run", "q1.json", "--preset", "own", "--out", "own", "--tables", "--set", "*.learning_rate=0.002").stdout
         self.call("run", "q1.json", "--out", "shared")
         self.assert_matches_schemas("own")
         for line in ("q1: preset own\n", "q1: each training seed plays test scenes of its own\n",
@@ -489,12 +489,13 @@ class Commands(Case):
             subprocess.run(command_line("run", *SMALL, "--limit", "1", "--out", "run"), stdout=log, stderr=log, check=True,
                            env=self.environment, cwd=self.dir)
         log = (self.dir / "log").read_text()
-        self.assertLess(log.index("report: "), log.index("1 cells computed"), log)
+        places = [log.index(words) for words in ("1 cells computed", "succeeds in", "\n  LGA ", "report: ")]
+        self.assertEqual(places, sorted(places), log)
 
     def test_demonstrations_are_per_seen_command(self):
         arguments = ["--scenarios", "q3_fruit,q3_utensil", "--methods", "lga", "--demos", "10", "--seeds", "0",
                      "--episodes", "2", "--set", "lga.epochs=1", "--no-reference"]
-        said = self.call("run", "q3", *arguments, "--out", "out").stdout
+        said = self.call("run", "q3", *arguments, "--tables", "--out", "out").stdout
         self.assertIn("demonstrations: 10 per command, 20 in all", said)
         for key, (cell, _) in self.cells("out").items():
             self.assertEqual(cell["demonstrations"], 10)

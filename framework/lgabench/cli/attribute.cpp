@@ -64,8 +64,8 @@ int attribute(AttributeArguments a) {
   if (!causes) return interrupted;
   fs::copy(a.run, a.out, fs::copy_options::recursive | fs::copy_options::copy_symlinks);
   keep_causes(*causes, RunDirectory(a.out, record, Existing::same));
-  print_report(a.out, false);
-  to_stderr("written to {}\n", a.out.string());
+  print_report(a.out, Printed::end);
+  print_page(a.out);
   return causes->left_out.empty() ? ok : regression;
 }
 

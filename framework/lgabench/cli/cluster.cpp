@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <set>
 #include <string_view>
 
 #include <lgabench/cli/help.hpp>
@@ -181,6 +182,12 @@ void add_cluster(CLI::App& app, int& exit) {
   auto a = std::make_shared<ClusterArguments>();
   CLI::App* verb = app.add_subcommand("cluster", "Write scripts that compute a run as a Slurm job array");
   add_run_options(*verb, a->run);
+  std::set<std::string> of_run;
+  for (const CLI::Option* option : verb->get_options())
+    if (option->nonpositional() && option->get_name() != "--out" && option != verb->get_help_ptr() &&
+        option != verb->get_help_all_ptr())
+      of_run.insert(option->get_name());
+  leave_to_help_all(*verb, of_run);
   verb->add_option("--elements", a->elements,
                    "Number of elements of the job array, each a part of the run; a few long ones are best")
       ->required()
@@ -197,7 +204,7 @@ void add_cluster(CLI::App& app, int& exit) {
   verb->footer(
       "Example: lgabench cluster q1 --preset leaderboard --elements 40 --time 02:00:00 --out runs/q1\nWrites three "
       "scripts into --out: array.sbatch, merge.sbatch (which merges the parts and makes the report) and submit. It "
-      "submits nothing itself.\nAll other options are those of run, except --fresh, --dry-run and --debug.");
+      "submits nothing itself.\nTakes the options of `lgabench run` too, but for --fresh, --dry-run and --debug.");
   verb->callback([a, &exit] { exit = write_scripts(*a); });
 }
 

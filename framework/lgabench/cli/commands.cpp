@@ -43,6 +43,7 @@ void add_commands(CLI::App& app, int& exit) {
   add_info(app, exit);
   add_run(app, exit);
   add_report(app, exit);
+  add_open(app, exit);
   add_compare(app, exit);
   add_verify(app, exit);
   add_attribute(app, exit);
@@ -62,7 +63,7 @@ void add_commands(CLI::App& app, int& exit) {
 void arrange_commands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> titles[] = {
       {"To look around", {"list", "info", "select", "render", "demos", "replay"}},
-      {"To run and to compare", {"run", "report", "compare", "verify", "attribute"}},
+      {"To run and to compare", {"run", "open", "report", "compare", "verify", "attribute"}},
       {"To run on many machines", {"cluster", "status", "merge"}},
       {"To publish", {"leaderboard"}},
       {"To add a method, an engine or a scenario",

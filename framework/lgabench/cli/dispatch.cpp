@@ -82,6 +82,8 @@ int dispatch(CLI::App& app, int argc, char** argv, const int& exit) {
       if (app.get_subcommands().empty()) throw CLI::CallForHelp();
     } catch (const CLI::CallForVersion& e) {
       to_stdout("{}\n", e.what());
+    } catch (const CLI::CallForAllHelp&) {
+      to_stdout("{}", app.help("", CLI::AppFormatMode::All));
     } catch (const CLI::Success&) {  // --help
       to_stdout("{}", app.help());
     }

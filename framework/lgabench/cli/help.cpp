@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <lgabench/core/error.hpp>
 
@@ -42,19 +43,33 @@ std::string named(const OptionHelp& option) {
 
 class HelpFormatter : public CLI::FormatterBase {
  public:
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
+  explicit HelpFormatter(std::set<std::string> rare) : rare_(std::move(rare)) {}
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     std::string help = wrapped(app->get_description(), 0) + "\n\nUsage: " + usage_line(*app, name) + "\n";
+    const std::string footer = app->get_footer().empty() ? "" : "\n" + wrapped(app->get_footer(), 2) + "\n";
+    const bool is_command = app->get_parent() != nullptr;
+    if (is_command) help += footer;
     for (const auto& [title, commands] : command_groups(*app)) {
       help += "\n" + title + "\n";
       for (const CLI::App* command : commands) help += entry(command->get_name(), command->get_description());
     }
+    std::size_t more = 0;
     for (const auto& [title, options] : option_groups(*app)) {
-      help += "\n" + (title.empty() ? "" : title + "\n");
-      for (const OptionHelp& option : options) help += entry(named(option), option.text);
+      std::string entries;
+      for (const OptionHelp& option : options)
+        if (mode != CLI::AppFormatMode::All && !option.names.empty() && rare_.count(option.names.back()) > 0)
+          ++more;
+        else
+          entries += entry(named(option), option.text);
+      if (!entries.empty()) help += "\n" + (title.empty() ? "" : title + "\n") + entries;
     }
-    if (!app->get_footer().empty()) help += "\n" + wrapped(app->get_footer(), 2) + "\n";
-    return help;
+    if (more > 0) help += fmt::format("\n{} more options: {} --help-all\n", more, name);
+    return is_command ? help : help + footer;
   }
+
+ private:
+  const std::set<std::string> rare_;
 };
 
 }  // namespace
@@ -155,6 +170,13 @@ std::string wrapped(std::string_view text, std::size_t indent) {
   }
 }
 
-std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
+std::shared_ptr<CLI::FormatterBase> help_formatter() {
+  return std::make_shared<HelpFormatter>(std::set<std::string>());
+}
+
+void leave_to_help_all(CLI::App& verb, std::set<std::string> options) {
+  verb.set_help_all_flag("--help-all", "Print this help message with all options and exit");
+  verb.formatter(std::make_shared<HelpFormatter>(std::move(options)));
+}
 
 }  // namespace lgabench::cli

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <initializer_list>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,5 +49,8 @@ std::string wrapped(std::string_view text, std::size_t indent);
 
 /// What writes --help of an app and of the commands that are added to it later.
 std::shared_ptr<CLI::FormatterBase> help_formatter();
+
+/// Has the command's --help leave these out ("--shard"), which its --help-all then shows; none of its own before.
+void leave_to_help_all(CLI::App& verb, std::set<std::string> options);
 
 }  // namespace lgabench::cli

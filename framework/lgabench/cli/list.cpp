@@ -35,6 +35,8 @@ Json suites() {
     const Json suite = read_json(file);
     const JsonReader reader(suite, file.string());
     all.push_back({{"id", id}, {"summary", reader.has("note") ? reader.at("note").string() : ""}});
+    if (reader.has("about") && reader.at("about").has("title"))
+      all.back()["title"] = reader.at("about").at("title").string();
   }
   return all;
 }
@@ -79,14 +81,27 @@ Json listing(const Catalogue& catalogue) {
   return all;
 }
 
-void print_list(const Json& all) {
-  for (const char* section : sections) {
+// "id  title", cut to a line of a terminal.
+std::string short_line(const Json& row, std::size_t width) {
+  constexpr std::size_t widest = 100;
+  const std::string line = fmt::format("  {:<{}}  {}", row["id"].get<std::string>(), width,
+                                       row.value("title", row["summary"].get<std::string>()));
+  if (line.size() <= widest) return line;
+  return line.substr(0, line.find_last_of(' ', widest - 4)) + " ...";
+}
+
+void print_list(const Json& all, const std::string& kind, bool is_short) {
+  for (const std::string section : sections) {
+    if (!kind.empty() && section != (kind == "rows" ? "reference rows" : kind)) continue;
     to_stdout("{}\n", section);
     std::size_t width = 0;
     for (const Json& row : all[section]) width = std::max(width, row["id"].get_ref<const std::string&>().size());
     for (const Json& row : all[section])
-      to_stdout("  {:<{}}  {}{}{}\n", row["id"].get<std::string>(), width, row.value("version", ""),
-                row.contains("version") ? "  " : "", row["summary"].get<std::string>());
+      if (is_short)
+        to_stdout("{}\n", short_line(row, width));
+      else
+        to_stdout("  {:<{}}  {}{}{}\n", row["id"].get<std::string>(), width, row.value("version", ""),
+                  row.contains("version") ? "  " : "", row["summary"].get<std::string>());
     if (all[section].empty()) to_stdout("  (none)\n");
   }
   for (const Json& row : all["refused"])
@@ -168,7 +183,7 @@ Json reference_rows() {
 
 void add_list(CLI::App& app, int& exit) {
   struct ListArguments {
-    bool json = false;
+    bool json = false, is_short = false;
     std::string kind, of, python = "python3";
     std::vector<fs::path> directories;
   };
@@ -183,7 +198,10 @@ void add_list(CLI::App& app, int& exit) {
   verb->add_option("--of", arguments->of,
                    "With KIND: only those that a run of this suite accepts; for layouts and sources also a scenario's")
       ->type_name("SUITE");
-  verb->footer("Examples: lgabench list --plugin-path my/build; lgabench list layouts --of mobile");
+  verb->footer(
+      "Examples\n  lgabench list --short\n  lgabench list suites --short\n  lgabench list layouts --of mobile\n"
+      "  lgabench list --plugin-path my/build");
+  verb->add_flag("--short", arguments->is_short, "Print a line for each: its id, and a title of a few words");
   verb->add_flag("--json", arguments->json, "Print one JSON object");
   add_plugin_path(*verb, arguments->directories, any_plugin);
   verb->add_option("--python", arguments->python, "The interpreter for plugins in Python")
@@ -193,12 +211,17 @@ void add_list(CLI::App& app, int& exit) {
   verb->callback([arguments, &exit] {
     const Json all = listing(plugins_at(arguments->directories, arguments->python));
     if (arguments->kind.empty() && !arguments->of.empty()) throw InputError("--of: expected a KIND with it");
-    if (!arguments->kind.empty())
-      to_stdout("{}\n", fmt::join(words(arguments->kind, arguments->of, all), "\n"));
+    const std::string& kind = arguments->kind;
+    const bool is_section = kind.empty() || kind == "rows" ||
+                            std::find(std::begin(sections), std::end(sections), kind) != std::end(sections);
+    if (arguments->is_short && (!is_section || !arguments->of.empty() || arguments->json))
+      throw InputError("--short: expected no --of and no --json, and of kinds one of those that list prints");
+    if (!kind.empty() && !arguments->is_short)
+      to_stdout("{}\n", fmt::join(words(kind, arguments->of, all), "\n"));
     else if (arguments->json)
       to_stdout("{}\n", all.dump(2));
     else
-      print_list(all);
+      print_list(all, kind, arguments->is_short);
     exit = ok;
   });
 }

@@ -45,7 +45,10 @@ void add_merge(CLI::App& app, int& exit) {
           "Shards: the command of one of them, with --out {} and without --shard, computes the rest. Other runs: "
           "resume each, and merge again.\n",
           options->out.string());
-    if (outcome.finished + outcome.failed > 0) print_report(options->out, options->json);  // last: it may throw
+    if (outcome.finished + outcome.failed > 0) {  // last: it may throw
+      print_report(options->out, options->json ? Printed::json : Printed::end);
+      if (!options->json) print_page(options->out);
+    }
     exit = bad > 0 || (outcome.missing > 0 && !options->partial) ? cells_failed : ok;
   });
 }

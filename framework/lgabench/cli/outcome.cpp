@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include <lgabench/cli/help.hpp>
 #include <lgabench/core/colour.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/core/version.hpp>
@@ -41,8 +42,10 @@ void name_other_version(const report::RunResults& run) {
               LGABENCH_VERSION);
 }
 
-void print_tables(const report::Report& report) {
-  std::string text = printable(report::terminal(report.document, report.run.directory));
+namespace {
+
+void print_painted(const std::string& unpainted) {
+  std::string text = printable(unpainted);
   for (const char* mark : {"†", "‡", "§"}) {
     const std::string painted_mark = painted(stdout, Colour::yellow, mark);
     for (std::size_t at = 0; (at = text.find(mark, at)) != text.npos; at += painted_mark.size())
@@ -51,14 +54,34 @@ void print_tables(const report::Report& report) {
   put(stdout, text);
 }
 
-void print_report(const fs::path& run, bool json) {
+}  // namespace
+
+void print_tables(const report::Report& report) {
+  print_painted(report::terminal(report.document, report.run.directory));
+}
+
+void print_report(const fs::path& run, Printed what) {
   const report::Report report = report::write_report(run);
-  if (json) {
+  if (what == Printed::json) {
     to_stdout("{}", read_file(run / report_file::summary));
     return;
   }
-  print_tables(report);
-  to_stdout("\nreport: {}\n", (run / report_file::page).string());
+  if (what == Printed::tables) {
+    print_tables(report);
+    return;
+  }
+  const auto& [means, notes] = report.brief;
+  if (what == Printed::end && !report.document.headline.empty())
+    to_stdout("{}\n\n", wrapped(report::TableCell(report.document.headline).text(), 0));
+  if (!means.rows.empty()) print_painted(report::terminal(means));
+  if (what == Printed::end && !notes.empty() && !means.rows.empty()) to_stdout("\n");
+  for (const std::string& note : notes)
+    if (what == Printed::end)
+      print_painted(one_line(note) + "\n");
+    else
+      to_stderr("{}\n", one_line(note));
 }
+
+void print_page(const fs::path& run) { to_stdout("\nreport: {}\n", (run / report_file::page).string()); }
 
 }  // namespace lgabench::cli

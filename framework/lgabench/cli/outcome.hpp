@@ -22,7 +22,14 @@ void name_other_version(const report::RunResults& run);
 /// The tables of a report on stdout; on a terminal its marks have a colour.
 void print_tables(const report::Report& report);
 
-/// Writes the run's report; prints its table, or summary.json, on stdout.
-void print_report(const fs::path& run, bool json);
+/// What print_report() prints on stdout: the headline, the table of means and notes; that table alone; every table; or
+/// summary.json.
+enum class Printed { end, table, tables, json };
+
+/// Writes the run's report, and prints it. Notes of the table alone go to stderr.
+void print_report(const fs::path& run, Printed what);
+
+/// A command's last line: the run's report.html.
+void print_page(const fs::path& run);
 
 }  // namespace lgabench::cli

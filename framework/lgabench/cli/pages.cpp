@@ -213,4 +213,45 @@ std::string zsh_completion(const CLI::App& app) {
       word_functions, commands, replaced(cases, " \\\n        ;;", "\n      ;;"));
 }
 
+std::string fish_completion(const CLI::App& app) {
+  const auto quoted = [](const std::string& text) {
+    return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
+  };
+  // What completes a value: files, directories, words of `lgabench list`, or those of A|B|C.
+  const auto values = [&quoted](const std::string& takes) -> std::string {
+    const std::string action = zsh_action(takes);
+    if (action == "_files -/") return " -xa '(__fish_complete_directories)'";
+    if (action == "_files") return " -rF";
+    return fmt::format(" -xa {}", quoted(fmt::format("(_lgabench_words {})", quoted(takes))));
+  };
+  std::string lines;
+  each_command(app, [&](const CLI::App& command) {
+    const std::string name = command.get_name();
+    lines += fmt::format("complete -c lgabench -n __fish_use_subcommand -xa {} -d {}\n", name,
+                         quoted(command.get_description()));
+    const std::string begin = fmt::format("complete -c lgabench -n 'test (_lgabench_word 2) = {}'", name);
+    for (const OptionGroup& group : option_groups(command))
+      for (const OptionHelp& option : group.options) {
+        const std::string value = option.takes.empty() ? "" : values(option.takes);
+        if (option.names.empty()) lines += begin + value + '\n';
+        for (const std::string& one : option.names)
+          lines += fmt::format("{} -{} {} -d {}{}\n", begin, one.substr(0, 2) == "--" ? "l" : "s",
+                               one.substr(one.find_first_not_of('-')), quoted(option.text), value);
+      }
+  });
+  return "# Completion of lgabench for fish, written from its --help.\n"
+         "function _lgabench_word\n  set -l words (commandline -opc) ''\n  echo $words[$argv[1]]\nend\n"
+         "# As the script of bash has it, which prints them: a list keeps what stands before its last comma.\n"
+         "function _lgabench_words\n"
+         "  set -l before (string match -r '.*,' -- (commandline -ct))\n"
+         "  set -l script " +
+         quoted(std::string(word_functions) + "_lgabench_words \"$@\"") +
+         "\n"
+         "  for word in (bash -c $script bash $argv[1] (_lgabench_word 3) 2>/dev/null)\n"
+         "    string match -q -- '*,...' $argv[1]; and echo \"$before$word\"; or echo $word\n"
+         "  end\nend\n"
+         "complete -c lgabench -f\n" +
+         lines;
+}
+
 }  // namespace lgabench::cli

@@ -1,4 +1,4 @@
-// lgabench_pages man|bash|zsh: writes one of them on stdout, at build time.
+// lgabench_pages man|bash|zsh|fish: writes one of them on stdout, at build time.
 #include <lgabench/cli/commands.hpp>
 #include <lgabench/cli/pages.hpp>
 #include <lgabench/core/terminal.hpp>
@@ -14,10 +14,11 @@ int main(int argc, char** argv) {
   cli::add_render(app, exit);
   cli::arrange_commands(app);
   const std::string what = argc == 2 ? argv[1] : "";
-  if (what != "man" && what != "bash" && what != "zsh") return cli::usage;
+  if (what != "man" && what != "bash" && what != "zsh" && what != "fish") return cli::usage;
   to_stdout("{}", what == "man"    ? cli::man_page(app)
                   : what == "bash" ? cli::bash_completion(app)
-                                   : cli::zsh_completion(app));
+                  : what == "zsh"  ? cli::zsh_completion(app)
+                                   : cli::fish_completion(app));
   flush_stdout();
   return cli::ok;
 }

@@ -53,13 +53,12 @@ int print_forecast(const RunPlan& plan, const Catalogue& catalogue, const Foreca
 }
 
 void print_counts(const RunOutcome& outcome, const RunPlan& plan) {
+  if (plan.quiet) return;
   to_stderr("{} cells computed, {} reused, {} failed\n", outcome.computed, outcome.reused, outcome.failed.size());
   if (outcome.computed) to_stderr("{}\n", outcome.time.text(plan.pool.jobs));
   if (outcome.elsewhere)
     to_stderr("shard {}/{}: {} of the run's {} cells are not run here; lgabench merge puts shards together\n",
               plan.shard.index, plan.shard.count, outcome.elsewhere, plan.cells.size());
-  for (const FailedCell& cell : outcome.failed)
-    to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
 }
 
 Words commands_of(const RunPlan& plan) {
@@ -99,6 +98,7 @@ bool find_others_causes(const RunPlan& plan, const Catalogue& catalogue, const R
   again.pool = plan.pool;
   again.cache = plan.cache;
   again.confined = plan.confined;
+  again.quiet = plan.quiet;
   const std::optional<Causes> causes = find_causes(cells, again, catalogue);
   if (causes) keep_causes(*causes, directory);
   return causes.has_value();
@@ -126,16 +126,26 @@ int run(const RunArguments& a) {
   } catch (const std::exception& e) {  // a full disk, or replies that were not kept: the cells are there all the same
     no_causes = e.what();
   }
+  print_counts(outcome, plan);
+  const bool has_report = outcome.elsewhere < plan.cells.size();
   try {
-    if (outcome.elsewhere < plan.cells.size()) print_report(plan.out, a.json);
+    if (has_report)
+      print_report(plan.out, a.json     ? Printed::json
+                             : a.tables ? Printed::tables
+                             : a.quiet  ? Printed::table
+                                        : Printed::end);
   } catch (const std::exception& e) {  // a full disk, or a damaged run: the counts are told all the same
     no_report = e.what();
   }
-  print_counts(outcome, plan);
+  for (const FailedCell& cell : outcome.failed)
+    to_stderr("failed: {}: {} ({})\n", one_line(cell.title), one_line(cell.reason), cell.log.string());
   if (!outcome.failed.empty())
     to_stderr("To compute what failed again, and nothing else:\n  {}\n", resuming_command(a, plan.out));
   if (!no_causes.empty()) to_stderr("no causes of failures: {}\n", no_causes);
-  if (!no_report.empty()) to_stderr("no report: {}\n", no_report);
+  if (!no_report.empty())
+    to_stderr("no report: {}\n", no_report);
+  else if (has_report && !a.json && !a.quiet)
+    print_page(plan.out);
   if (outcome.plugin_refused) return plugin_refused;
   if (!(no_causes + no_report).empty() && outcome.failed.empty()) return usage;
   return outcome.failed.empty() ? ok : cells_failed;
@@ -145,16 +155,16 @@ int run(const RunArguments& a) {
 
 void add_run(CLI::App& app, int& exit) {
   auto a = std::make_shared<RunArguments>();
-  CLI::App* verb = app.add_subcommand("run", "Compute a suite's cells and print its table");
+  CLI::App* verb = app.add_subcommand("run", "Compute a suite's cells and print their means");
   add_run_options(*verb, *a);
   verb->footer(
-      "Example: lgabench run q1 --scenarios heart,letter --demos 10,50 --seeds 0:3\nAn ablation: lgabench run q1 "
-      "--methods lga,lga+loss=squared --set '*.epochs=200'\nAnother model's recorded answers: lgabench run q1 "
-      "--methods lga,lga_s --answers cassette:M.jsonl\nA model asked now: lgabench run q1 --methods lga --answers "
-      "openai --model M --cassette M.jsonl\n  (the server at OPENAI_BASE_URL, any with OpenAI's API; its key is in "
-      "OPENAI_API_KEY)\nA row's name is its method's id; where several rows share an id, the options that set them "
-      "apart follow, as in lga+loss=squared. The head of the report lists every option that differs from a plugin's "
-      "default.\nOn two machines: lgabench run q1 --shard 1/2 --out a, and 2/2 into b; then lgabench merge both a b");
+      "Examples\n"
+      "  lgabench run q1 --preset smoke                                        a first look\n"
+      "  lgabench run q1 --scenarios heart --demos 10,50 --seeds 0:3           a part of a suite\n"
+      "  lgabench run q1 --methods lga,lga+loss=squared --set '*.epochs=200'   variants, each a row\n"
+      "  lgabench run q1 --methods lga,my_method --plugin-path build           a method of your own\n"
+      "  lgabench run q1 --methods lga --answers openai --model M --cassette M.jsonl   asks a model\n"
+      "  lgabench run q1 --shard 1/2 --out a                                   a part, for `merge`");
   verb->callback([a, &app, &exit] {
     a->program = app.version();
     exit = run(*a);

@@ -236,6 +236,7 @@ PlannedRun plan_run(RunArguments a) {
   plan.pool.memory_gib = a.memory_gib;
   plan.confined = !a.unconfined;
   plan.keeps_policies = a.keep_policy;
+  plan.quiet = a.quiet;
   // A preset with a scene seed of its own is one of the board's.
   const bool is_boards = !a.preset.empty() && suite.presets.at(a.preset).contains("scene_seed");
   plan.strangers = is_boards ? Strangers::told_nothing : Strangers::told_afterwards;
@@ -286,9 +287,10 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
   verb.add_flag("--fresh", a.fresh, "Delete the run in --out first")->excludes(resume);
   verb.add_option("--limit", a.limit, "Compute only the first N cells; not for the leaderboard")
       ->check(CLI::Range(1, 1 << 30));
-  verb.add_option("--set", a.settings,
-                  "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's "
-                  "options, but not a row's own; can be repeated")
+  verb.add_option(
+          "--set", a.settings,
+          "METHOD.OPTION=VALUE, or *.OPTION=VALUE for every method that has the option; overrides the preset's, "
+          "not a row's own; can be repeated")
       ->take_all();
   verb.add_option("--answers", a.answers,
                   "Where a language model's answers come from. recorded: each scenario's recorded answers (lgabench "
@@ -339,7 +341,9 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
       ->type_name("KEY");
   verb.add_flag("--no-reference", a.no_reference,
                 "Leave out the reference rows: constant_action, random_object, oracle, and the suite's own");
-  verb.add_flag("--json", a.json, "Print summary.json instead of the table");
+  CLI::Option* const json = verb.add_flag("--json", a.json, "Print summary.json instead of the means");
+  verb.add_flag("--tables", a.tables, "Print every table of the report instead of the means")->excludes(json);
+  verb.add_flag("--quiet", a.quiet, "Print no progress, and of the means the table alone");
   verb.add_flag("--dry-run", a.dry_run,
                 "Compute nothing; print the number of cells, and the time and disk space that they would take");
   arrange(verb, "", {{"suite", "SUITE"}});
@@ -378,7 +382,14 @@ void add_run_options(CLI::App& verb, RunArguments& a) {
            {"--scenario-path", "DIR"},
            {"--python", "PROGRAM"},
            {"--unconfined", ""}});
-  arrange(verb, "Output", {{"--out", "DIR"}, {"--cache", "DIR"}, {"--keep-policy", ""}, {"--json", ""}});
+  arrange(
+      verb, "Output",
+      {{"--out", "DIR"}, {"--tables", ""}, {"--quiet", ""}, {"--json", ""}, {"--cache", "DIR"}, {"--keep-policy", ""}});
+  leave_to_help_all(
+      verb, {"--layout",  "--selection-errors", "--train-on", "--model",       "--cassette",    "--max-queries",
+             "--request", "--reply-timeout",    "--ca-file",  "--concurrency", "--truth",       "--humans",
+             "--memory",  "--rehearsal",        "--limit",    "--shard",       "--debug",       "--timeout",
+             "--python",  "--no-reference",     "--fresh",    "--cache",       "--keep-policy", "--unconfined"});
 }
 
 }  // namespace lgabench::cli

@@ -23,10 +23,10 @@ struct RunArguments {
   int concurrency = LiveModel().concurrency;
   std::string program;  // as --version says
   bool unconfined = false, keep_policy = false, rehearsal = false, resume = false, fresh = false, dry_run = false,
-       no_reference = false, json = false;
+       no_reference = false, json = false, tables = false, quiet = false;
 };
 
-/// The options of `run`, but for those that it alone has.
+/// The options of `run`. Its --help leaves out those that are rarely needed.
 void add_run_options(CLI::App& verb, RunArguments& a);
 
 /// The run, and the plugins that it uses. @throws InputError, or PluginError, for what the options do not make.

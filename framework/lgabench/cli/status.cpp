@@ -1,8 +1,5 @@
 // lgabench status: how far the parts of a run are.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <mutex>
@@ -14,6 +11,7 @@
 #include <lgabench/core/parallel.hpp>
 #include <lgabench/core/terminal.hpp>
 #include <lgabench/record/layout.hpp>
+#include <lgabench/report/index.hpp>
 
 namespace lgabench::cli {
 namespace {
@@ -29,18 +27,11 @@ struct Part {
   bool finished() const { return done >= cells; }
 };
 
-bool is_locked(const fs::path& run) {
-  const int directory = ::open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool locked = directory >= 0 && ::flock(directory, LOCK_SH | LOCK_NB) != 0;
-  if (directory >= 0) ::close(directory);
-  return locked;
-}
-
 Part read_part(const fs::path& run) {
   const RunRecord record = read_run_record(run);
   Part part{run.string(), 1, 1, record.cells.size()};
   if (record.shard) part = {run.string(), record.shard->index, record.shard->count, record.shard->cells};
-  part.running = is_locked(run);
+  part.running = report::is_being_written(run);
   expect_plain_run(run);
   std::mutex mutex;
   in_parallel(record.cells.size(), [&](std::size_t i) {  // as a report reads them, which leaves out what is damaged

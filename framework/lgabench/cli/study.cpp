@@ -1,10 +1,8 @@
 // lgabench study: the user study that people take in a browser, from a protocol to participants' files.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <pthread.h>
 #include <sys/stat.h>
 
-#include <csignal>
 #include <ctime>
 #include <memory>
 #include <optional>
@@ -16,6 +14,7 @@
 #include <lgabench/core/filled.hpp>
 #include <lgabench/core/json.hpp>
 #include <lgabench/core/terminal.hpp>
+#include <lgabench/http/page_server.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/writers.hpp>
 #include <lgabench/study/rehearse.hpp>
@@ -82,21 +81,6 @@ int check(const StudyArguments& a) {
   return ok;
 }
 
-// Serves until it is told to stop, by the terminal or by a signal.
-void serve_until_stopped(study::Server& server) {
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before any thread of the server
-  std::thread stopper([&signals, &server] {
-    int which = 0;
-    ::sigwait(&signals, &which);
-    server.stop();
-  });
-  server.run();
-  stopper.join();
-}
-
 int serve(const StudyArguments& a) {
   const fs::path file = protocol_file(a.path);
   study::Protocol protocol = study::read_protocol(file);
@@ -126,7 +110,7 @@ int serve(const StudyArguments& a) {
     } catch (const std::exception&) {  // nobody reads any more; the study continues
     }
   });
-  serve_until_stopped(server);
+  http::until_stopped([&server] { server.run(); }, [&server] { server.stop(); });
   return ok;
 }
 

@@ -33,6 +33,7 @@ void add_info(CLI::App& app, int& exit);
 void add_run(CLI::App& app, int& exit);
 void add_merge(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);
+void add_open(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_verify(CLI::App& app, int& exit);
 void add_attribute(CLI::App& app, int& exit);

@@ -31,12 +31,13 @@ std::size_t terminal_width() {
 
 }  // namespace
 
-Progress::Progress(std::size_t total, int jobs, std::function<double()> queued_s)
+Progress::Progress(std::size_t total, int jobs, std::function<double()> queued_s, bool quiet)
     : total_(total),
       jobs_(jobs),
       queued_s_(std::move(queued_s)),
       start_(std::chrono::steady_clock::now()),
-      terminal_(is_terminal(stderr)) {}
+      terminal_(is_terminal(stderr)),
+      quiet_(quiet) {}
 
 Progress::~Progress() { wipe(); }
 
@@ -78,13 +79,13 @@ void Progress::ended(std::size_t cell, const std::string& failure) {
     wipe();
     const std::string line = fmt::format("[{}/{}] {}: {}", done_, total_, it.title, one_line(failure));
     put(stderr, painted(stderr, Colour::red, line) + '\n');
-  } else if (!terminal_) {
+  } else if (!terminal_ && !quiet_) {
     say(fmt::format("[{}/{}] {} {:.1f} s; {}", done_, total_, it.title, seconds_since(it.start), left()));
   }
 }
 
 void Progress::tick() {
-  if (!terminal_ || total_ == 0) return;
+  if (!terminal_ || quiet_ || total_ == 0) return;
   constexpr std::size_t cells = 24;
   const std::size_t full = cells * done_ / total_;
   const double elapsed = seconds_since(start_);

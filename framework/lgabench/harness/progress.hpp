@@ -12,7 +12,8 @@ namespace lgabench {
 class Progress {
  public:
   /// `total` cells to compute, `jobs` at once; `queued_s`: seconds of one worker for those that were not started.
-  Progress(std::size_t total, int jobs, std::function<double()> queued_s);
+  /// `quiet`: cells that fail are all that is written.
+  Progress(std::size_t total, int jobs, std::function<double()> queued_s, bool quiet);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -44,7 +45,7 @@ class Progress {
   std::size_t done_ = 0, failed_ = 0;
   std::map<std::size_t, Running> running_;
   std::chrono::steady_clock::time_point start_;
-  bool terminal_ = false, drawn_ = false;
+  bool terminal_ = false, quiet_ = false, drawn_ = false;
 };
 
 }  // namespace lgabench

@@ -39,17 +39,17 @@ Questions count_questions(const LiveModel& live, const std::string& model, const
   return counted;
 }
 
-bool ask_beforehand(const AskJob& job, const Questions& questions) {
+bool ask_beforehand(const AskJob& job, const Questions& questions, bool quiet) {
   const Scratch scratch("ask");
   AskingProgress progress(questions.open);
   PoolEvents events;
   events.started = [](std::size_t) {};
   events.tick = [] {};
-  events.progress = [&progress](std::size_t, const std::string& phase, long long count) {
-    if (phase == asked_phase)
-      progress.tell(static_cast<int>(count));
-    else
+  events.progress = [&progress, quiet](std::size_t, const std::string& phase, long long count) {
+    if (phase != asked_phase)
       progress.say(phase);
+    else if (!quiet)
+      progress.tell(static_cast<int>(count));
   };
   events.ended = [&progress](std::size_t, const WorkerEnd& end) {
     if (end.exit_code == 0 && end.signal == 0) return;

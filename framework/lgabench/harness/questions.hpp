@@ -24,8 +24,8 @@ struct Questions {
 /// Those of select_features() about the scenarios' commands. @throws InputError for what is no cassette.
 Questions count_questions(const LiveModel& live, const std::string& model, const std::vector<Json>& scenarios);
 
-/// Asks what the cassette lacks, in a worker, and says on stderr how far it is. What stays without an answer is said
-/// there too, and is left for the cells to ask again. @returns false if a signal came, as run_workers().
-bool ask_beforehand(const AskJob& job, const Questions& questions);
+/// Asks what the cassette lacks, in a worker, and says on stderr how far it is unless `quiet`. What stays without an
+/// answer is said there too, and is left for the cells to ask again. @returns false if a signal came, as run_workers().
+bool ask_beforehand(const AskJob& job, const Questions& questions, bool quiet);
 
 }  // namespace lgabench

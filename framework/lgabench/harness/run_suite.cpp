@@ -212,8 +212,8 @@ bool ask_for(const std::vector<const Cell*>& cells, const RunPlan& plan, const C
   const std::vector<Json> scenarios = asked_about(cells, catalogue);
   if (scenarios.empty()) return true;
   const Questions questions = count_questions(*plan.live, asked_model_of(plan), scenarios);
-  to_stderr("{}\n", questions.text());
-  return questions.open == 0 || ask_beforehand({asked_model_of(plan), *plan.live, scenarios}, questions);
+  if (!plan.quiet) to_stderr("{}\n", questions.text());
+  return questions.open == 0 || ask_beforehand({asked_model_of(plan), *plan.live, scenarios}, questions, plan.quiet);
 }
 
 // What a plugin printed without end is not kept whole. Called where nobody writes any more.
@@ -365,8 +365,10 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
   if (!missing.empty()) {
     constexpr double long_s = 600;
     const bool is_long = expected.wall_s > long_s;
-    put(stderr, painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs, plan.purpose)) +
-                    (is_long && plan.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
+    if (!plan.quiet)
+      put(stderr,
+          painted(stderr, is_long ? Colour::yellow : Colour::bold, expected.text(plan.pool.jobs, plan.purpose)) +
+              (is_long && plan.purpose.empty() ? "; --dry-run shows of what\n" : "\n"));
     if (plan.purpose.empty()) warn_of_disks(plan, expected.run_bytes);
   }
 
@@ -376,7 +378,8 @@ RunOutcome run_suite(const RunPlan& plan, const Catalogue& catalogue) {
     return outcome;
   }
 
-  Progress progress(missing.size(), plan.pool.jobs, [&schedule] { return schedule.left_s(); });
+  Progress progress(
+      missing.size(), plan.pool.jobs, [&schedule] { return schedule.left_s(); }, plan.quiet);
   std::vector<const Cell*> played(missing.size());
   std::vector<fs::path> scratch(missing.size());
   const Scratch hosts("hosts");  // not below the run's directory: a method does not learn where that is

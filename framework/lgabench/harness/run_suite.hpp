@@ -38,6 +38,7 @@ struct RunPlan {
   PoolOptions pool;
   bool confined = true;         // methods' processes, see host/confine.hpp
   bool keeps_policies = false;  // of cells that are computed
+  bool quiet = false;           // stderr has what went wrong, and nothing of how far it is
   Strangers strangers = Strangers::told_nothing;
   std::string purpose{};  // what is computed, where it is no run: begins the forecast's line
   Costs costs{};          // learnt beforehand

@@ -14,11 +14,11 @@
 namespace lgabench::report {
 namespace {
 
-constexpr std::size_t most_compared = 3;  // beside the random visible object
+constexpr std::size_t most_others = 3;  // beside the random visible object
 constexpr const char* random_row = "random_object";
 
-// The column that the suite's question is about: its main arm and number of demonstrations, else the last arm that all
-// scenarios have and the most demonstrations.
+}  // namespace
+
 std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
   const std::vector<int> all = table.demonstrations();
   if (table.arms.empty() || all.empty()) return {};
@@ -31,8 +31,8 @@ std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
   return column;
 }
 
-// The rows that the first one is compared with: methods that the paper does not have, then its baselines.
-std::vector<std::string> compared(const std::vector<std::string>& methods) {
+std::vector<std::string> most_compared(const std::vector<std::string>& methods, std::size_t most) {
+  if (methods.empty()) return {};
   std::vector<std::string> others(methods.begin() + 1, methods.end());
   const auto rank = [](const std::string& row) {
     constexpr std::array order{"gcbc_seg", "human", "gcbc_dart", "lga_s", "lga_l", "lga_hill"};
@@ -42,9 +42,11 @@ std::vector<std::string> compared(const std::vector<std::string>& methods) {
   };
   std::stable_sort(others.begin(), others.end(),
                    [&](const std::string& a, const std::string& b) { return rank(a) < rank(b); });
-  if (others.size() > most_compared) others.resize(most_compared);
+  if (others.size() > most) others.resize(most);
   return others;
 }
+
+namespace {
 
 std::optional<Change> against_method(const Material& material, const Table& table, const std::string& first,
                                      const std::string& other, const Column& column) {
@@ -113,7 +115,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
       {" of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
   bool any = false;
-  for (const std::string& other : compared(methods))
+  for (const std::string& other : most_compared(methods, most_others))
     if (const auto change = against_method(material, table, first, other, *column)) {
       add_difference(spans, *change, material.styles.name(other), any ? ", " : ": ");
       any = true;

@@ -2,8 +2,17 @@
 #pragma once
 #include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/report_document.hpp>
+#include <lgabench/report/tables.hpp>
 
 namespace lgabench::report {
+
+/// The column that the suite's question is about: its main arm and number of demonstrations, else the last arm that all
+/// scenarios have and the most demonstrations. None for a table without rows.
+std::optional<Column> main_column(const Table& table, const AboutSuite& about);
+
+/// Of a table's methods the `most` that a reader would compare the first one with: those that the paper does not have,
+/// then its baselines.
+std::vector<std::string> most_compared(const std::vector<std::string>& methods, std::size_t most);
 
 /// "Mean over 13 scenarios, 50 demonstrations: LGA succeeds in 0.57 of the episodes, 0.41 [0.32, 0.50] more than
 /// GCBC-SEG, ...": paired differences of the first method of the first table to others and to the random visible

@@ -1,11 +1,16 @@
 #include <lgabench/report/index.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <map>
 
+#include <lgabench/core/terminal.hpp>
+#include <lgabench/record/cell_status.hpp>
 #include <lgabench/record/layout.hpp>
 #include <lgabench/report/row_names.hpp>
 #include <lgabench/report/sections.hpp>
@@ -108,6 +113,51 @@ Document index_document(const std::vector<Report>& reports, const fs::path& plac
     document.sections.pop_back();
   else
     success.add(everywhere, std::move(grid));
+  return document;
+}
+
+bool is_being_written(const fs::path& run) {
+  const int directory = ::open(run.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool locked = directory >= 0 && ::flock(directory, LOCK_SH | LOCK_NB) != 0;
+  if (directory >= 0) ::close(directory);
+  return locked;
+}
+
+Progressed progress_of(const fs::path& run, const std::string& name) {
+  Progressed progressed{name, {}};
+  try {
+    progressed.record = read_run_record(run);
+    for (const std::string& cell : progressed.record.cells)
+      if (const fs::path directory = run / "cells" / cell; has_status(directory))
+        ++(read_cell_status(directory).failed ? progressed.failed : progressed.done);
+    progressed.computing = is_being_written(run);
+    progressed.has_report = fs::is_regular_file(fs::symlink_status(run / report_file::page));
+  } catch (const std::exception& e) {
+    progressed.problem = one_line(e.what());
+  }
+  return progressed;
+}
+
+Document progress_document(const std::vector<Progressed>& runs, const std::string& where) {
+  Document document{"", fmt::format("{} run{} in {}", runs.size(), runs.size() == 1 ? "" : "s", where), {}, {}, {}};
+  Grid grid;
+  grid.name = "runs";
+  grid.heads = {"run", "suite", "preset", "begun", "cells", "failed", "state"};
+  grid.align = "llllrrl";
+  for (const Progressed& run : runs) {
+    const std::size_t cells = run.record.cells.size();
+    TableCell name(run.name);
+    if (run.has_report) name.link = (fs::path(run.name) / report_file::page).generic_string();
+    grid.rows.push_back({{},
+                         {name, run.record.suite, run.record.preset, run.record.started,
+                          fmt::format("{} of {}", run.done + run.failed, cells), std::to_string(run.failed),
+                          !run.problem.empty()            ? run.problem
+                          : run.computing                 ? "computing"
+                          : run.done + run.failed < cells ? "stopped"
+                          : run.has_report                ? "finished"
+                                                          : "finished, without a report"}});
+  }
+  document.sections.emplace_back(Section{"run", "The runs"}).add(everywhere, std::move(grid));
   return document;
 }
 

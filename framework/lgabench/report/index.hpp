@@ -1,5 +1,6 @@
 // A page over several runs.
 #pragma once
+#include <string>
 #include <vector>
 
 #include <lgabench/report/report.hpp>
@@ -10,5 +11,24 @@ namespace lgabench::report {
 /// their methods, best first, beside those that it can be compared with: of the same suite, layout, engine, arm,
 /// scenarios and demonstrations, the most of each run.
 Document index_document(const std::vector<Report>& reports, const fs::path& place);
+
+/// Whether some process writes into the run's directory, as the lock on it says.
+bool is_being_written(const fs::path& run);
+
+/// How far a run is, told without reading its results.
+struct Progressed {
+  std::string name;  // relative to where it was looked for
+  RunRecord record;
+  std::size_t done = 0, failed = 0;  // of its cells
+  bool computing = false;            // some process writes into it
+  bool has_report = false;
+  std::string problem{};  // why it cannot be read; "" where it can
+};
+
+/// @throws nothing for a run that cannot be read: it has a problem.
+Progressed progress_of(const fs::path& run, const std::string& name);
+
+/// A page over runs, whether they are finished or not; a run that has a report leads to NAME/report.html.
+Document progress_document(const std::vector<Progressed>& runs, const std::string& where);
 
 }  // namespace lgabench::report

@@ -54,6 +54,7 @@ Report write_report(const fs::path& run) {
   const Pictures pictures = drawing.get();
   const Material material{report.run, summary, report.claims, report.agreements, paper, pictures};
   report.document = report_document(material);
+  report.brief = brief(material);
   write_document(run, report.document, page_data(material));
   return report;
 }

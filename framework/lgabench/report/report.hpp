@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <lgabench/core/files.hpp>
+#include <lgabench/report/brief.hpp>
 #include <lgabench/report/pose.hpp>
 #include <lgabench/report/report_document.hpp>
 
@@ -18,6 +19,7 @@ struct Report {
   std::vector<Claim> claims;
   std::vector<EngineAgreement> agreements;
   Document document;
+  Brief brief;
 };
 
 /// Reads RUN's cells, writes RUN/summary.json, summary.csv, episodes.csv, claims.json, report.md, report.html, each

@@ -94,6 +94,20 @@ bool any_seen(const Table& table) {
   return std::any_of(table.rows.begin(), table.rows.end(), [](const Row& row) { return row.seen_share(); });
 }
 
+std::vector<std::string> what_it_lacks(const RunResults& run) {
+  std::vector<std::string> lines;
+  if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
+  if (run.not_run > 0)
+    lines.push_back(
+        fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run, run.record.cells.size()));
+  if (!run.unreadable.empty())
+    lines.push_back(fmt::format("{} of {} cells cannot be read, and were left out.", run.unreadable.size(),
+                                run.record.cells.size()));
+  if (run.foreign > 0)
+    lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
+  return lines;
+}
+
 std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   std::set<std::string> marked;
   std::set<std::string> same_as;              // arms
@@ -125,16 +139,9 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
     }
   }
   std::vector<std::string> lines;
-  if (run.rehearsal) lines.push_back(fmt::format("{}: not for the leaderboard.", rehearsal_words));
   if (run.record.smoke) lines.emplace_back("Smoke or limited run: not for the leaderboard.");
-  if (run.not_run > 0)
-    lines.push_back(
-        fmt::format("{} of {} cells have not run yet: the tables are partial.", run.not_run, run.record.cells.size()));
-  if (!run.unreadable.empty())
-    lines.push_back(fmt::format("{} of {} cells cannot be read, and were left out.", run.unreadable.size(),
-                                run.record.cells.size()));
-  if (run.foreign > 0)
-    lines.push_back(fmt::format("{} cell directories that run.json does not list were left out.", run.foreign));
+  const std::vector<std::string> lacks = what_it_lacks(run);
+  lines.insert(lines.end(), lacks.begin(), lacks.end());
   for (const Mark& mark : table_marks)
     if (marked.count(mark.word) != 0) lines.push_back(fmt::format("{} {}.", mark.sign, mark.meaning));
   for (const std::string& arm : same_as) lines.push_back(fmt::format("= the same actions as in {}.", arm));

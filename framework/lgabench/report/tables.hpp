@@ -53,6 +53,9 @@ bool acts_the_same(const Row& row);
 /// Whether a row of the table tells.
 bool any_seen(const Table& table);
 
+/// Why the numbers are no whole run's, one line each: no people answered, cells that have not run or cannot be read.
+std::vector<std::string> what_it_lacks(const RunResults& run);
+
 /// What a reader of the tables must know, one line each: what †, §, ‡, !, ?, ¶ and = say, how many people made
 /// Selections or that none did, the model behind a cassette, cells that have not run, that the run is not for the
 /// leaderboard.
