@@ -197,6 +197,18 @@ class DryRuns(Case):
                       self.call("run", "q1", "--dry-run", "--methods", "lga,gcbc_dart,fixture_constant", *PLUGIN,
                                 "--shard", "2/2").stdout)
 
+    def test_titles_change_no_cell(self):
+        suite = json.loads((BUILD / "share/lgabench/suites/clutter.json").read_text())
+        suite["id"], said = "mine", set()
+        for title, arms in ("Clutter", suite["about"]["arm_titles"]), ("Crowds", {}):
+            suite["about"] |= {"title": title, "arm_titles": arms}
+            (self.dir / "mine.json").write_text(json.dumps(suite))
+            said.add(self.call("run", "mine.json", "--dry-run").stdout)
+        self.assertEqual(len(said), 1, "one directory, whose name holds the cells' keys")
+        suite["about"]["arm_titles"] = {"near_4": 4}
+        (self.dir / "mine.json").write_text(json.dumps(suite))
+        self.assertIn("/about/arm_titles/near_4: expected a string", self.call("run", "mine.json", "--dry-run", expect=2).stderr)
+
     def test_count_what_is_there(self):
         said = self.call(*RUN, "--limit", "3", "--out", "out").stderr
         self.assertIn("3 cells to compute, 0 already computed: about ", said)

@@ -6,8 +6,12 @@ import unittest
 import axe
 from case import BesideOneRun
 from study_browser_test import MISSING, Service, webdriver
+from visible_ids import visible_ids
 
 A4 = 680  # pixels of CSS between its margins
+SCROLLS = """return [...document.querySelectorAll(".frame")].filter((f) => f.scrollWidth > f.clientWidth + 1)
+    .map((f) => f.getAttribute("aria-label")).concat(
+    document.documentElement.scrollWidth > innerWidth ? [document.documentElement.scrollWidth] : [])"""
 
 
 class InABrowser(BesideOneRun):
@@ -184,10 +188,88 @@ class PageInABrowser(InABrowser):
 
 
 @unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
+class ClutterInABrowser(InABrowser):
+    """Of a run with many arms, which a stranger reads."""
+    run_of_class = ("run", "clutter", "--preset", "smoke", "--methods", "lga,gcbc_seg,factorial+scenes=truth+input=object_mask",
+                    "--episodes", "4", "--set", "*.epochs=3")
+
+    def test_every_column_is_in_view(self):
+        for width in (1280, 1920):
+            self.open(width)
+            self.assertEqual(self.script(SCROLLS), [], width)
+        self.open()
+        self.assertEqual(self.script("""return [...document.querySelectorAll("main .frame *")]
+            .filter((e) => e.getClientRects().length && e.textContent.trim() && parseFloat(getComputedStyle(e).fontSize) < 13)
+            .map((e) => e.outerHTML.slice(0, 80))"""), [])
+        heads = self.shown("#success .frame thead th")
+        self.assertEqual([head for head in heads if "near" in head][:4],
+                         ["1 near miss", "2 near misses", "4 near misses", "6 near misses"])
+
+    def test_a_chart_alone_is_as_wide_as_the_page(self):
+        for width in (1280, 390):
+            self.open(width)
+            (chart, page), *more = self.script("""return [...document.querySelectorAll("#success > .charts:first-of-type svg")]
+                .filter((e) => e.getClientRects().length)
+                .map((e) => [e.getBoundingClientRect().width, document.querySelector("main section").clientWidth])""")
+            self.assertEqual(more, [], "once")
+            self.assertGreater(chart, page - 20, width)
+            size = self.script("""return [...document.querySelectorAll("#success svg text")].filter((e) => e.getClientRects().length)
+                .map((e) => e.getBoundingClientRect().height)""")
+            self.assertGreater(min(size), 8, "text that can be read")
+
+    def test_a_point_tells_its_value(self):
+        self.open()
+        told = self.script("""const point = document.querySelector("#success .wide .point");
+            point.dispatchEvent(new MouseEvent("mouseenter"));
+            return [document.getElementById("tip").hidden, document.getElementById("tip").textContent]""")
+        self.assertEqual(told[0], False)
+        self.assertRegex(told[1], r" at 1 other: \d\.\d\d \[")
+
+    def test_words_stand_in_place_of_ids(self):
+        for width in (1280, 390):
+            self.open(width)
+            self.assertEqual(visible_ids(self.browser), [])
+            self.click("tbody button.rate")
+            self.assertEqual(visible_ids(self.browser), [], "episodes")
+        self.open()
+        text = self.script("return document.body.innerText")
+        for words in ("Clutter and near misses", "plain colored vessel", "trained in true scenes", "with a heat map"):
+            self.assertIn(words, text)
+        self.assertIn("near_4", self.shown(".arms code"), "the id that files have")
+
+    def test_symbols_are_explained_where_they_stand(self):
+        self.open()
+        below = """return [...document.querySelectorAll("main .frame")].flatMap((frame) => {
+            const signs = [...frame.querySelectorAll("td [title]")].map((e) => e.textContent.trim());
+            if (frame.querySelector("td small")) signs.push("[low, high]");
+            const next = frame.nextElementSibling, said = next?.matches(".legend") ? next.textContent : "";
+            return [...new Set(signs)].map((sign) => [sign, said.includes(sign)]);
+          })"""
+        told = self.script(below)
+        self.assertIn(["[low, high]", True], told)
+        self.assertTrue(any(sign in "†§=‡" for sign, _ in told), told)
+        self.assertEqual([sign for sign, said in told if not said], [])
+        self.assertIn("selected as mattering", self.script("return document.querySelector('#phi p').textContent"))
+
+    def test_a_link_to_it_has_a_card_and_an_icon(self):
+        self.open()
+        card = self.script("return Object.fromEntries([...document.querySelectorAll('meta[property]')]"
+                           ".map((e) => [e.getAttribute('property'), e.content]))")
+        self.assertEqual(card["og:title"], self.script("return document.querySelector('h1').textContent"))
+        self.assertEqual(card["og:description"], self.script("return document.querySelector('.headline').textContent"))
+        self.assertTrue(self.script("return document.querySelector('link[rel=icon]').href").startswith("data:image/svg+xml,"))
+
+
+@unittest.skipIf(MISSING, f"not installed: {', '.join(MISSING)}")
 class WholePageInABrowser(InABrowser):
     """Of a run as people make it: five methods, two numbers of demonstrations, three scenarios, two seeds."""
     run_of_class = ("run", "q1", "--scenarios", "heart,letter,something_to_drink_water_out_of", "--demos", "10,50", "--seeds", "0,1",
                     "--methods", "lga,human,lga_s,gcbc_seg,gcbc_dart", "--set", "*.epochs=5")
+
+    def test_every_column_is_in_view_and_no_id(self):
+        self.open()
+        self.assertEqual(self.script(SCROLLS), [])
+        self.assertEqual(visible_ids(self.browser), [])
 
     def test_it_is_short(self):
         self.open(folded=True)

@@ -171,7 +171,7 @@ TEST(Arms, ThatOneScenarioHasAloneHaveTheirMeanOverIt) {
   EXPECT_FALSE(rows.contains("q3_fruit lga seen_varied"));
   EXPECT_EQ(rows.at("(mean) lga unseen").at("marks"), Json::array());
   const std::string text = table_text(run.path);
-  EXPECT_SAYS(text, "seen_varied (1 of 2): the mean is over q3_utensil; no other scenario has this arm.");
+  EXPECT_SAYS(text, "seen, varied (1 of 2): the mean is over q3_utensil; no other scenario has this arm.");
   EXPECT_SILENT(text, "‡");
   Spec utensil = ambiguous("human", 16, 12);  // and no q3_fruit, which has the arm
   utensil.scenario = "q3_utensil";

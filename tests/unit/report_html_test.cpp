@@ -9,6 +9,7 @@
 
 #include <lgabench/core/environments.hpp>
 #include <lgabench/plugin/loader.hpp>
+#include <lgabench/report/names.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/tables.hpp>
 #include <lgabench/report/writers.hpp>
@@ -144,7 +145,7 @@ TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
   int tested = 0;
   for (std::size_t c = 0; c < claims.at("claims").size(); ++c) {
     const Json& claim = claims.at("claims")[c];
-    EXPECT_SAYS(page, claim.at("statement").get<std::string>());
+    EXPECT_SAYS(page, report::readable(claim.at("statement")));
     for (std::size_t d = 0; d < claim.at("differences").size(); ++d) {
       if (claim.at("differences")[d].at("difference").is_null()) continue;
       ++tested;
@@ -164,7 +165,10 @@ TEST(Html, EveryNumberOfAClaimStandsInClaimsJson) {
 TEST(Html, NothingIsFetched) {
   FabricatedRun run;
   fill(run);
-  const std::string page = page_of(run);
+  std::string page = page_of(run);
+  const std::string icon = "<link rel=\"icon\" href=\"data:image/svg+xml,";
+  ASSERT_EQ(page.find("<link"), page.find(icon));
+  page.erase(page.find(icon), icon.size());
   for (const char* outside : {"http://", "https://", " src=", "<link", "@import", "url(", "fetch(", "import("})
     EXPECT_SILENT(page, outside);
 }

@@ -1,11 +1,13 @@
 // What a reader needs before the numbers: the suite's question, its arms, what rows are, the result as a difference.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <regex>
 #include <set>
 
 #include <lgabench/plugin/loader.hpp>
 #include <lgabench/report/about_suite.hpp>
+#include <lgabench/report/names.hpp>
 #include <lgabench/report/report.hpp>
 #include <lgabench/report/row_names.hpp>
 
@@ -37,7 +39,7 @@ TEST(Readers, AnOptionThatTwoRowsDifferInStandsAtEachThatHasIt) {
   EXPECT_EQ(names.at("lga"), "lga+policy=regression");
   EXPECT_EQ(names.at("gcbc_dart"), "gcbc_dart") << "has no such option";
   const std::string page = page_of(run);
-  EXPECT_SAYS(page, "erase_gated policy=heat_map</b>");
+  EXPECT_SAYS(page, "erase gated with a heat map</b>");
   EXPECT_SAYS(read_file(run.path / "tables/cells_mujoco_mean.csv"), "erase_gated policy=heat_map");
 }
 
@@ -51,9 +53,9 @@ TEST(Readers, AnOptionBesideTheDefaultIsNamedAtItsRowOrOnceForAll) {
     run.add(spec);
   }
   const std::string page = page_of(run);
-  EXPECT_SAYS(page, "GCBC-DART dart=none</b>");
-  EXPECT_SAYS(page, "Every row: policy=heat_map, beside the plugins’ defaults.");
-  EXPECT_SILENT(page, "LGA policy=heat_map");
+  EXPECT_SAYS(page, "GCBC-DART without noise</b>");
+  EXPECT_SAYS(page, "Every row: with a heat map, beside the plugins’ defaults.");
+  EXPECT_SILENT(page, "LGA with a heat map");
 }
 
 TEST(Readers, RowsOfSeveralRunsThatDifferHaveDifferentNames) {
@@ -67,9 +69,9 @@ TEST(Readers, RowsOfSeveralRunsThatDifferHaveDifferentNames) {
   for (FabricatedRun* run : {&first, &second}) reports.push_back(report::write_report(run->save().path));
   report::write_index(reports, first.path / "index.html");
   const std::string page = read_file(first.path / "index.html");
-  EXPECT_SAYS(page, "LGA epochs=750</b>");
-  EXPECT_SAYS(page, "LGA epochs=20</b>");
-  EXPECT_SILENT(page, "policy=regression");
+  EXPECT_SAYS(page, "LGA epochs 750</b>");
+  EXPECT_SAYS(page, "LGA epochs 20</b>");
+  EXPECT_SILENT(page, "with a regressed action");
 }
 
 TEST(Readers, ThePageSaysWhatTheSuiteAsksAndWhatItsArmsAre) {
@@ -94,16 +96,51 @@ TEST(Readers, EveryShippedSuiteHasAQuestionAndWordsForEachOfItsArms) {
     if (file.is_directory()) continue;  // their claims
     const report::AboutSuite about = report::about_suite(file.path().stem().string());
     EXPECT_FALSE(about.question.empty()) << file.path();
+    EXPECT_NE(about.title, file.path().stem()) << "a title";
     const Json suite = read_json(file.path());
-    for (const Json& arm : suite.value("arms", Json::array()))
-      EXPECT_FALSE(about.arm(arm.at("arm").get<std::string>()).empty()) << file.path() << arm.at("arm");
+    const auto expect_words = [&](const std::string& arm) {
+      EXPECT_FALSE(about.arm(arm).empty()) << file.path() << arm;
+      EXPECT_EQ(about.arm_title(arm).find('_'), std::string::npos) << file.path() << arm << " has no title";
+      EXPECT_LE(about.arm_title(arm).size(), 28U) << file.path() << arm << ": too long for a column";
+    };
+    for (const Json& arm : suite.value("arms", Json::array())) expect_words(arm.at("arm"));
+    const Json variants = suite.value("variants", Json::object());
+    for (const auto& [variant, members] : variants.items())
+      for (const Json& arm : members.value("arms", suite.value("arms", Json::array())))
+        expect_words(arm.at("arm").get<std::string>() + "_" + variant);
     for (const Json& id : suite.at("scenarios")) {
       if (suite.value("only_arms", false)) break;
       const Json scenario = read_json(data_directory() / "scenarios" / (id.get<std::string>() + ".json"));
-      for (const Json& arm : scenario.at("tests"))
-        EXPECT_FALSE(about.arm(arm.at("arm").get<std::string>()).empty()) << file.path() << arm.at("arm");
+      for (const Json& arm : scenario.at("tests")) expect_words(arm.at("arm"));
     }
   }
+}
+
+TEST(Readers, ASuiteOfOnesOwnIsNamedByItsFile) {
+  FabricatedRun run;
+  run.run["suite"] = "mine";
+  Spec spec{"lga", 0, "heart"};
+  spec.arms = {{"control", 10}, {"test_2", 5}};
+  run.add(spec);
+  EXPECT_SAYS(page_of(run), "The suite has no title");
+  run.run["about"] = {{"title", "My crowd"}, {"question", "Why?"}, {"arm_titles", {{"test_2", "two <others>"}}}};
+  const std::string page = page_of(run);
+  for (const char* text : {"<h1>My crowd: ", "two &lt;others&gt; ", "Why?"}) EXPECT_SAYS(page, text);
+  EXPECT_SILENT(page, "The suite has no title");
+  EXPECT_SILENT(read_file(run.path / "summary.json"), "two <others>") << "ids are for machines";
+  run.run["about"]["arm_titles"]["test_2"] = 2;
+  EXPECT_THROW(page_of(run), InputError);
+}
+
+TEST(Readers, IdsBecomeWords) {
+  for (const auto& [text, words] : std::map<std::string, std::string>{
+           {"LGA policy=heat_map, GCBC-DART dart=none.", "LGA with a heat map, GCBC-DART without noise."},
+           {"LGA, with instances=first, above", "LGA, with a mask of the first instance, above"},
+           {"no row gcbc_seg; needs random_object", "no row GCBC-SEG; needs random visible object"},
+           {"in plain_colored_vessel, my_option=0.5", "in plain colored vessel, my option 0.5"},
+           {"got \"feature_space\" in cells/a_b/log_file.txt, lga_x.so, --an_option, lga.a_b=1, MY_KEY", ""},
+           {"p = 0.03, a = b, _, =, φ̂_", ""}})
+    EXPECT_EQ(report::readable(text), words.empty() ? text : words);
 }
 
 // 15 of 20 against 5 of the same 20 scenes, in the suite's main arm, not its last.
@@ -124,7 +161,7 @@ TEST(Readers, TheHeadlineIsThePairedDifferenceInTheMainArm) {
   ASSERT_NE(begin, page.npos);
   const std::string line =
       std::regex_replace(page.substr(begin, page.find("</p>", begin) - begin), std::regex("<[^>]*>"), "");
-  EXPECT_SAYS(line, "1 demonstration, arm same_place: LGA succeeds in 0.75 of the episodes: 0.50 [");
+  EXPECT_SAYS(line, "1 demonstration, arm same place: LGA succeeds in 0.75 of the episodes: 0.50 [");
   EXPECT_SAYS(line, "] more than GCBC-SEG, 0.15 [");
   EXPECT_SAYS(line, "] less than the random visible object (95 % intervals of the paired differences)");
 }

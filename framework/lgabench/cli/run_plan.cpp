@@ -210,6 +210,7 @@ PlannedRun plan_run(RunArguments a) {
   plan.cells = expand(suite, design, variation, catalogue);
   if (a.limit != 0 && plan.cells.size() > static_cast<std::size_t>(a.limit))
     plan.cells.resize(static_cast<std::size_t>(a.limit));
+  plan.about = suite.about;
   plan.claims = suite.claims;
   plan.request = to_json(design);
   plan.request.update({{"suite", suite.id},

@@ -128,6 +128,7 @@ bool can_be_shown(const Json& json) {
 Json suite_of(const std::string& id, const DrawRequest& request, const std::vector<DrawnCommand>& commands) {
   Json suite = Json::parse(R"({
     "about": {
+      "title": "Drawn commands",
       "question": "What does an abstraction understand of commands that nobody has seen?",
       "main_arm": "test", "main_demonstrations": 5,
       "arms": {"test": "the target among others, one of which a careless reading would keep"}},

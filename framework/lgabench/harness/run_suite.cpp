@@ -135,6 +135,7 @@ RunRecord record_of(const RunPlan& plan, const Catalogue& catalogue) {
   run.preset = plan.request.at("preset");
   run.smoke = plan.cells.front().smoke;
   run.request = plan.request;
+  run.about = plan.about;
   run.claims = plan.claims;
   run.version = LGABENCH_VERSION;
   run.program = plan.program;

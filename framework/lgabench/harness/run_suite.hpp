@@ -33,6 +33,7 @@ struct RunPlan {
   std::vector<AnswerFile> answers{};  // that the cells name
   std::optional<LiveModel> live{};    // that the cells ask
   Json live_about{};                  // {"model", "provider", "prompt"}: who that is, for run.json
+  Json about = nullptr;               // of the user's own suite, for run.json; null: none
   Json claims = nullptr;              // the suite's own, for run.json; null: none
   Existing existing = Existing::same;
   PoolOptions pool;

@@ -106,11 +106,12 @@ Json arms_of(const JsonReader& list) {
 
 // What pages say of the suite (report/about_suite.hpp).
 void expect_about(const JsonReader& about) {
-  about.only({"question", "main_arm", "main_demonstrations", "arms", "rows"});
+  about.only({"title", "question", "main_arm", "main_demonstrations", "arms", "arm_titles", "rows"});
   about.at("question").string();
+  if (about.has("title")) about.at("title").string();
   if (about.has("main_arm")) about.at("main_arm").string();
   if (about.has("main_demonstrations")) about.at("main_demonstrations").integer(1, most);
-  for (const char* name : {"arms", "rows"}) {
+  for (const char* name : {"arms", "arm_titles", "rows"}) {
     if (!about.has(name)) continue;
     const JsonReader words = about.at(name);
     if (!words.json().is_object()) words.fail("an object");
@@ -251,7 +252,10 @@ Suite load_suite(const std::string& id) {
   if (reader.has("selects_nothing")) suite.selects_nothing = names(reader.at("selects_nothing"));
   if (reader.has("references"))
     suite.references = names(reader.at("references"), "reference row", {"most_shared", "never_demonstrated"});
-  if (reader.has("about")) expect_about(reader.at("about"));
+  if (reader.has("about")) {
+    expect_about(reader.at("about"));
+    if (is_file) suite.about = reader.at("about").json();
+  }
   suite.claims = claims_beside(file);
   suite.presets = reader.has("presets") ? reader.at("presets").json() : Json::object();
   if (!suite.presets.is_object()) reader.at("presets").fail("an object");

@@ -63,6 +63,7 @@ struct Suite {
   Json groups = Json::object();              // name -> scenarios, each in one group at most: tables have a mean of each
   std::vector<std::string> selects_nothing;  // methods in which errors of a Selection make no difference: without alone
   std::vector<std::string> references;       // rows of that kind beside those that every suite has
+  Json about;                                // of a suite in a file of the user's own, what pages say of it; null: none
   Json claims;                               // its own (suite_claims.hpp); null: none
   Json presets;                              // name -> members of Design
   std::string file;                          // for messages

@@ -77,6 +77,7 @@ RunRecord read_run_record(const Json& json, const std::string& file) {
   reader.at("machine").at("processor").string();
   record.machine = reader.at("machine").json();
   if (reader.has("answers")) record.answers = reader.at("answers").json();
+  if (reader.has("about")) record.about = reader.at("about").json();
   if (reader.has("claims")) {
     record.claims = reader.at("claims").json();
     read_suite_claims(record.claims, file + ": /claims");
@@ -98,6 +99,7 @@ Json to_json(const RunRecord& record) {
             {"plugins", plugins},        {"build", record.build},       {"version", record.version},
             {"program", record.program}, {"command", record.command},   {"confinement", record.confinement},
             {"answers", record.answers}, {"started", record.started},   {"machine", record.machine}};
+  if (!record.about.is_null()) json["about"] = record.about;
   if (!record.claims.is_null()) json["claims"] = record.claims;
   if (record.shard)
     json["shard"] = {{"index", record.shard->index}, {"count", record.shard->count}, {"cells", record.shard->cells}};

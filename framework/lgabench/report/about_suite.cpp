@@ -15,6 +15,16 @@ std::string AboutSuite::arm(const std::string& name) const {
   return text;
 }
 
+std::string AboutSuite::arm_title(const std::string& name) const {
+  if (const auto own = arm_titles.find(name); own != arm_titles.end()) return own->second;
+  std::string text = name, longest;
+  for (const auto& [arm, ignored] : arms) {
+    if (name.rfind(arm + "_", 0) != 0 || arm.size() <= longest.size()) continue;
+    longest = arm, text = arm_title(arm) + ", " + arm_title(name.substr(arm.size() + 1));
+  }
+  return text;
+}
+
 std::string AboutSuite::row(const std::string& method) const {
   const auto found = rows.find(method);
   return found == rows.end() ? "" : found->second;
@@ -28,20 +38,23 @@ fs::path installed_suite(const std::string& id) {
   return is_name && fs::exists(file) ? file : fs::path();
 }
 
-AboutSuite about_suite(const std::string& id) {
+AboutSuite about_suite(const std::string& id, const Json& own) {
   AboutSuite about;
+  about.title = id;
   const fs::path file = installed_suite(id);
-  if (file.empty()) return about;
-  const Json json = read_json(file);
-  const JsonReader suite(json, file.string());
+  Json json = file.empty() ? Json::object() : read_json(file);
+  if (!own.is_null()) json["about"] = own;
+  const JsonReader suite(json, own.is_null() ? file.string() : "run.json");
   if (suite.has("options")) about.options = suite.at("options").json();
   if (!suite.has("about")) return about;
   const JsonReader words = suite.at("about");
+  if (words.has("title")) about.title = words.at("title").string();
   about.question = words.at("question").string();
   if (words.has("main_arm")) about.main_arm = words.at("main_arm").string();
   if (words.has("main_demonstrations"))
     about.main_demonstrations = static_cast<int>(words.at("main_demonstrations").integer(1, 1'000'000));
-  for (const auto& [name, all] : {std::pair("arms", &about.arms), {"rows", &about.rows}})
+  for (const auto& [name, all] :
+       {std::pair("arms", &about.arms), {"arm_titles", &about.arm_titles}, {"rows", &about.rows}})
     if (words.has(name))
       for (const auto& one : words.at(name).json().items()) (*all)[one.key()] = words.at(name).at(one.key()).string();
   return about;

@@ -9,15 +9,20 @@
 namespace lgabench::report {
 
 struct AboutSuite {
-  std::string question;                     // a sentence; "" where the suite says none
-  std::string main_arm;                     // that its question is about; "" where it says none
-  std::optional<int> main_demonstrations;   // likewise
-  std::map<std::string, std::string> arms;  // what their test scenes are
-  std::map<std::string, std::string> rows;  // method, with its options -> what tells it from the others
-  Json options = Json::object();            // method or "*" -> option -> value, of the suite's own design
+  std::string title;                              // its id where it says none
+  std::string question;                           // a sentence; "" where the suite says none
+  std::string main_arm;                           // that its question is about; "" where it says none
+  std::optional<int> main_demonstrations;         // likewise
+  std::map<std::string, std::string> arms;        // what their test scenes are
+  std::map<std::string, std::string> arm_titles;  // of arms, and of variants
+  std::map<std::string, std::string> rows;        // method, with its options -> what tells it from the others
+  Json options = Json::object();                  // method or "*" -> option -> value, of the suite's own design
 
   /// What the arm's scenes are; that of "seen" for "seen_members_1", an arm of a variant. "" where nothing is said.
   std::string arm(const std::string& name) const;
+  /// "4 near misses" for "near_4"; "new, 2 members" for "new_members_2", an arm of a variant; the id where nothing is
+  /// said.
+  std::string arm_title(const std::string& name) const;
   /// What tells the row from the others; "" where nothing is said.
   std::string row(const std::string& method) const;
 };
@@ -25,7 +30,8 @@ struct AboutSuite {
 /// The file of an installed suite; empty where there is none of that name.
 fs::path installed_suite(const std::string& id);
 
-/// That of an installed suite; empty for one that is not installed, such as a file of the user's own.
-AboutSuite about_suite(const std::string& id);
+/// That of an installed suite, unless its run says otherwise: `own` is the run's, null where it has none. Of a suite
+/// that is neither, the title alone, which is its id. @throws InputError for an `own` that is not as docs/formats says.
+AboutSuite about_suite(const std::string& id, const Json& own = nullptr);
 
 }  // namespace lgabench::report

@@ -218,7 +218,7 @@ Claim test_claim(const PaperClaim& paper, const std::string& suite, const Field&
   claim.id = paper.id, claim.statement = paper.statement;
   claim.layout = field.layout, claim.engine = field.engine;
   if (!paper.suite.empty() && paper.suite != suite)
-    claim.reason = fmt::format("needs a run of suite {}", paper.suite);
+    claim.needs = paper.suite, claim.reason = fmt::format("needs a run of suite {}", paper.suite);
   else if (paper.test == PaperClaim::Test::ordering)
     test_ordering(claim, paper, field);
   else if (paper.test == PaperClaim::Test::equivalence)

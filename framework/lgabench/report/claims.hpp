@@ -46,6 +46,7 @@ struct Claim {
   std::string reason_alike;
   bool rehearsal = false;  // based on answers that are no people's
   std::vector<ClaimedDifference> differences;
+  std::string needs;  // the suite whose run would test it; "" where this run's is no reason
 };
 
 /// The claims of the run's suite (suite_claims.hpp), as its record has them or else the installation; where it has none

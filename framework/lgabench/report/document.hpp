@@ -141,9 +141,9 @@ struct Note {
   std::string log{};  // of an error, relative to the run
 };
 
-/// An arm of the test, what its scenes are, and one of them.
+/// An arm of the test: its id, title, what its scenes are, and one of them.
 struct ArmLine {
-  std::string name, text;
+  std::string name, title, text;
   std::string png;  // in base64; "" where there is none
 };
 

@@ -24,7 +24,7 @@ std::optional<Column> main_column(const Table& table, const AboutSuite& about) {
   if (table.arms.empty() || all.empty()) return {};
   Column column{"", table.arms.back(), all.back()};
   for (const std::string& arm : table.arms)
-    if (table.arm_title(arm) == arm) column.arm = arm;
+    if (table.arm_head(arm) == table.arm_title(arm)) column.arm = arm;
   if (std::find(table.arms.begin(), table.arms.end(), about.main_arm) != table.arms.end()) column.arm = about.main_arm;
   if (about.main_demonstrations && std::find(all.begin(), all.end(), *about.main_demonstrations) != all.end())
     column.demonstrations = *about.main_demonstrations;
@@ -110,7 +110,7 @@ Spans headline(const Material& material, const AboutSuite& about) {
   Spans spans{
       {fmt::format("{}, {}{}: {} succeeds in ", table.title(mean_scenario),
                    table.demonstrations_text(column->demonstrations),
-                   table.arms.size() > 1 ? ", arm " + table.arm_title(column->arm) : "", material.styles.name(first))},
+                   table.arms.size() > 1 ? ", arm " + table.arm_head(column->arm) : "", material.styles.name(first))},
       Span::number(fixed(*row.success), place_of(row, "success"), Emphasis::strong),
       {" of the episodes"}};
   spans.front().text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(spans.front().text.front())));
@@ -145,7 +145,7 @@ std::vector<ArmLine> arm_lines(const Material& material, const AboutSuite& about
       if (table.perturbs(arm) ||
           std::any_of(lines.begin(), lines.end(), [&arm](const ArmLine& line) { return line.name == arm; }))
         continue;
-      ArmLine& line = lines.emplace_back(ArmLine{arm, about.arm(arm), ""});
+      ArmLine& line = lines.emplace_back(ArmLine{arm, table.arm_title(arm), about.arm(arm), ""});
       for (const CellResult& cell : material.run.cells) {
         if (cell.failed || !has_arm(cell, arm) || !line.png.empty()) continue;
         for (const Episode& episode : cell.episodes.at(arm))

@@ -12,9 +12,12 @@
 namespace lgabench::report {
 namespace {
 
+// Text for readers: words in place of ids.
+std::string shown(const std::string& text) { return escaped(readable(text)); }
+
 // A span without what is around it for its emphasis.
 std::string words_html(const Span& span) {
-  std::string text = escaped(span.text);
+  std::string text = span.emphasis == Emphasis::code ? escaped(span.text) : shown(span.text);
   if (!span.pointer.empty()) text = fmt::format("<span data-value=\"{}\">{}</span>", escaped(span.pointer), text);
   if (!span.title.empty()) text = fmt::format("<span title=\"{}\">{}</span>", escaped(span.title), text);
   return span.url.empty() ? text : fmt::format("<a href=\"{}\">{}</a>", escaped(span.url), text);
@@ -48,7 +51,7 @@ std::string bar_html(const std::vector<BarPart>& parts, int of) {
   for (const BarPart& part : parts)
     if (part.count > 0)
       text += fmt::format("<i class=\"{}\" style=\"width:{:.2f}%\" title=\"{}: {}\"></i>", part.kind,
-                          100.0 * part.count / of, escaped(part.name), part.count);
+                          100.0 * part.count / of, shown(part.name), part.count);
   return text + "</div>";
 }
 
@@ -103,14 +106,32 @@ std::vector<std::string> repeated(const Grid& grid) {
   return words;
 }
 
+// What the table's symbols mean, each once.
+std::string legend_html(const Grid& grid) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto add = [&all](const std::string& symbol, const std::string& meaning) {
+    if (std::find(all.begin(), all.end(), std::pair(symbol, meaning)) == all.end()) all.emplace_back(symbol, meaning);
+  };
+  for (const Grid::Row& row : grid.rows)
+    for (const TableCell& cell : row.cells)
+      for (const Span& span : cell.spans) {
+        if (span.emphasis == Emphasis::detail && span.text == " [") add("[low, high]", "95 % interval");
+        if (span.numeric && !span.title.empty()) add(span.text, span.title);
+      }
+  std::string text;
+  for (const auto& [symbol, meaning] : all)
+    text += fmt::format("{}<b>{}</b> {}", text.empty() ? "" : "; ", escaped(symbol), shown(meaning));
+  return text.empty() ? "" : "<p class=legend>" + text + "</p>\n";
+}
+
 // In a frame that scrolls sideways, with its caption. A group is a body of its own, below its name; columns up to the
 // method's name head a row.
 std::string grid_html(const Grid& grid) {
-  std::string heads, body, group, caption = escaped(grid.caption);
+  std::string heads, body, group, caption = shown(grid.caption);
   const bool grouped = groups_of(grid).size() > 1;
   const std::vector<std::string> said = repeated(grid);
   for (const std::string& words : said)
-    if (!words.empty()) caption += "; " + escaped(words);
+    if (!words.empty()) caption += "; " + shown(words);
   const auto shown = std::count(said.begin(), said.end(), "");
   const auto head = [&heads](const TableCell& cell) {
     heads +=
@@ -137,14 +158,37 @@ std::string grid_html(const Grid& grid) {
   }
   return fmt::format(
       "<div class=frame tabindex=0 role=region aria-label=\"{0}\"><table{1}><caption><span>{0}</span></caption>\n"
-      "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n",
-      caption, grid.rows.size() > 1 ? " class=sortable" : "", heads, body);
+      "<thead><tr>{2}</tr></thead>\n<tbody>\n{3}</tbody></table></div>\n{4}",
+      caption, grid.rows.size() > 1 ? " class=sortable" : "", heads, body, legend_html(grid));
 }
 
+Chart readable(Chart chart) {
+  for (std::string* text : {&chart.title, &chart.subtitle, &chart.axis, &chart.values, &chart.alternative})
+    *text = report::readable(*text);
+  for (Chart::Tick& tick : chart.ticks) tick.label = report::readable(tick.label);
+  for (Series& series : chart.series) {
+    series.name = report::readable(series.name);
+    for (ChartPoint& point : series.points) point.label = report::readable(point.label);
+  }
+  return chart;
+}
+
+// A chart alone is as wide as the page, and drawn once more for a narrow one, so that its text has its size on both.
 std::string charts_html(const Charts& charts) {
+  constexpr double wide = 1000, narrow = 420;
+  const bool alone = charts.charts.size() == 1;
   std::string text = fmt::format("<div class=\"charts{}\">", charts.charts.front().legend ? "" : " small");
-  for (const Chart& chart : charts.charts)  // not larger than its text was meant to be
-    text += fmt::format("<figure style=\"max-width:{:.0f}px\">{}</figure>", 1.2 * chart.width, svg(chart, false));
+  for (Chart chart : charts.charts) {
+    chart = readable(std::move(chart));
+    if (!chart.legend || chart.heat) {
+      text += "<figure>" + svg(chart, false) + "</figure>";
+      continue;
+    }
+    if (alone) chart.width = wide;
+    text += "<figure class=wide>" + svg(chart, false) + "</figure>";
+    chart.width = narrow;
+    text += "<figure class=narrow>" + svg(chart, false) + "</figure>";
+  }
   return text + "</div>\n";
 }
 
@@ -161,7 +205,7 @@ std::string pictures_html(const PictureRow& row) {
 
 std::string block_html(const Block& block) {
   std::string text;
-  if (const auto* heading = std::get_if<Heading>(&block.content)) text = "<h3>" + escaped(heading->text) + "</h3>\n";
+  if (const auto* heading = std::get_if<Heading>(&block.content)) text = "<h3>" + shown(heading->text) + "</h3>\n";
   if (const auto* words = std::get_if<Paragraph>(&block.content))
     text = "<p class=hint>" + spans_html(words->spans) + "</p>\n";
   if (const auto* list = std::get_if<List>(&block.content)) {
@@ -170,20 +214,21 @@ std::string block_html(const Block& block) {
   }
   if (const auto* facts = std::get_if<Facts>(&block.content)) {
     for (const auto& [name, value] : facts->items)
-      text += fmt::format("<dt>{}</dt><dd>{}</dd>", escaped(name), escaped(value));
+      text += fmt::format("<dt>{}</dt><dd><code>{}</code></dd>", shown(name), escaped(value));
     text = "<dl>" + text + "</dl>\n";
   }
   if (const auto* grid = std::get_if<Grid>(&block.content)) text = grid_html(*grid);
   if (const auto* charts = std::get_if<Charts>(&block.content)) text = charts_html(*charts);
   if (const auto* pictures = std::get_if<PictureRow>(&block.content)) text = pictures_html(*pictures);
   if (block.folded.empty()) return text;
-  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(block.folded), text);
+  return fmt::format("<details><summary>{}</summary>\n{}</details>\n", shown(block.folded), text);
 }
 
 std::string notes_html(const Document& document) {
   std::string text;
   for (const Note& note : document.notes)
-    text += fmt::format("<li{}>{}{}</li>\n", note.kind == Note::error ? " class=bad" : "", escaped(note.text),
+    text += fmt::format("<li{}>{}{}</li>\n", note.kind == Note::error ? " class=bad" : "",
+                        note.kind == Note::error ? escaped(note.text) : shown(note.text),
                         note.log.empty() ? "" : fmt::format(" ({})", escaped(note.log)));
   if (text.empty()) return "";
   const std::size_t errors = static_cast<std::size_t>(
@@ -202,9 +247,10 @@ std::string arms_html(const Document& document) {
                                                 : fmt::format(
                                                       "<img width=160 height=80 alt=\"A scene of the arm {0}\" "
                                                       "src=\"data:image/png;base64,{1}\">",
-                                                      escaped(arm.name), arm.png);
-    if (arm.text.empty() && picture.empty()) continue;
-    text += fmt::format("<li>{}<b>{}</b><span>{}</span></li>\n", picture, escaped(arm.name), escaped(arm.text));
+                                                      shown(arm.title), arm.png);
+    if (arm.text.empty() && picture.empty() && arm.title == arm.name) continue;
+    text += fmt::format("<li>{}<b>{}{}</b><span>{}</span></li>\n", picture, shown(arm.title),
+                        arm.title == arm.name ? "" : " <code>" + escaped(arm.name) + "</code>", shown(arm.text));
   }
   return text.empty() ? "" : "<ul class=arms aria-label=\"Arms of the test\">\n" + text + "</ul>\n";
 }
@@ -243,13 +289,16 @@ std::string html(const Document& document, const Json& data, const std::string& 
       if ((block.in & on_page) != 0) blocks += block_html(block);
     body +=
         fmt::format("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
-                    section.id, escaped(section.title), blocks);
+                    section.id, shown(section.title), blocks);
   }
   const auto first = std::find_if(document.sections.begin(), document.sections.end(),
                                   [](const Section& section) { return (section.in & on_page) != 0; });
   const fs::path installed = data_directory() / "page";
+  std::string summary;  // for those to whom the page is sent
+  for (const Span& span : document.headline) summary += span.text;
   return filled(read_file(installed / "page.html"),
-                {{"{{title}}", escaped(document.title)},
+                {{"{{title}}", shown(document.title)},
+                 {"{{summary}}", shown(summary.empty() ? document.question : summary)},
                  {"{{first}}", first == document.sections.end() ? "" : first->id},
                  {"{{style}}", read_file(installed / "page.css")},
                  {"{{body}}", body},

@@ -52,8 +52,8 @@ Grid runs_grid(const std::vector<Report>& reports, const fs::path& place) {
 std::string setting(const Report& report, const Table& table, const std::string& arm) {
   const std::vector<std::string> scenarios = table.scenarios_with(arm);
   const std::string through = seen_through(report.run);
-  return fmt::format("{}, {}, arm {}, {}{}: {}", report.run.suite, table.title(), arm,
-                     table.demonstrations_text(table.demonstrations().back()),
+  return fmt::format("{}, {}, arm {}, {}{}: {}", about_suite(report.run.suite, report.run.record.about).title,
+                     table.title(), table.arm_title(arm), table.demonstrations_text(table.demonstrations().back()),
                      through.empty() ? "" : " seen through " + through, fmt::join(scenarios, ", "));
 }
 

@@ -82,7 +82,9 @@ std::string markdown(const Document& document) {
   if (!document.headline.empty()) text += markdown_text(document.headline) + "\n\n";
   if (!document.setting.empty()) text += markdown_text(document.setting) + "\n\n";
   for (const ArmLine& arm : document.arms)
-    if (!arm.text.empty()) text += fmt::format("- `{}`: {}\n", arm.name, plain(arm.text));
+    if (!arm.text.empty())
+      text += fmt::format("- {}`{}`: {}\n", arm.title == arm.name ? "" : plain(arm.title) + ", ", arm.name,
+                          plain(arm.text));
   if (!document.arms.empty()) text += '\n';
   for (const Note& note : document.notes)
     if (note.kind != Note::source)

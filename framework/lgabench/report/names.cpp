@@ -37,12 +37,17 @@ struct Known {
   std::vector<double> dashes{};
 };
 
+const JsonReader& methods_file() {
+  static const fs::path file = data_directory() / "paper" / "methods.json";
+  static const Json json = read_json(file);
+  static const JsonReader reader(json, file.string());
+  return reader;
+}
+
 // Those of methods.json, by id.
 const std::map<std::string, Known>& known() {
   static const std::map<std::string, Known> all = [] {
-    const fs::path file = data_directory() / "paper" / "methods.json";
-    const Json json = read_json(file);
-    const JsonReader reader(json, file.string());
+    const JsonReader& reader = methods_file();
     std::map<std::string, Known> found;
     int rank = 0;
     for (const JsonReader& method : reader.at("methods").elements()) {
@@ -64,6 +69,23 @@ const std::map<std::string, Known>& known() {
   return all;
 }
 
+// The words for an id, or the text where it is none. A letter after a dot is a file's or an option's name.
+std::string id_in_words(const std::string& text) {
+  const auto inside = text.find_first_of("_=", 1);
+  const auto dot = text.find('.');
+  if (inside == text.npos || inside + 1 == text.size() || text.find('/') != text.npos || text.front() == '-' ||
+      std::none_of(text.begin(), text.end(), [](unsigned char c) { return std::islower(c); }) ||
+      (dot + 1 < text.size() && dot != text.npos && std::isalpha(static_cast<unsigned char>(text[dot + 1]))))
+    return text;
+  const Json& values = methods_file().at("values").json();
+  if (const auto value = values.find(text); value != values.end()) return value->get<std::string>();
+  if (const auto method = known().find(text); method != known().end()) return method->second.name;
+  std::string words = text;
+  for (char& c : words)
+    if (c == '_' || c == '=') c = ' ';
+  return words;
+}
+
 // nullptr for an id that methods.json does not have.
 const Known* find(const std::string& method) {
   const auto it = known().find(row_id(method));
@@ -77,6 +99,28 @@ std::string display_name(const std::string& method) {
   if (const Known* own = find(method)) words.front() = own->name;
   if (selects_alone(method)) words.front() = "selected by " + words.front();
   return fmt::format("{}", fmt::join(words, " "));
+}
+
+std::string readable(const std::string& text) {
+  const auto of_id = [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '=' || c == '-' || c == '.' || c == '/';
+  };
+  std::string out;
+  for (auto at = text.begin(); at != text.end();) {
+    auto end = std::find_if_not(at, text.end(), of_id);
+    const bool quoted = at != text.begin() && std::string_view("\"'`").find(at[-1]) != std::string_view::npos;
+    while (end - at > 1 && end[-1] == '.') --end;
+    if (end == at) ++end;
+    const std::string id(at, end);
+    std::string words = quoted ? id : id_in_words(id);
+    const std::string with = "with ";  // said before the id, it is not said again
+    if (words != id && words.rfind(with, 0) == 0 && out.size() >= with.size() &&
+        out.compare(out.size() - with.size(), with.size(), with) == 0)
+      words.erase(0, with.size());
+    out += words;
+    at = end;
+  }
+  return out;
 }
 
 int display_rank(const std::string& method) {

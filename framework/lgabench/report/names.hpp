@@ -13,6 +13,10 @@ namespace lgabench::report {
 /// stays as it is.
 std::string display_name(const std::string& method);
 
+/// A text with words for the ids in it, as pages have it: "gcbc_seg" -> "GCBC-SEG", "policy=heat_map" -> "with a heat
+/// map", other "_" and "=" inside an id -> spaces. What is quoted, and names of files and options, stay.
+std::string readable(const std::string& text);
+
 /// Position in tables, by id: the paper's methods in its order, then others (equal rank: by name), then reference rows.
 int display_rank(const std::string& method);
 

@@ -9,6 +9,7 @@
 #include <lgabench/core/environments.hpp>
 #include <lgabench/core/shown.hpp>
 #include <lgabench/record/outcome.hpp>
+#include <lgabench/report/names.hpp>
 #include <lgabench/report/phi_words.hpp>
 #include <lgabench/report/report_document.hpp>
 
@@ -33,9 +34,9 @@ Json places_of(const std::string& id, const Action& action) {
 }
 
 std::string title_of(const MethodStyles& styles, const Table& table, const Row& row) {
-  return fmt::format("{}, {}, {}, arm {}, {}", styles.name(row.method), table.title(row.scenario),
-                     row.demonstrations ? table.demonstrations_text(row.demonstrations) : "no demonstrations", row.arm,
-                     table.title());
+  return readable(fmt::format("{}, {}, {}, arm {}, {}", styles.name(row.method), table.title(row.scenario),
+                              row.demonstrations ? table.demonstrations_text(row.demonstrations) : "no demonstrations",
+                              table.arm_title(row.arm), table.title()));
 }
 
 Json to_json(const Pictures::Input& input) {
@@ -121,6 +122,9 @@ Json page_data(const Material& material) {
                      {"phi", selected},
                      {"arms", played}});
   }
+  Json arms = Json::object();
+  for (const Table& table : material.summary.tables)
+    for (const auto& [arm, title] : table.arm_titles) arms[arm] = readable(title);
   std::vector<Json> lists(scenes.size());
   for (const auto& [hashes, number] : scenes) lists[number] = hashes;
   std::vector<Json> selections(phis.size());
@@ -129,9 +133,18 @@ Json page_data(const Material& material) {
   for (const auto& [input, number] : inputs) all_read[number] = input;
   Json oracle = Json::object();
   for (const auto& [scene, expert] : pictures.oracle) oracle[scene] = places_of(expert.first, expert.second);
-  return {{"failures", words}, {"phi", selections},           {"titles", titles},        {"cells", cells},
-          {"scenes", lists},   {"pictures", pictures.scenes}, {"masks", pictures.masks}, {"targets", pictures.targets},
-          {"oracle", oracle},  {"inputs", all_read},          {"seen", pictures.seen}};
+  return {{"arms", arms},
+          {"failures", words},
+          {"phi", selections},
+          {"titles", titles},
+          {"cells", cells},
+          {"scenes", lists},
+          {"pictures", pictures.scenes},
+          {"masks", pictures.masks},
+          {"targets", pictures.targets},
+          {"oracle", oracle},
+          {"inputs", all_read},
+          {"seen", pictures.seen}};
 }
 
 }  // namespace lgabench::report

@@ -56,7 +56,7 @@ Chart axis_chart(const Material& material, const Part& part, const std::string& 
   chart.width = 460, chart.height = 300;
   chart.file = fmt::format("perturbations_{}_{}", slug(axis), part.file());
   chart.title = axis;
-  chart.subtitle = fmt::format("{}, {}", material.run.suite, part.title());
+  chart.subtitle = fmt::format("{}, {}", material.about.title, part.title());
   chart.axis = named_levels ? "" : "level";
   chart.values = "success";
   chart.alternative = fmt::format("success in {} against the levels of {}", chart.subtitle, axis);
@@ -132,7 +132,7 @@ Chart perturbation_heat_map(const Material& material, const PerturbationPart& pa
   chart.width = std::max(460., 170 + 52. * static_cast<double>(axes.size()));
   chart.file = "perturbations_" + part.file();
   chart.title = "Area under the curve relative to the control";
-  chart.subtitle = fmt::format("{}, {}", material.run.suite, part.title());
+  chart.subtitle = fmt::format("{}, {}", material.about.title, part.title());
   chart.axis = "1: nothing is lost at any level";
   chart.alternative = fmt::format("{} of each method and axis: {}", chart.title, chart.subtitle);
   return chart;

@@ -41,6 +41,8 @@ std::vector<Note> all_notes(const Material& material) {
   std::vector<Note> all;
   for (const std::string& line : settings(material.run)) all.push_back({Note::setting, line});
   for (const std::string& line : notes(material.run, material.summary)) all.push_back({Note::note, line});
+  if (material.about.title == material.run.suite)
+    all.push_back({Note::source, "The suite has no title: \"about\" of its file gives it, and its arms, one."});
   for (const MethodError& error : method_errors(material.run)) all.push_back({Note::error, error.text, error.log});
   for (const std::string& line : sources(material.summary, material.styles)) all.push_back({Note::source, line});
   if (const std::string line = pictures_note(material.pictures); !line.empty()) all.push_back({Note::source, line});
@@ -121,9 +123,9 @@ std::string success_title(const Material& material) {
 }
 
 Document report_document(const Material& material) {
-  const AboutSuite about = about_suite(material.run.suite);
+  const AboutSuite& about = material.about;
   Document document{material.run.suite,
-                    material.run.suite + ": " + success_title(material),
+                    about.title + ": " + success_title(material),
                     headline(material, about),
                     all_notes(material),
                     {},
@@ -136,7 +138,7 @@ Document report_document(const Material& material) {
   for (Section& section : success(material)) add(std::move(section));
   add(selection_errors(material));
   add(perturbations(material));
-  add(claims_section(material.claims, material.styles, claims_title(material.claims)));
+  add(claims_section(material.claims, material.styles, claims_title(material.claims), about));
   add(phi(material));
   add(failures(material));
   add(attribution(material));

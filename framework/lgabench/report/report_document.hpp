@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <lgabench/report/about_suite.hpp>
 #include <lgabench/report/claims.hpp>
 #include <lgabench/report/document.hpp>
 #include <lgabench/report/engines.hpp>
@@ -24,13 +25,15 @@ struct Material {
   const PaperValues& paper;
   const Pictures& pictures;
   MethodStyles styles = styles_of(summary, run);
+  AboutSuite about = about_suite(run.suite, run.record.about);
 };
 
 /// A report has the same sections in every form. The same material gives the same document.
 Document report_document(const Material& material);
 
 /// The section on claims, which a terminal shows by itself.
-Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title);
+Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title,
+                       const AboutSuite& about = {});
 
 /// What the page's script shows of a row: its episodes, and the pictures of those that failed (docs/formats).
 Json page_data(const Material& material);

@@ -26,14 +26,14 @@ struct Placed {
 bool is_slope(const ClaimedDifference& d) { return d.unit != "success" && d.unit != "seconds"; }
 
 // The columns that say which difference a row is of.
-std::vector<TableCell> place_cells(const MethodStyles& styles, const Placed& of) {
+std::vector<TableCell> place_cells(const MethodStyles& styles, const AboutSuite& about, const Placed& of) {
   const ClaimedDifference& d = of.difference;
   TableCell rows(styles.name(d.above) + " − " + styles.name(d.below) + (is_slope(d) ? ", " + d.unit : ""));
   rows.style = styles(d.above);
   return {of.claim.id,
           of.claim.layout,
           of.claim.engine,
-          d.arm,
+          about.arm_title(d.arm),
           d.unit == "seconds" ? TableCell()
                               : TableCell(Span::number(std::to_string(d.demonstrations), of.place + "/demonstrations")),
           rows};
@@ -83,6 +83,11 @@ TableCell sample_cell(const Placed& of) {
   return cell;
 }
 
+TableCell reason_cell(const Claim& claim) {
+  if (claim.needs.empty()) return claim.reason;
+  return Spans{"needs a run of suite ", Span(claim.needs, Emphasis::code)};
+}
+
 Grid differences_grid(const std::string& name, const std::string& caption) {
   Grid grid;
   grid.name = name;
@@ -93,7 +98,7 @@ Grid differences_grid(const std::string& name, const std::string& caption) {
 }
 
 // A column for each scenario.
-Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
+Grid by_scenario(const MethodStyles& styles, const AboutSuite& about, const std::vector<Placed>& all) {
   std::vector<std::string> scenarios;
   for (const Placed& of : all)
     for (const auto& item : of.difference.by_scenario)
@@ -104,7 +109,7 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
   for (const Placed& of : all) {
     const auto& values = of.difference.by_scenario;
     if (values.empty()) continue;
-    Grid::Row row{{}, place_cells(styles, of)};
+    Grid::Row row{{}, place_cells(styles, about, of)};
     for (const std::string& scenario : scenarios) {
       const auto found =
           std::find_if(values.begin(), values.end(), [&scenario](const auto& item) { return item.first == scenario; });
@@ -119,14 +124,14 @@ Grid by_scenario(const MethodStyles& styles, const std::vector<Placed>& all) {
   return grid;
 }
 
-Grid details(const MethodStyles& styles, const std::vector<Placed>& all) {
+Grid details(const MethodStyles& styles, const AboutSuite& about, const std::vector<Placed>& all) {
   Grid grid = differences_grid("claims_differences", "The differences behind the claims");
   for (const char* head : {"these scenarios", "verdict", "scenarios like these", "verdict on those", "based on"})
     grid.heads.emplace_back(head);
   grid.align += "lllll";
   for (const Placed& of : all) {
     const ClaimedDifference& d = of.difference;
-    Grid::Row row{{}, place_cells(styles, of)};
+    Grid::Row row{{}, place_cells(styles, about, of)};
     row.cells.push_back(test_cell(of, d.these, "/these_scenarios", true));
     row.cells.emplace_back(to_string(d.these.verdict));
     row.cells.push_back(test_cell(of, d.alike, "/scenarios_like_these", false));
@@ -143,7 +148,8 @@ std::string with_reason(Verdict verdict, const std::string& reason, bool rehears
 
 }  // namespace
 
-Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title) {
+Section claims_section(const std::vector<Claim>& claims, const MethodStyles& styles, const std::string& title,
+                       const AboutSuite& about) {
   Section section{"claims", title, reading};
   if (claims.empty()) return section;
   Grid verdicts, untested;
@@ -162,7 +168,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
   for (std::size_t c = 0; c < claims.size(); ++c) {
     const Claim& claim = claims[c];
     if (claim.verdict == Verdict::not_tested)
-      untested.rows.push_back({{}, {claim.id, claim.statement, claim.layout, claim.engine, claim.reason}});
+      untested.rows.push_back({{}, {claim.id, claim.statement, claim.layout, claim.engine, reason_cell(claim)}});
     else
       verdicts.rows.push_back({{},
                                {claim.id, claim.statement, claim.layout, claim.engine,
@@ -183,7 +189,7 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
     }
   }
   section.add(in_terminal, std::move(lines));
-  if (!all.empty()) section.add(in_terminal, details(styles, all));
+  if (!all.empty()) section.add(in_terminal, details(styles, about, all));
   if (!verdicts.rows.empty()) section.add(reading, std::move(verdicts));
   const bool folds = !tested.empty() || untested.rows.size() > 1;
   const std::string caption = untested.caption;
@@ -199,8 +205,8 @@ Section claims_section(const std::vector<Claim>& claims, const MethodStyles& sty
                  std::string(own ? "all differences of the suite's claims on one layout and engine"
                                  : "the rows compared in one arm at one number of demonstrations") +
                  ", for each of the two by itself."}});
-  section.add(reading, details(styles, tested));
-  Grid scenarios = by_scenario(styles, tested);
+  section.add(reading, details(styles, about, tested));
+  Grid scenarios = by_scenario(styles, about, tested);
   if (scenarios.rows.empty()) return section;
   section.add(in_markdown, Paragraph{{"The same by scenario:"}});
   section.add(reading, std::move(scenarios), "The same by scenario");

@@ -62,7 +62,7 @@ Grid grid_of(const Material& material, const AboutSuite& about, const Table& tab
   std::sort(columns.begin(), columns.end(), in_columns);
   grid.name = fmt::format("errors_{}_{}_{}_{}", slug(table.layout), slug(table.engine), slug(arm), n);
   grid.caption = fmt::format("Success with errors of the Selection, {}, arm {}, {}; {}", table.title(mean_scenario),
-                             table.arm_title(arm), table.demonstrations_text(n), table.title());
+                             table.arm_head(arm), table.demonstrations_text(n), table.title());
   grid.group_head = about.rows.empty() ? "" : "where the knowledge enters";
   grid.heads = {"method", "no errors"};
   grid.align = "llr";
@@ -119,8 +119,8 @@ Chart chart_of(const Material& material, const ErrorCurve& first) {
   chart.right = 1.05 * *at.rbegin();
   chart.file = fmt::format("errors_{}_{}_{}_{}_{}", first.kind, slug(first.layout), slug(first.engine), slug(first.arm),
                            first.demonstrations);
-  chart.title = fmt::format("arm {}, {} demonstrations", first.arm, first.demonstrations);
-  chart.subtitle = fmt::format("success in {}, layout {}, engine {}", material.run.suite, first.layout, first.engine);
+  chart.title = fmt::format("arm {}, {} demonstrations", material.about.arm_title(first.arm), first.demonstrations);
+  chart.subtitle = fmt::format("success in {}, layout {}, engine {}", material.about.title, first.layout, first.engine);
   chart.axis = fmt::format("probability of {}", words_of(first.kind));
   chart.alternative = fmt::format("{}, against errors of the Selection: {}", chart.subtitle, chart.title);
   return chart;
@@ -130,7 +130,7 @@ Chart chart_of(const Material& material, const ErrorCurve& first) {
 
 Section selection_errors(const Material& material) {
   Section section{"errors", "What an error of the Selection costs"};
-  const AboutSuite about = about_suite(material.run.suite);
+  const AboutSuite& about = material.about;
   std::vector<Grid> main, others;
   for (const Table& table : material.summary.tables)
     for (const std::string& arm : table.arms)

@@ -41,7 +41,7 @@ Section what_was_run(const Material& material) {
   if (!run.unreadable.empty()) {
     section.add(reading, Paragraph{{"Cells that cannot be read; those whose cell.json can count as failed:"}});
     List lines;
-    for (const std::string& why : run.unreadable) lines.items.push_back({why});
+    for (const std::string& why : run.unreadable) lines.items.push_back({Span(why, Emphasis::code)});
     section.add(reading, std::move(lines));
   }
 
@@ -97,11 +97,11 @@ Section failed_cells(const Material& material) {
   grid.align = std::string(grid.heads.size(), 'l');
   List lines;
   for (const CellResult& cell : failed) {
-    TableCell reason(cell.reason);
+    TableCell reason(Span(cell.reason, Emphasis::code));
     reason.log = cell.log_tail;
     grid.rows.push_back(
         {{},
-         {cell.key, named(material, cell.method), cell.scenario, cell.layout, cell.engine,
+         {Span(cell.key, Emphasis::code), named(material, cell.method), cell.scenario, cell.layout, cell.engine,
           std::to_string(cell.demonstrations), std::to_string(cell.training_seed), cell.fault, reason}});
     lines.items.push_back(
         {fmt::format("failed: {} {} {} {} n={} seed={} ({}): {}", cell.method, cell.scenario, cell.layout, cell.engine,
@@ -120,7 +120,8 @@ Section provenance(const Material& material) {
     all.items.emplace_back("plugin " + plugin.id,
                            fmt::format("{} {}, sha256 {:.16}", plugin.kind, plugin.version, plugin.sha256));
   for (const auto& [name, value] : run.record.build.items())
-    if (value.is_string()) all.items.emplace_back(name, "sha256 " + value.get<std::string>().substr(0, 16));
+    if (value.is_string())
+      all.items.emplace_back("built file", fmt::format("{}, sha256 {:.16}", name, value.get<std::string>()));
   section.add(on_page, std::move(all), "Command, versions, checksums, machine");
   return section;
 }

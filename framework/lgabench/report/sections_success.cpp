@@ -151,7 +151,7 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
   else
     for (const std::string& each : table.arms)
       if (!table.perturbs(each))
-        places.push_back({static_cast<double>(places.size()), table.arm_title(each), each, demonstrations.front()});
+        places.push_back({static_cast<double>(places.size()), table.arm_head(each), each, demonstrations.front()});
   const double pad = joined ? .08 * (places.back().x - places.front().x) : .6;
   chart.left = places.front().x - pad;
   chart.right = places.back().x + pad;
@@ -186,13 +186,13 @@ Chart chart_of(const Material& material, const Table& table, const std::string& 
 
   const bool one_of_arms = joined && table.arms.size() > 1;
   chart.rows = places.size() == 1;
-  const std::string where = fmt::format("{}, {}", material.run.suite, table.title());
-  chart.title = one_of_arms ? table.arm_title(arm) : table.title(scenario);
+  const std::string where = fmt::format("{}, {}", material.about.title, table.title());
+  chart.title = one_of_arms ? table.arm_head(arm) : table.title(scenario);
   chart.subtitle = one_of_arms ? table.title(scenario) + ", " + where : where;
   const std::string one_number = table.demonstrations_text(demonstrations.front());
   chart.values = "success";
   chart.axis = chart.rows ? "success, " + one_number : joined ? "demonstrations" : "arm, " + one_number;
-  chart.alternative = fmt::format("success in {}{}, {}: {}", where, one_of_arms ? ", arm " + arm : "",
+  chart.alternative = fmt::format("success in {}{}, {}: {}", where, one_of_arms ? ", arm " + table.arm_title(arm) : "",
                                   chart.rows ? "a row for each method"
                                   : joined   ? "against demonstrations"
                                              : "against arms",
@@ -265,7 +265,7 @@ void add_view(const Material& material, const Table& table, const View& view, co
   add(reading, success_grid(material, table, view.columns, each), "scenarios",
       fmt::format("Success in each scenario, {}; {}", table.title(), columns), "Each scenario, as a table");
   if (!view.shifted.empty()) {
-    const std::string& control = table.arms.front();
+    const std::string control = table.arm_title(table.arms.front());
     section.add(in_markdown, Paragraph{{fmt::format("Change against {}, scene by scene:", control)}});
     add(reading, told(own(shift_cell, view.shifted, all, false)), "change",
         fmt::format("Change against {}, scene by scene, {}; {}", control, table.title(), columns),
@@ -275,11 +275,11 @@ void add_view(const Material& material, const Table& table, const View& view, co
           fmt::format("{}: change against {} [95 % interval]", field, control));
   }
   if (const Grid otherwise = told(own(otherwise_cell, view.shifted, {mean_scenario}, true)); !otherwise.rows.empty()) {
-    const std::string what =
-        fmt::format("ommands for which something else was selected than in {}, share", table.arms.front());
+    const std::string what = fmt::format("ommands for which something else was selected than in {}, share",
+                                         table.arm_title(table.arms.front()));
     section.add(in_markdown, Paragraph{{fmt::format("C{}:", what)}});
     add(reading, otherwise, "otherwise", fmt::format("C{}, {}; {}", what, table.title(), columns),
-        "Selected otherwise than in " + table.arms.front());
+        "Selected otherwise than in " + table.arm_title(table.arms.front()));
     add(in_terminal, otherwise, "", fmt::format("{}: c{}", field, what));
   }
   if (!any_seen(table)) return;

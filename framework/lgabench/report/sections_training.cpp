@@ -112,7 +112,7 @@ Section learning_curves(const Material& material) {
       if (chart.series.empty()) continue;
       chart.file = fmt::format("training_{}_{}_{}", slug(name), slug(table.layout), slug(table.engine));
       chart.title = fmt::format("{}, {}", name, table.title(mean_scenario));
-      chart.subtitle = fmt::format("{}, {}, {}", material.run.suite, table.title(),
+      chart.subtitle = fmt::format("{}, {}, {}", material.about.title, table.title(),
                                    table.demonstrations_text(demonstrations.back()));
       chart.axis = "passes over the demonstrations";
       chart.alternative = fmt::format("{} along training: {}, {}", name, chart.title, chart.subtitle);

@@ -96,7 +96,7 @@ struct Endings {
   void add(const Material& material, const Table& table, const Row& row, TableCell bar,
            std::vector<TableCell> numbers) {
     if (row.perturbation && (!row.is_mean() || row.is_reference())) return;
-    std::vector<TableCell> cells{table.title(), row.arm, named(material, row.method),
+    std::vector<TableCell> cells{table.title(), table.arm_title(row.arm), named(material, row.method),
                                  count_cell(row, "demonstrations", row.demonstrations), std::move(bar)};
     std::move(numbers.begin(), numbers.end(), std::back_inserter(cells));
     if (row.perturbation) return levels.rows.push_back({row.perturbation->axis, std::move(cells)});
@@ -180,6 +180,10 @@ Section phi(const Material& material) {
     if (worded_otherwise(phi.asked_as, phi.utterance)) known.insert(wording);
   }
   if (grid.rows.empty()) return section;
+  section.add(
+      on_page,
+      Paragraph{{"φ̂ is what a method selected as mattering for a command: object types and textures. "
+                 "Precision is the share of it that is right, recall the share of what is right that it has."}});
   if (Grid in_words = words_grid(material, tell); !in_words.rows.empty()) section.add(on_page, std::move(in_words));
   section.add(in_markdown,
               Paragraph{{"Against the scenario's true distribution: precision and recall of what was selected, "

@@ -350,9 +350,15 @@ Summary summarize(const RunResults& run) {
     summary.tables.push_back(make_table(item.second));
     summary.tables.back().nearness = nearness(summary.tables.back(), paper);
   }
+  const AboutSuite about = about_suite(run.suite, run.record.about);
   std::size_t index = 0;
-  for (Table& table : summary.tables)
-    for (Row& row : table.rows) row.index = index++;
+  for (Table& table : summary.tables) {
+    for (const std::string& arm : table.arms) table.arm_titles[arm] = about.arm_title(arm);
+    for (Row& row : table.rows) {
+      row.index = index++;
+      if (row.shift) row.shift->against_title = table.arm_title(row.shift->against);
+    }
+  }
   summary.error_curves = error_curves(run, summary.tables);
   summary.perturbations = perturbation_curves(run, summary.tables);
   return summary;

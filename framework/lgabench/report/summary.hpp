@@ -27,6 +27,7 @@ struct Shift {
   /// Where the arm says the same in other words: the share of episodes for whose words something else was selected than
   /// for the first arm's, as a mean like success. None for a method that selects nothing.
   std::optional<double> selected_otherwise;
+  std::string against_title{};  // what readers are shown of the first arm
 };
 
 /// What a row's cells selected for one command. Words: the different ones, joined by "; "; numbers: means over cells.
@@ -84,6 +85,7 @@ struct Row {
 struct Table {
   std::string layout, engine;
   std::vector<std::string> arms;
+  std::map<std::string, std::string> arm_titles;  // what readers are shown of them
   int demonstrated_commands = 1;  // of each scenario, each with as many demonstrations; 0 where scenarios differ
   std::vector<Row> rows;
   std::optional<Nearness> nearness;  // to the paper's curves; none unless the rows of all three methods are there
@@ -107,8 +109,10 @@ struct Table {
   std::string title(const std::string& scenario) const;
   /// Whether the arm's scenes are perturbed ones of the first arm.
   bool perturbs(const std::string& arm) const;
-  /// The arm's own name, or "hard (1 of 3)" for an arm of one of three scenarios.
+  /// What readers are shown of the arm: the id where there is nothing else.
   std::string arm_title(const std::string& arm) const;
+  /// The same at the head of a column: "similar object (1 of 3)" for an arm of one of three scenarios.
+  std::string arm_head(const std::string& arm) const;
   /// "layout cells, engine mujoco"
   std::string title() const;
 

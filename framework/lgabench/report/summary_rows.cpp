@@ -85,8 +85,13 @@ std::string Table::title(const std::string& scenario) const {
 }
 
 std::string Table::arm_title(const std::string& arm) const {
+  const auto found = arm_titles.find(arm);
+  return found == arm_titles.end() ? arm : found->second;
+}
+
+std::string Table::arm_head(const std::string& arm) const {
   const std::size_t with = scenarios_with(arm).size(), all = scenarios().size() - 1;
-  return with == all ? arm : fmt::format("{} ({} of {})", arm, with, all);
+  return with == all ? arm_title(arm) : fmt::format("{} ({} of {})", arm_title(arm), with, all);
 }
 
 std::string Table::title() const { return fmt::format("layout {}, engine {}", layout, engine); }

@@ -52,7 +52,7 @@ std::vector<View> views(const Table& table) {
   }
   for (const int n : demonstrations) {
     View& view = all.emplace_back(View{table.demonstrations_text(n), {}, {}});
-    for (const std::string& arm : table.arms) view.columns.push_back({table.arm_title(arm), arm, n});
+    for (const std::string& arm : table.arms) view.columns.push_back({table.arm_head(arm), arm, n});
     std::copy_if(view.columns.begin(), view.columns.end(), std::back_inserter(view.shifted),
                  [&table](const Column& column) { return any_shift(table, column); });
   }
@@ -83,7 +83,7 @@ Spans marks_spans(const Row& row) {
     if (row.marked(mark.word)) add(mark.sign, mark.meaning);
   if (acts_the_same(row)) {
     spans.push_back(Span::number(" "));
-    add("=", "the same actions as in " + row.shift->against);
+    add("=", "the same actions as in " + row.shift->against_title);
   }
   return spans;
 }
@@ -120,12 +120,12 @@ std::vector<std::string> notes(const RunResults& run, const Summary& summary) {
   for (const Table& table : summary.tables) {
     for (const std::string& arm : table.arms)
       if (const auto some = table.scenarios_with(arm); some.size() + 1 < table.scenarios().size())
-        of_some.insert(fmt::format("{}: the mean is over {}; {}.", table.arm_title(arm), fmt::join(some, ", "),
+        of_some.insert(fmt::format("{}: the mean is over {}; {}.", table.arm_head(arm), fmt::join(some, ", "),
                                    any_ambiguous(table, arm) ? "in the others its words are ambiguous (?)"
                                                              : "no other scenario has this arm"));
     for (const Row& row : table.rows) {
       marked.insert(row.marks.begin(), row.marks.end());
-      if (acts_the_same(row)) same_as.insert(row.shift->against);
+      if (acts_the_same(row)) same_as.insert(row.shift->against_title);
       for (const PhiOfCommand& phi : row.phi) {
         if (phi.provenance == "truth" || phi.provenance == "simulated_edit")
           people[row.method] = provenance_words(phi.provenance, phi.erring);

@@ -57,7 +57,7 @@ const chips = (e) => !e.phi.length ? "" : `<div class="chips">` + e.phi.map(([wh
   `<span class="${kind}" title="${escaped(what)}: ${meaning[kind]}">${escaped(names)}</span>`).join("") + `</div>`;
 
 const whose = (e) => e.cell.participant && `, participant ${e.cell.participant}`;
-const where = (e) => `${e.cell.scenario}, ${e.arm}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
+const where = (e) => `${words(e.cell.scenario)}, ${data.arms[e.arm]}, scene ${e.index}, training seed ${e.cell.seed}${whose(e)}`;
 const wayOf = (name, action) => action ? `, ${name} from ${action.map((place) => place.join(",")).join(" to ")}` : `, no ${name}`;
 const told = (e) => `<b>${e.failure || "success"}</b>${e.attribution ? `, attributed to the ${e.attribution}` : ""}`;
 
@@ -106,7 +106,7 @@ function listOf(shown) {
     "picture on this page. White: the action, from where it takes hold to where it lets go; green: the oracle’s; " +
     "outlined: the target. A click enlarges.</p>";
   if (seen.length) list.append(growing(seen, 12, (some) => `<div class="scenes">${some.map(card).join("")}</div>`));
-  const line = (e) => `<tr>${[e.cell.scenario, e.arm, e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
+  const line = (e) => `<tr>${[words(e.cell.scenario), data.arms[e.arm], e.cell.seed + whose(e), e.index, e.command, e.failure || "success", e.attribution]
     .map((text) => `<td>${escaped(text)}</td>`).join("")}</tr>`;
   list.append(growing(shown, 100, (some) =>
     `<div class="frame" tabindex="0" role="region" aria-label="Episodes"><table><caption>Episodes, the failed ones first</caption><thead><tr>` +

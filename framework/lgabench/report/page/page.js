@@ -53,19 +53,22 @@ for (const table of document.querySelectorAll("table.sortable")) {
 }
 
 // A table that is wider than its place scrolls in it, below its heads and beside the names of its rows. On a narrow
-// screen and on paper it becomes a list of its rows, each number with its column's head before it.
+// screen and on paper it becomes a list of its rows, each number with its column's head before it. Before it scrolls, its
+// intervals go below their numbers.
 const narrow = 900;  // px
 function fit(within = document) {
   const frames = [...within.querySelectorAll(".frame")];
-  frames.forEach((frame) => frame.classList.remove("list"));
-  const wide = frames.filter((frame) => frame.scrollWidth > frame.clientWidth + 1);
+  frames.forEach((frame) => frame.classList.remove("list", "stacked"));
   const lists = innerWidth < narrow || document.body.classList.contains("printed");
+  const tooWide = () => frames.filter((frame) => frame.scrollWidth > frame.clientWidth + 1);
+  if (!lists) tooWide().forEach((frame) => frame.classList.add("stacked"));
+  const wide = tooWide();
   frames.forEach((frame) => {
     const list = lists && wide.includes(frame), scrolls = !lists && wide.includes(frame);
     const heads = [...frame.querySelectorAll("thead th")].map((head) => head.textContent);
     for (const row of list ? frame.querySelectorAll("tbody tr:not(.group)") : [])
       [...row.cells].forEach((cell, i) => {
-        if (cell.tagName === "TD") cell.dataset.head = heads[i];
+        if (i && !cell.querySelector(".name")) cell.dataset.head = heads[i];
         cell.classList.toggle("none", cell.textContent.trim() === "–");
       });
     frame.classList.toggle("list", list);
@@ -168,7 +171,7 @@ function csvOf(frame) {
     else lines.push([group, ...[...row.cells].map(text)]);
   return lines.map((line) => line.join(",") + "\n").join("");
 }
-const takeable = [...document.querySelectorAll("svg.chart, .frame")].map((element) => ({
+const takeable = [...document.querySelectorAll("figure:not(.narrow) > svg.chart, .frame")].map((element) => ({
   name: element.getAttribute("aria-label"),
   ...(element.tagName === "svg" ? { ending: "svg", text: () => new XMLSerializer().serializeToString(element) }
     : { ending: "csv", text: () => csvOf(element) }),

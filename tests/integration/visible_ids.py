@@ -1,0 +1,17 @@
+"""Ids that a page shows: words with "_", and lower-case ones with a digit inside, in visible text that is no code."""
+import re
+
+ID = re.compile(r"\b[A-Za-z0-9]+(?:_[A-Za-z0-9]+)+\b|\b[a-z]+\d\w*\b")
+TEXTS = """const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), texts = [];
+    while (walker.nextNode()) {
+      const around = walker.currentNode.parentElement;
+      if (around.closest("code, pre, script, style, noscript") || !around.getClientRects().length) continue;
+      texts.push(walker.currentNode.textContent);
+    }
+    return texts"""
+
+
+def visible_ids(driver, known=()):
+    """The ids of the page as the browser shows it now, but those in `known`."""
+    found = {word for text in driver.execute_script(TEXTS) for word in ID.findall(text)}
+    return sorted(found - set(known))
